@@ -1,0 +1,35 @@
+# Two commands do everything on a fresh machine with Python 3.11 and make: `make run`, `make test`.
+PYTHON ?= python3
+BIN := .venv/bin
+OUT ?= out
+
+.PHONY: run test test-all lint constraints clean
+.DEFAULT_GOAL := run
+
+# The build backend is pinned too: no build isolation, so pip fetches nothing that constraints.txt does not name.
+.venv/.installed: pyproject.toml constraints.txt
+	$(PYTHON) -m venv .venv
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,dev]'
+	touch $@
+
+run: .venv/.installed
+	$(BIN)/python -m rigidarea demo all --out $(OUT)/gallery
+
+lint: .venv/.installed
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+
+test: .venv/.installed lint
+	$(BIN)/python -m pytest -m 'not slow'
+
+test-all: .venv/.installed lint
+	$(BIN)/python -m pytest
+
+# Rewrites constraints.txt from what is installed now (after a deliberate upgrade).
+constraints: .venv/.installed
+	$(BIN)/python -m pip freeze --exclude-editable > constraints.txt
+
+clean:
+	rm -rf .venv out .pytest_cache .mypy_cache .ruff_cache .hypothesis

@@ -1,0 +1,1 @@
+"""Rigid-body contact by overlap area for pymunk."""
