@@ -1,0 +1,88 @@
+"""Constant-strain triangle (CST, T3): stiffness, lumped mass, stress.
+
+O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, vol. 1, 5th ed., chapter 4. Degrees of freedom are
+interleaved: 2 i and 2 i + 1 are the x and y displacement of node i.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse as sp
+from numpy.typing import NDArray
+
+from rigidarea.flexible.mesh import Mesh
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Material:
+    """Linear elastic, isotropic.
+
+    young: E, pressure. poisson: ν, -1 < ν < 1/2. density: ρ, mass/volume. thickness: t, length.
+    plane: "stress" or "strain". Raises ValueError outside these ranges.
+    """
+
+    young: float
+    poisson: float
+    density: float
+    thickness: float = 1.0
+    plane: str = "stress"
+
+    def __post_init__(self) -> None:
+        if not -1.0 < self.poisson < 0.5:
+            raise ValueError(f"Poisson's ratio must lie in (-1, 0.5), got {self.poisson}")
+        for name in ("young", "density", "thickness"):
+            if not 0.0 < getattr(self, name) < np.inf:
+                raise ValueError(f"{name} must be positive and finite, got {getattr(self, name)}")
+        if self.plane not in ("stress", "strain"):
+            raise ValueError(f"plane must be 'stress' or 'strain', got {self.plane!r}")
+
+    def elasticity(self) -> Array:
+        """The 3×3 matrix D of σ = D ε, ε = (ε_xx, ε_yy, γ_xy)."""
+        e, v = self.young, self.poisson
+        if self.plane == "strain":  # the plane-stress form with E/(1-ν²), ν/(1-ν)
+            e, v = e / (1 - v * v), v / (1 - v)
+        return e / (1 - v * v) * np.array([[1.0, v, 0.0], [v, 1.0, 0.0], [0.0, 0.0, 0.5 * (1 - v)]])
+
+
+def strain_displacement(mesh: Mesh) -> tuple[Array, Array]:
+    """B (m, 3, 6) with ε = B u_e, and the triangles' areas (m,)."""
+    p = mesh.points[mesh.triangles]
+    area = mesh.areas()
+    b = np.zeros((len(p), 3, 6))
+    for i in range(3):
+        j, k = (i + 1) % 3, (i + 2) % 3
+        dy = (p[:, j, 1] - p[:, k, 1]) / (2 * area)
+        dx = (p[:, k, 0] - p[:, j, 0]) / (2 * area)
+        b[:, 0, 2 * i] = b[:, 2, 2 * i + 1] = dy
+        b[:, 1, 2 * i + 1] = b[:, 2, 2 * i] = dx
+    return b, area
+
+
+def _dofs(mesh: Mesh) -> NDArray[np.int64]:
+    return (2 * mesh.triangles[:, :, None] + np.arange(2)).reshape(-1, 6)
+
+
+def stiffness(mesh: Mesh, material: Material) -> sp.csc_array:
+    """Stiffness K, sparse (2 n, 2 n), force/length: the sum of t A Bᵀ D B."""
+    b, area = strain_displacement(mesh)
+    ke = np.einsum("eki,kl,elj,e->eij", b, material.elasticity(), b, area * material.thickness, optimize=True)
+    dof = _dofs(mesh)
+    rows, cols = np.repeat(dof, 6, axis=1).ravel(), np.tile(dof, (1, 6)).ravel()
+    n = 2 * len(mesh.points)
+    return sp.coo_array((ke.ravel(), (rows, cols)), shape=(n, n)).tocsc()
+
+
+def lumped_mass(mesh: Mesh, material: Material) -> Array:
+    """Nodal masses (n,): each triangle gives ρ t A / 3 to its nodes."""
+    share = np.repeat(mesh.areas() * material.density * material.thickness / 3.0, 3)
+    return np.bincount(mesh.triangles.ravel(), share, len(mesh.points))
+
+
+def stress(mesh: Mesh, material: Material, u: Array) -> Array:
+    """Stress (m, 3) = (σ_xx, σ_yy, τ_xy) of each triangle under nodal displacements ``u`` (n, 2)."""
+    b, _ = strain_displacement(mesh)
+    return np.einsum("kl,elj,ej->ek", material.elasticity(), b, u.reshape(-1)[_dofs(mesh)])
