@@ -1,0 +1,265 @@
+"""A body's contact boundary as the kernels see it: points, where they move, and a tree of circles over them.
+
+Every boundary point rides on an edge of the finite-element boundary: its displacement is that of the edge's two
+nodes, interpolated. With one point a node this is the paper's perimeter; with more, a curved profile (a tooth flank)
+stays finer than the mesh that carries it. Kernels number bodies' points ring after ring; edge i runs from point i
+to point ``next[i]``, the material on its left.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+LEAF = 4  # edges a leaf: fewer make the tree deeper, more test more edge pairs
+
+
+class Boundary(NamedTuple):
+    """Constant data of one body; lengths in the body frame, origin at the centre of mass.
+
+    points (n, 2); next, previous, ring (n,); low, high (n,) FE boundary nodes of the carrying edge and share (n,) in
+    [0, 1), the weight of ``high``; centre (t, 2), radius (t,), left, right (t,) the tree (a leaf has left < 0 and
+    holds edges right … right - left - 1); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last
+    three rows the hub's (x, y, rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if not used.
+    """
+
+    points: Array
+    next: Ints
+    previous: Ints
+    ring: Ints
+    low: Ints
+    high: Ints
+    share: Array
+    centre: Array
+    radius: Array
+    left: Ints
+    right: Ints
+    modes: Array
+    flexibility: Array
+
+
+class Work(NamedTuple):
+    """What changes at every evaluation: positions (world), displacements (body frame), loads, and their stamps."""
+
+    position: Array  # (n, 2) world
+    position_stamp: Ints  # (n,) evaluation that wrote the position
+    displacement: Array  # (f, 2) body frame
+    displacement_stamp: Ints  # (f,)
+    point_load: Array  # (n, 2) force on a contact point, world
+    pressure: Array  # (n,) force a length at a contact point
+    point_flag: NDArray[np.bool_]  # (n,) listed in ``touched``
+    touched: Ints  # (n + 1,) contact points that carry load; [-1] their number
+    node_load: Array  # (f, 2) force on an FE boundary node, body frame
+    node_flag: NDArray[np.bool_]  # (f,) listed in ``loaded``
+    loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
+
+
+def build(
+    rings: list[Array],
+    carriers: tuple[Ints, Ints, Array] | None = None,
+    modes: Array | None = None,
+    flexibility: Array | None = None,
+) -> Boundary:
+    """A boundary from rings of contact points; without ``carriers`` (low, high, share) each point is its own node."""
+    points = np.ascontiguousarray(np.vstack(rings), float)
+    n = len(points)
+    nxt, prv, ring = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
+    centre: list[Array] = []
+    radius: list[float] = []
+    left: list[int] = []
+    right: list[int] = []
+
+    def circle(first: int, count: int) -> int:
+        p = points[np.append(np.arange(first, first + count), nxt[first + count - 1])]
+        c = 0.5 * (p.min(0) + p.max(0))
+        centre.append(c)
+        radius.append(float(np.linalg.norm(p - c, axis=1).max()))
+        left.append(0)
+        right.append(0)
+        return len(centre) - 1
+
+    def grow(first: int, count: int) -> int:
+        me = circle(first, count)
+        if count <= LEAF:
+            left[me], right[me] = -count, first
+        else:
+            half = -(-count // (2 * LEAF)) * LEAF
+            left[me], right[me] = grow(first, half), grow(first + half, count - half)
+        return me
+
+    start, roots = 0, []
+    for k, r in enumerate(rings):
+        i = np.arange(start, start + len(r))
+        nxt[i], prv[i], ring[i] = np.roll(i, -1), np.roll(i, 1), k
+        start += len(r)
+    centre.append(np.zeros(2))  # node 0, the root, is filled in last
+    radius.append(np.inf)
+    left.append(0)
+    right.append(0)
+    start = 0
+    for r in rings:
+        roots.append(grow(start, len(r)))
+        start += len(r)
+    while len(roots) > 1:  # join the rings' trees under one root
+        a, b = roots.pop(), roots.pop()
+        c = 0.5 * (centre[a] + centre[b])
+        centre.append(c)
+        radius.append(float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b])))
+        left.append(a)
+        right.append(b)
+        roots.append(len(centre) - 1)
+    top = roots[0]
+    centre[0], radius[0], left[0], right[0] = centre[top], radius[top], left[top], right[top]
+    identity = (np.arange(n), np.arange(n), np.zeros(n))
+    low, high, share = identity if carriers is None else carriers
+    f = int(max(low.max(), high.max())) + 1
+    return Boundary(
+        points, nxt, prv, ring,
+        np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
+        np.array(centre), np.array(radius), np.array(left), np.array(right),
+        np.zeros((2 * f + 3, 0)) if modes is None else np.ascontiguousarray(modes, float),
+        np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
+    )  # fmt: skip
+
+
+def workspace(b: Boundary) -> Work:
+    """Scratch arrays for one body."""
+    n, f = len(b.points), (len(b.modes) - 3) // 2
+    return Work(
+        np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
+        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(f + 1, np.int64),
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def node_displacement(b: Boundary, w: Work, modal: Array, node: int, stamp: int) -> None:
+    """u = Φ q + C f of one FE boundary node, body frame; f are the node loads of the evaluation before."""
+    if w.displacement_stamp[node] == stamp:
+        return
+    ux = uy = 0.0
+    for k in range(b.modes.shape[1]):
+        ux += b.modes[2 * node, k] * modal[k]
+        uy += b.modes[2 * node + 1, k] * modal[k]
+    if b.flexibility.shape[0] > 0:
+        for k in range(w.loaded[-1]):
+            j = w.loaded[k]
+            fx, fy = w.node_load[j, 0], w.node_load[j, 1]
+            ux += b.flexibility[2 * node, 2 * j] * fx + b.flexibility[2 * node, 2 * j + 1] * fy
+            uy += b.flexibility[2 * node + 1, 2 * j] * fx + b.flexibility[2 * node + 1, 2 * j + 1] * fy
+    w.displacement[node, 0] = ux
+    w.displacement[node, 1] = uy
+    w.displacement_stamp[node] = stamp
+
+
+@njit(cache=True)
+def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
+    """World position of contact point i at ``pose`` = (x, y, cos θ, sin θ), once an evaluation."""
+    if w.position_stamp[i] == stamp:
+        return
+    w.position_stamp[i] = stamp
+    x, y = b.points[i, 0], b.points[i, 1]
+    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
+        low, high, s = b.low[i], b.high[i], b.share[i]
+        node_displacement(b, w, modal, low, stamp)
+        x += (1.0 - s) * w.displacement[low, 0]
+        y += (1.0 - s) * w.displacement[low, 1]
+        if s > 0.0:
+            node_displacement(b, w, modal, high, stamp)
+            x += s * w.displacement[high, 0]
+            y += s * w.displacement[high, 1]
+    w.position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
+    w.position[i, 1] = pose[1] + pose[3] * x + pose[2] * y
+
+
+@njit(cache=True)
+def candidates(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, stack: Ints, out: Ints) -> int:
+    """Pairs of leaves whose circles come within ``margin``: fills ``out`` (k, 2), returns their number, -1 if full.
+
+    Circles do not mind rotation, so the trees are built once, in the body frames. ``margin`` covers the deformation
+    and, where a list is kept for several evaluations, the motion between them.
+    """
+    # pose of b in the frame of a
+    c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
+    s = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
+    dx, dy = pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]
+    tx = pose_a[2] * dx + pose_a[3] * dy
+    ty = -pose_a[3] * dx + pose_a[2] * dy
+    count, top = 0, 1
+    stack[0, 0] = stack[0, 1] = 0
+    while top > 0:
+        top -= 1
+        i, j = stack[top, 0], stack[top, 1]
+        ex = tx + c * b.centre[j, 0] - s * b.centre[j, 1] - a.centre[i, 0]
+        ey = ty + s * b.centre[j, 0] + c * b.centre[j, 1] - a.centre[i, 1]
+        reach = a.radius[i] + b.radius[j] + margin
+        if ex * ex + ey * ey > reach * reach:
+            continue
+        if a.left[i] < 0 and b.left[j] < 0:
+            if count == len(out):
+                return -1
+            out[count, 0] = i
+            out[count, 1] = j
+            count += 1
+        elif b.left[j] < 0 or (a.left[i] >= 0 and a.radius[i] >= b.radius[j]):
+            stack[top, 0], stack[top, 1] = a.left[i], j
+            stack[top + 1, 0], stack[top + 1, 1] = a.right[i], j
+            top += 2
+        else:
+            stack[top, 0], stack[top, 1] = i, b.left[j]
+            stack[top + 1, 0], stack[top + 1, 1] = i, b.right[j]
+            top += 2
+    return count
+
+
+@njit(cache=True)
+def add_load(w: Work, i: int, fx: float, fy: float) -> None:
+    """Adds a force to contact point i and remembers that it is loaded."""
+    if not w.point_flag[i]:
+        w.point_flag[i] = True
+        w.touched[w.touched[-1]] = i
+        w.touched[-1] += 1
+    w.point_load[i, 0] += fx
+    w.point_load[i, 1] += fy
+
+
+@njit(cache=True)
+def clear_loads(w: Work) -> None:
+    """Forgets the contact points' loads."""
+    for k in range(w.touched[-1]):
+        i = w.touched[k]
+        w.point_load[i, 0] = w.point_load[i, 1] = w.pressure[i] = 0.0
+        w.point_flag[i] = False
+    w.touched[-1] = 0
+
+
+@njit(cache=True)
+def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
+    """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
+    for k in range(w.loaded[-1]):
+        w.node_load[w.loaded[k], 0] = w.node_load[w.loaded[k], 1] = 0.0
+        w.node_flag[w.loaded[k]] = False
+    w.loaded[-1] = 0
+    for k in range(w.touched[-1]):
+        i = w.touched[k]
+        fx = pose[2] * w.point_load[i, 0] + pose[3] * w.point_load[i, 1]
+        fy = -pose[3] * w.point_load[i, 0] + pose[2] * w.point_load[i, 1]
+        s = b.share[i]
+        _add_node(w, b.low[i], (1.0 - s) * fx, (1.0 - s) * fy)
+        if s > 0.0:
+            _add_node(w, b.high[i], s * fx, s * fy)
+
+
+@njit(cache=True)
+def _add_node(w: Work, node: int, fx: float, fy: float) -> None:
+    if not w.node_flag[node]:
+        w.node_flag[node] = True
+        w.loaded[w.loaded[-1]] = node
+        w.loaded[-1] += 1
+    w.node_load[node, 0] += fx
+    w.node_load[node, 1] += fy

@@ -1,0 +1,251 @@
+"""Nodal pressures and forces of a contact region (the paper's Alg. 3), balanced to rounding.
+
+The paper gives every node a force α d^q A_trib along its own normal and finds the one scalar α by least squares
+(Eq. 22, 24), so neither force nor moment balances exactly, and the two bodies' pressures differ (its Fig. 12). Here
+the pressure is a field on the chord, the same for both bodies:
+
+    p(x) = (α + β (x − x_c)) d(x)^q,      d(x) = thickness of the region along the contact direction at x,
+
+and each edge hands it to its two nodes by its shape functions (consistent loads; an edge cut by a crossing point
+also loads the node outside). Shape functions keep resultant and first moment, so with α, β from
+
+    ∫ p dx = k A,      ∫ p (x − x_c) dx = 0
+
+(the scalar forms of Eq. 17 and 18) the nodal forces of each body sum to the global force and have no moment about the
+line through the centroid, both to rounding, and equal and opposite for the two bodies. For q = 1 the solution is
+α = k, β = 0 with no equation to solve: the resultant of the local law p = k d *is* k A at the centroid. d is the
+penetration along the common direction instead of Eq. 9's along each node's normal; the two agree where the
+perimeters are parallel to the chord. Forces are repulsive wherever α + β (x − x_c) is positive; where a
+strongly one-sided region with q ≠ 1 would make it negative, the q = 1 field is used, which never pulls.
+
+``literal`` keeps the paper's own version, for the cases that verify it.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rigidarea.flexible.boundary import Boundary, Work, add_load, candidates
+from rigidarea.flexible.region import CROSSING, MANY, REGION, arcs, area_and_centroid, find_regions
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# Three-point Gauss on [0, 1]: exact for q = 2 with linear shape functions
+GAUSS_X = (0.5 - 0.5 * 0.6**0.5, 0.5, 0.5 + 0.5 * 0.6**0.5)
+GAUSS_W = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
+
+
+@njit(cache=True)
+def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
+    """Makes x grow along an arc; overhanging parts get no width, so no load. True if there were any."""
+    bent = False
+    top = 0.0
+    for k in range(1, n + 1):
+        if x[side, k] < top - 1e-12 * chord or x[side, k] > chord * (1.0 + 1e-12):
+            bent = True
+        top = min(max(x[side, k], top), chord)
+        x[side, k] = top
+    return bent
+
+
+@njit(cache=True)
+def _moments(x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float) -> tuple[float, float, float]:
+    """∫ d^q (x − x_c)^i dx for i = 0, 1, 2 over the merged pieces of both arcs."""
+    s0 = s1 = s2 = 0.0
+    i = j = 0
+    lo = 0.0
+    while i < n_a and j < n_b:
+        hi = min(x[0, i + 1], x[1, j + 1])
+        if hi > lo:
+            ga = (y[0, i + 1] - y[0, i]) / (x[0, i + 1] - x[0, i])
+            gb = (y[1, j + 1] - y[1, j]) / (x[1, j + 1] - x[1, j])
+            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
+            slope = gb - ga
+            for g in range(3):
+                e = GAUSS_X[g] * (hi - lo)
+                p = GAUSS_W[g] * (hi - lo) * max(d0 + slope * e, 0.0) ** q
+                z = lo + e - xc
+                s0 += p
+                s1 += p * z
+                s2 += p * z * z
+            lo = hi
+        if x[0, i + 1] <= lo:
+            i += 1
+        else:
+            j += 1
+    return s0, s1, s2
+
+
+@njit(cache=True)
+def distribute(
+    a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, x: Array, y: Array, edge: Ints, t: Array,
+    n_a: int, n_b: int, force: float, area: float, xc: float, chord: float, q: float,
+) -> None:  # fmt: skip
+    """Adds the nodal loads of one region to both bodies; ``force`` is k A, (nx, ny) the direction of the force on B.
+
+    Arcs as ``region.arcs`` leaves them (x is straightened in place).
+    """
+    # Both arcs, not "or": each must be straightened.
+    bent_a = _straighten(x, 0, n_a, chord)
+    bent_b = _straighten(x, 1, n_b, chord)
+    if q == 1.0 and not (bent_a or bent_b):
+        alpha, beta = force / area, 0.0
+    else:
+        s0, s1, s2 = _moments(x, y, n_a, n_b, q, xc)
+        det = s0 * s2 - s1 * s1
+        if s0 <= 0.0 or det <= 0.0:
+            return
+        alpha, beta = force * s2 / det, -force * s1 / det
+        if min(alpha - beta * xc, alpha + beta * (chord - xc)) < 0.0:
+            q = 1.0
+            s0, s1, s2 = _moments(x, y, n_a, n_b, q, xc)
+            alpha, beta = force / s0, 0.0
+    i = j = 0
+    lo = 0.0
+    ia, ja = a.next[edge[0, 0]], b.next[edge[1, 0]]
+    a_low = a_high = b_low = b_high = 0.0
+    while i < n_a and j < n_b:
+        hi = min(x[0, i + 1], x[1, j + 1])
+        if hi > lo:
+            width_a = 1.0 / (x[0, i + 1] - x[0, i])
+            width_b = 1.0 / (x[1, j + 1] - x[1, j])
+            ga = (y[0, i + 1] - y[0, i]) * width_a
+            gb = (y[1, j + 1] - y[1, j]) * width_b
+            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
+            slope = gb - ga
+            sa = (t[0, i, 1] - t[0, i, 0]) * width_a
+            sb = (t[1, j, 1] - t[1, j, 0]) * width_b
+            for g in range(3):
+                e = GAUSS_X[g] * (hi - lo)
+                z = lo + e
+                d = max(d0 + slope * e, 0.0)
+                p = (alpha + beta * (z - xc)) * (d if q == 1.0 else d**q) * GAUSS_W[g] * (hi - lo)
+                ta = t[0, i, 0] + sa * (z - x[0, i])
+                tb = t[1, j, 0] + sb * (z - x[1, j])
+                a_low += p * (1.0 - ta)
+                a_high += p * ta
+                b_low += p * (1.0 - tb)
+                b_high += p * tb
+            lo = hi
+        if x[0, i + 1] <= lo:
+            add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
+            add_load(wa, a.next[edge[0, i]], -a_high * nx, -a_high * ny)
+            a_low = a_high = 0.0
+            i += 1
+            if i < n_a:  # the vertex between two pieces is a node inside: its pressure, Eq. 12
+                v = _height(x, y, 1, j, x[0, i]) - y[0, i]
+                wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
+        else:
+            add_load(wb, edge[1, j], b_low * nx, b_low * ny)
+            add_load(wb, b.next[edge[1, j]], b_high * nx, b_high * ny)
+            b_low = b_high = 0.0
+            j += 1
+            if j < n_b:
+                v = y[1, j] - _height(x, y, 0, i, x[1, j])
+                wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
+    if i < n_a:
+        add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
+        add_load(wa, a.next[edge[0, i]], -a_high * nx, -a_high * ny)
+    if j < n_b:
+        add_load(wb, edge[1, j], b_low * nx, b_low * ny)
+        add_load(wb, b.next[edge[1, j]], b_high * nx, b_high * ny)
+
+
+@njit(cache=True)
+def _height(x: Array, y: Array, side: int, k: int, at: float) -> float:
+    width = x[side, k + 1] - x[side, k]
+    return y[side, k] if width <= 0.0 else y[side, k] + (y[side, k + 1] - y[side, k]) * (at - x[side, k]) / width
+
+
+class Scratch(NamedTuple):
+    """Work arrays of one pair: candidate leaves, crossings, regions, and one region's arcs."""
+
+    stack: Ints
+    pairs: Ints
+    crossings: NDArray[np.void]
+    regions: NDArray[np.void]
+    x: Array
+    y: Array
+    edge: Ints
+    t: Array
+
+
+def scratch(points: int) -> Scratch:
+    """Arrays for boundaries of up to ``points`` points."""
+    return Scratch(
+        np.zeros((256, 2), np.int64), np.zeros((4096, 2), np.int64), np.zeros(256, CROSSING), np.zeros(64, REGION),
+        np.zeros((2, points + 3)), np.zeros((2, points + 3)), np.zeros((2, points + 3), np.int64),
+        np.zeros((2, points + 3, 2)),
+    )  # fmt: skip
+
+
+@njit(cache=True)
+def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
+    """Candidate leaf pairs into ``s.pairs``; their number, or MANY."""
+    return candidates(a, pose_a, b, pose_b, margin, s.stack, s.pairs)
+
+
+@njit(cache=True)
+def contact(
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    n_pairs: int, stamp: int, k: float, q: float, spread: bool, s: Scratch,
+) -> int:  # fmt: skip
+    """Alg. 1–3 for one pair of bodies: fills ``s.regions`` and, if ``spread``, adds the loads of their points.
+
+    k: stiffness, pressure (a force per area in 2-D). q: the pressure exponent. Returns the number of regions or an
+    error code of ``region``. The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
+    """
+    n = find_regions(a, wa, pose_a, qa, b, wb, pose_b, qb, s.pairs, n_pairs, stamp, s.crossings, s.regions)
+    for i in range(n):
+        r = s.regions[i]
+        n_a, n_b = arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, s.x, s.y, s.edge, s.t)
+        if n_a == MANY:
+            return MANY
+        area, xc, yc = area_and_centroid(s.x, s.y, n_a, n_b)
+        r.area, r.force = area, k * area  # Eq. 5
+        ux, uy = -r.ny, r.nx
+        r.x, r.y = r.enter_x + ux * xc - uy * yc, r.enter_y + uy * xc + ux * yc
+        if spread and area > 0.0:
+            distribute(a, wa, b, wb, r.nx, r.ny, s.x, s.y, s.edge, s.t, n_a, n_b, r.force, area, xc, r.chord, q)
+    return n
+
+
+def literal(arc: Array, other: Array, q: float) -> tuple[Array, Array, Array, Array]:
+    """Eq. 8–11 for one body: the nodes of ``arc`` inside the other body, its two end points the crossings.
+
+    arc (n + 2, 2): crossing, nodes inside, crossing, in the order of the body's perimeter; other (m, 2): the other
+    body's arc between the same crossings. Returns normals (n, 2) towards the other perimeter, distances (n,),
+    tributary lengths (n,), and the weights A_trib d^q (n,) of Eq. 13.
+    """
+    tangent = arc[2:] - arc[:-2]
+    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.hypot(*tangent.T)[:, None]  # Eq. 8
+    step = np.hypot(*np.diff(arc, axis=0).T)
+    tributary = 0.5 * (step[1:] + step[:-1])  # Eq. 11
+    p = arc[1:-1]
+    r, s = other[:-1], np.diff(other, axis=0)
+    cross = normal[:, None, 0] * s[None, :, 1] - normal[:, None, 1] * s[None, :, 0]
+    rel = r[None] - p[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        along = (rel[..., 0] * s[None, :, 1] - rel[..., 1] * s[None, :, 0]) / cross
+        on = (rel[..., 0] * normal[:, None, 1] - rel[..., 1] * normal[:, None, 0]) / cross
+    along = np.where((on >= -1e-12) & (on <= 1 + 1e-12), along, np.inf)
+    pick = np.abs(along).argmin(1)
+    distance = along[np.arange(len(p)), pick]  # Eq. 9; its sign turns the normal to the other perimeter
+    if not np.isfinite(distance).all():
+        raise ValueError("the normal of a contact node misses the other body's perimeter (Eq. 9)")
+    normal = normal * np.where(distance < 0, -1.0, 1.0)[:, None]
+    distance = np.abs(distance)
+    return normal, distance, tributary, tributary * distance**q
+
+
+def literal_alpha(normal: Array, weight: Array, nodes: Array, centroid: Array, force: Array) -> float:
+    """α of Eq. 22: least squares over force and moment about the centroid, ``force`` (2,) the global force."""
+    f = weight[:, None] * normal
+    arm = nodes - centroid
+    b = np.array([f[:, 0].sum(), f[:, 1].sum(), (arm[:, 0] * f[:, 1] - arm[:, 1] * f[:, 0]).sum()])
+    return float(b[:2] @ force / (b @ b))

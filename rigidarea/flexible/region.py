@@ -1,0 +1,225 @@
+"""Contact regions of two placed boundaries that deform (the paper's Alg. 1 and the first half of Alg. 2).
+
+Crossing points come from the candidate leaves alone; walking each perimeter from crossing to crossing gives the
+regions, so the nodes inside need no inclusion test of their own. Predicates are half-open: a point on a line counts
+as left of it, so a perimeter that runs through a vertex of the other crosses it once.
+
+Body A lies left of its perimeter. Where A enters B an arc of A inside B begins; it ends where A leaves, and there an
+arc of B inside A begins: together they run round a region counter-clockwise. Seen along the chord from entry to
+exit, A is above, B below, and the region lies between them:
+
+            A
+    entry ─────── exit        x along the chord, y towards A
+        \\__ arc __/           top: the arc of B, bottom: the arc of A
+            B
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rigidarea.flexible.boundary import Boundary, Work, place
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+# enter_*: the crossing where A enters B (edge and parameter on each body), leave_*: where it leaves
+REGION = np.dtype(
+    [(f"{end}_{body}{what}", t) for end in ("enter", "leave") for body in "ab" for what, t in (("", "i8"), ("_t", "f8"))]
+    + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
+    + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
+    + [("compliance", "f8"), ("x_chord", "f8"), ("y_chord", "f8")]
+)
+CROSSING = np.dtype(
+    [("a", "i8"), ("b", "i8"), ("ta", "f8"), ("tb", "f8"), ("x", "f8"), ("y", "f8"), ("enter", "i8"), ("next_a", "i8"),
+     ("next_b", "i8"), ("used", "i8")]
+)  # fmt: skip
+
+MANY = -1  # more crossings, arcs or candidates than the work arrays hold
+TORN = -2  # crossings that do not alternate: a boundary that crosses itself
+SLICED = -3  # a region with more than one arc a body (a bar through a bar)
+
+
+@njit(cache=True)
+def _crossings(
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    pairs: Ints, n_pairs: int, stamp: int, out: NDArray[np.void],
+) -> int:  # fmt: skip
+    count = 0
+    for k in range(n_pairs):
+        leaf_a, leaf_b = pairs[k, 0], pairs[k, 1]
+        first_b, last_b = b.right[leaf_b], b.right[leaf_b] - b.left[leaf_b]
+        for j in range(first_b, last_b):
+            place(b, wb, pose_b, qb, j, stamp)
+        place(b, wb, pose_b, qb, b.next[last_b - 1], stamp)
+        for i in range(a.right[leaf_a], a.right[leaf_a] - a.left[leaf_a]):
+            ia = a.next[i]
+            place(a, wa, pose_a, qa, i, stamp)
+            place(a, wa, pose_a, qa, ia, stamp)
+            px, py = wa.position[i, 0], wa.position[i, 1]
+            dx, dy = wa.position[ia, 0] - px, wa.position[ia, 1] - py
+            for j in range(first_b, last_b):
+                jb = b.next[j]
+                rx, ry = wb.position[j, 0] - px, wb.position[j, 1] - py
+                sx, sy = wb.position[jb, 0] - px, wb.position[jb, 1] - py
+                o_r = dx * ry - dy * rx  # Eq. 1-3 as orientation tests: no division before a crossing is certain
+                o_s = dx * sy - dy * sx
+                if (o_r >= 0.0) == (o_s >= 0.0):
+                    continue
+                ex, ey = wb.position[jb, 0] - wb.position[j, 0], wb.position[jb, 1] - wb.position[j, 1]
+                # one formula for both ends, so that edges that share a vertex agree on its side to the last bit
+                o_p = ex * (py - wb.position[j, 1]) - ey * (px - wb.position[j, 0])
+                o_q = ex * (wa.position[ia, 1] - wb.position[j, 1]) - ey * (wa.position[ia, 0] - wb.position[j, 0])
+                if (o_p >= 0.0) == (o_q >= 0.0):
+                    continue
+                if count == len(out):
+                    return MANY
+                t = o_p / (o_p - o_q)
+                c = out[count]
+                c.a, c.b, c.ta, c.tb = i, j, t, o_r / (o_r - o_s)
+                c.x, c.y = px + t * dx, py + t * dy
+                c.enter = 1 if o_q >= 0.0 else 0  # A runs to the left of B's edge: into B
+                c.used = 0
+                count += 1
+    return count
+
+
+@njit(cache=True)
+def _link(a: Boundary, b: Boundary, c: NDArray[np.void], n: int) -> None:
+    """next_a, next_b: the crossing that follows on the same ring of A, of B."""
+    for i in range(n):
+        best, wrap = -1, -1
+        best_key = wrap_key = np.inf
+        key = c[i].a + c[i].ta
+        for j in range(n):
+            if j != i and a.ring[c[j].a] == a.ring[c[i].a]:
+                other = c[j].a + c[j].ta
+                if other >= key and other < best_key and not (other == key and j < i):
+                    best, best_key = j, other
+                if other < wrap_key:
+                    wrap, wrap_key = j, other
+        c[i].next_a = best if best >= 0 else wrap
+        best, wrap = -1, -1
+        best_key = wrap_key = np.inf
+        key = c[i].b + c[i].tb
+        for j in range(n):
+            if j != i and b.ring[c[j].b] == b.ring[c[i].b]:
+                other = c[j].b + c[j].tb
+                if other >= key and other < best_key and not (other == key and j < i):
+                    best, best_key = j, other
+                if other < wrap_key:
+                    wrap, wrap_key = j, other
+        c[i].next_b = best if best >= 0 else wrap
+
+
+@njit(cache=True)
+def find_regions(
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    pairs: Ints, n_pairs: int, stamp: int, crossings: NDArray[np.void], regions: NDArray[np.void],
+) -> int:  # fmt: skip
+    """Fills ``regions`` with the crossings of each contact region; returns their number, or MANY, TORN, SLICED.
+
+    Poses are (x, y, cos θ, sin θ), qa and qb the modal coordinates, ``pairs`` the candidate leaves.
+    """
+    n = _crossings(a, wa, pose_a, qa, b, wb, pose_b, qb, pairs, n_pairs, stamp, crossings)
+    if n <= 0:
+        return n
+    if n % 2 == 1:
+        return TORN
+    _link(a, b, crossings, n)
+    count = 0
+    for i in range(n):
+        c = crossings[i]
+        if c.enter == 0 or c.used == 1:
+            continue
+        out = c.next_a
+        if out < 0 or crossings[out].enter == 1:
+            return TORN
+        if crossings[out].next_b != i:
+            return SLICED
+        if count == len(regions):
+            return MANY
+        c.used = crossings[out].used = 1
+        r, d = regions[count], crossings[out]
+        r.enter_a, r.enter_a_t, r.enter_b, r.enter_b_t = c.a, c.ta, c.b, c.tb
+        r.leave_a, r.leave_a_t, r.leave_b, r.leave_b_t = d.a, d.ta, d.b, d.tb
+        r.enter_x, r.enter_y, r.leave_x, r.leave_y = c.x, c.y, d.x, d.y
+        ex, ey = d.x - c.x, d.y - c.y
+        r.chord = np.hypot(ex, ey)
+        if r.chord > 0.0:
+            # Eq. 13 for q = 0: the mean normal of an arc is its chord turned by a quarter. Outward for A, so it is
+            # the direction of the force on B.
+            r.nx, r.ny = ey / r.chord, -ex / r.chord
+            r.x_chord, r.y_chord = 0.5 * (d.x + c.x), 0.5 * (d.y + c.y)
+            count += 1
+    return count
+
+
+@njit(cache=True)
+def arcs(
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    r: NDArray[np.void], stamp: int, x: Array, y: Array, edge: Ints, t: Array,
+) -> tuple[int, int]:  # fmt: skip
+    """The two arcs of a region in its chord frame (origin at the entry, x to the exit, y to the side of A).
+
+    Row 0 of x, y (2, k) is the arc of A from entry to exit, row 1 the arc of B walked backwards, so that x grows
+    on both. Piece k, between vertices k and k + 1, lies on ``edge[·, k]`` at parameters ``t[·, k]``. Returns the numbers
+    of pieces, or (MANY, MANY).
+    """
+    ux, uy = -r.ny, r.nx  # along the chord
+    limit = x.shape[1] - 2
+    for side in range(2):
+        x[side, 0] = y[side, 0] = 0.0
+    n_a = 0
+    i, t0 = r.enter_a, r.enter_a_t
+    while i != r.leave_a or (n_a == 0 and r.leave_a_t < t0):
+        edge[0, n_a] = i
+        t[0, n_a, 0], t[0, n_a, 1] = t0, 1.0
+        i, t0, n_a = a.next[i], 0.0, n_a + 1
+        if n_a >= limit:
+            return MANY, MANY
+        place(a, wa, pose_a, qa, i, stamp)
+        px, py = wa.position[i, 0] - r.enter_x, wa.position[i, 1] - r.enter_y
+        x[0, n_a], y[0, n_a] = ux * px + uy * py, -uy * px + ux * py
+    edge[0, n_a] = i
+    t[0, n_a, 0], t[0, n_a, 1] = t0, r.leave_a_t
+    n_a += 1
+    x[0, n_a], y[0, n_a] = r.chord, 0.0
+    n_b = 0
+    j, t0 = r.enter_b, r.enter_b_t
+    while j != r.leave_b or (n_b == 0 and r.leave_b_t > t0):
+        edge[1, n_b] = j
+        t[1, n_b, 0], t[1, n_b, 1] = t0, 0.0
+        place(b, wb, pose_b, qb, j, stamp)
+        px, py = wb.position[j, 0] - r.enter_x, wb.position[j, 1] - r.enter_y
+        j, t0, n_b = b.previous[j], 1.0, n_b + 1
+        if n_b >= limit:
+            return MANY, MANY
+        x[1, n_b], y[1, n_b] = ux * px + uy * py, -uy * px + ux * py
+    edge[1, n_b] = j
+    t[1, n_b, 0], t[1, n_b, 1] = t0, r.leave_b_t
+    n_b += 1
+    x[1, n_b], y[1, n_b] = r.chord, 0.0
+    return n_a, n_b
+
+
+@njit(cache=True)
+def area_and_centroid(x: Array, y: Array, n_a: int, n_b: int) -> tuple[float, float, float]:
+    """Area and centroid (Eq. 4 and 7) of the region between the arcs, in its chord frame.
+
+    The walk is along A and back along B; the origin is a vertex, so no digits are lost far from the world's origin.
+    """
+    s = sx = sy = 0.0
+    for side in range(2):
+        sign = 1.0 if side == 0 else -1.0
+        for k in range(n_a if side == 0 else n_b):
+            x0, y0, x1, y1 = x[side, k], y[side, k], x[side, k + 1], y[side, k + 1]
+            cross = sign * (x0 * y1 - x1 * y0)
+            s += cross
+            sx += cross * (x0 + x1)
+            sy += cross * (y0 + y1)
+    if s <= 0.0:
+        return 0.0, 0.0, 0.0
+    return 0.5 * s, sx / (3.0 * s), sy / (3.0 * s)

@@ -1,0 +1,100 @@
+"""Segment-to-segment penalty contact (STS), the baseline the paper holds its method against.
+
+Every edge of the slave (body A) is cut by the projections of the master's (body B) edge ends along its normal; on
+each part, two Gauss points carry p = ε ⟨−g⟩ (exact for the linear gap times a linear shape function, except where
+the gap changes sign within a part), and shape functions hand the force to the nodes of both bodies. Cf. P. Wriggers,
+Computational Contact Mechanics, 2nd ed., section 10.3, doi:10.1007/978-3-540-32609-0. ε is a force per area in 2-D,
+as k is for the area method; on flat faces both give the same resultant. The signature is that of
+``nodal.contact``: search, stepping and constraints are shared, only the evaluation differs.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from rigidarea.flexible.boundary import Boundary, Work, add_load, place
+from rigidarea.flexible.nodal import Scratch
+from rigidarea.flexible.region import MANY
+
+Array = NDArray[np.float64]
+
+GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
+
+
+@njit(cache=True)
+def contact(
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    n_pairs: int, stamp: int, k: float, reach: float, spread: bool, s: Scratch,
+) -> int:  # fmt: skip
+    """STS for one pair: each slave leaf in contact leaves one resultant in ``s.regions`` (force, point, direction).
+
+    k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
+    Returns the number of resultants, or MANY.
+    """
+    count = 0
+    last = -1
+    fx = fy = moment = stiff = 0.0
+    for m in range(n_pairs + 1):
+        leaf_a = s.pairs[m, 0] if m < n_pairs else -2
+        if leaf_a != last:  # pairs come grouped by the slave's leaf or not: a group is whatever is consecutive
+            if stiff > 0.0:
+                if count == len(s.regions):
+                    return MANY
+                r = s.regions[count]
+                f = np.hypot(fx, fy)
+                r.force, r.nx, r.ny = f, fx / f, fy / f
+                # the point of the line of action nearest to A's origin: the moment about that origin is kept
+                r.x, r.y = pose_a[0] + r.ny * moment / f, pose_a[1] - r.nx * moment / f
+                r.x_chord, r.y_chord, r.chord, r.area = r.x, r.y, stiff / k, f / k
+                count += 1
+            fx = fy = moment = stiff = 0.0
+            last = leaf_a
+        if m == n_pairs:
+            break
+        leaf_b = s.pairs[m, 1]
+        for i in range(a.right[leaf_a], a.right[leaf_a] - a.left[leaf_a]):
+            i1 = a.next[i]
+            place(a, wa, pose_a, qa, i, stamp)
+            place(a, wa, pose_a, qa, i1, stamp)
+            px, py = wa.position[i, 0], wa.position[i, 1]
+            tx, ty = wa.position[i1, 0] - px, wa.position[i1, 1] - py
+            length = np.hypot(tx, ty)
+            tx, ty = tx / length, ty / length
+            nx, ny = ty, -tx  # outward
+            for j in range(b.right[leaf_b], b.right[leaf_b] - b.left[leaf_b]):
+                j1 = b.next[j]
+                place(b, wb, pose_b, qb, j, stamp)
+                place(b, wb, pose_b, qb, j1, stamp)
+                rx, ry = wb.position[j, 0] - px, wb.position[j, 1] - py
+                sx, sy = wb.position[j1, 0] - px, wb.position[j1, 1] - py
+                x_r, x_s = rx * tx + ry * ty, sx * tx + sy * ty
+                if x_s >= x_r:  # facing the same way: no contact
+                    continue
+                lo, hi = max(0.0, x_s), min(length, x_r)
+                if hi <= lo:
+                    continue
+                g_r, g_s = rx * nx + ry * ny, sx * nx + sy * ny
+                if min(g_r, g_s) >= 0.0 or max(g_r, g_s) < -reach:
+                    continue
+                for g in range(2):
+                    x = lo + GAUSS[g] * (hi - lo)
+                    eta = (x_r - x) / (x_r - x_s)
+                    gap = g_r + eta * (g_s - g_r)
+                    if gap >= 0.0 or gap < -reach:
+                        continue
+                    w = 0.5 * (hi - lo) * k
+                    f = -gap * w
+                    xi = x / length
+                    if spread:
+                        add_load(wa, i, -(1.0 - xi) * f * nx, -(1.0 - xi) * f * ny)
+                        add_load(wa, i1, -xi * f * nx, -xi * f * ny)
+                        add_load(wb, j, (1.0 - eta) * f * nx, (1.0 - eta) * f * ny)
+                        add_load(wb, j1, eta * f * nx, eta * f * ny)
+                    fx += f * nx
+                    fy += f * ny
+                    hx, hy = px + x * tx - pose_a[0], py + x * ty - pose_a[1]
+                    moment += (hx * ny - hy * nx) * f
+                    stiff += w
+    return count
