@@ -78,15 +78,22 @@ class Outline:
         self._set(rings)
 
     @classmethod
-    def _trusted(cls, rings: Iterable[Points], resample: Callable[..., Outline] | None = None) -> Outline:
-        """From rings known to be finite, simple and free of repeated points; `resample(tolerance=...)`
-        makes it anew."""
+    def from_curve(cls, rings: Iterable[Points], resample: Callable[..., Outline] | None = None) -> Outline:
+        """From sampled curves known to make an outline (unchecked), and the function that samples them.
+
+        `resample(tolerance=...)` makes the outline anew; a functools.partial of a module's function, so
+        that it can be pickled. See `sample`.
+        """
         self = cls.__new__(cls)
         self._set([np.array(ring, dtype=np.float64) for ring in rings], resample)
         return self
 
+    def with_curve(self, resample: Callable[..., Outline]) -> Outline:
+        """The same outline, knowing how to `sample` itself anew."""
+        return Outline.from_curve(self.rings, resample)
+
     def _set(self, rings: list[Points], resample: Callable[..., Outline] | None = None) -> None:
-        lower, upper = rings[0].min(axis=0), rings[0].max(axis=0)
+        lower, upper = np.minimum.reduce(rings[0]), np.maximum.reduce(rings[0])
         middle = (
             lower + upper
         ) / 2  # all sums relative to it: far from the origin the plain ones have no digits
@@ -162,7 +169,7 @@ class Outline:
         not positive and finite, and for an unknown side.
         """
         if tolerance is not None:
-            _positive(tolerance, "tolerance")
+            positive(tolerance, "tolerance")
         if side not in ("both", "left", "right"):
             raise ValueError(f"side must be 'both', 'left' or 'right', got {side!r}")
         outline = getattr(shape, "outline", None)
@@ -229,7 +236,7 @@ class Outline:
         again from it; an outline that came as points is all there is to know, and is returned itself.
         Raises ValueError unless tolerance is positive.
         """
-        _positive(tolerance, "tolerance")
+        positive(tolerance, "tolerance")
         return self if self._resample is None else self._resample(tolerance=tolerance)
 
     def translated(self, dx: float, dy: float) -> Outline:
@@ -247,9 +254,9 @@ class Outline:
         turn = np.array([[c, s], [-s, c]])
         moved = [(ring @ turn if angle else ring) + (dx, dy) for ring in self.rings]
         again = None if self._resample is None else partial(_resample_moved, self._resample, angle, dx, dy)
-        outline = Outline._trusted(moved, again)
+        outline = Outline.from_curve(moved, again)
         if self.mirror is not None and self.mirror.mirror is self:
-            outline.mirror = Outline._trusted(
+            outline.mirror = Outline.from_curve(
                 [(ring @ turn if angle else ring) + (dx, dy) for ring in self.mirror.rings]
             )
             outline.mirror.mirror = outline
@@ -304,10 +311,10 @@ class Outline:
         and finite.
         """
         if density is not None and mass is None:
-            mass = _positive(density, "density") * self.area
+            mass = positive(density, "density") * self.area
         elif mass is None or density is not None:
             raise ValueError(f"expected either density or mass, got density={density!r}, mass={mass!r}")
-        mass = _positive(mass, "mass")
+        mass = positive(mass, "mass")
         body = pymunk.Body(mass, mass * self._gyration)
         body.center_of_gravity = self.centroid
         return body
@@ -325,11 +332,11 @@ class Outline:
 
     def __repr__(self) -> str:
         points = " + ".join(str(len(ring)) for ring in self.rings)
-        return f"<Outline of {points} points, area {self.area:.6g}, centroid ({self.centroid[0]:.6g}, {self.centroid[1]:.6g})>"
+        return f"<Outline of {points} points, area {self.area:.6g}, bounds {self.bounds}>"
 
 
 def arc_points(
-    centre: tuple[float, float], radius: float, start: float, sweep: float, tolerance: float
+    center: tuple[float, float], radius: float, start: float, sweep: float, tolerance: float
 ) -> Points:
     """Points (n, 2) along a circular arc, both ends included and exactly on it, the sector's area kept
     exactly.
@@ -345,10 +352,10 @@ def arc_points(
     angle = start + sweep * np.arange(chords + 1) / chords
     radii = np.full(chords + 1, rho)
     radii[0] = radii[-1] = radius
-    return np.asarray(centre) + radii[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
+    return np.asarray(center) + radii[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
-def circle_points(centre: tuple[float, float], radius: float, tolerance: float) -> Points:
+def circle_points(center: tuple[float, float], radius: float, tolerance: float) -> Points:
     """Vertices (n, 2), counter-clockwise, of the regular polygon with the circle's area; n a multiple of 4,
     n >= 8.
 
@@ -358,7 +365,7 @@ def circle_points(centre: tuple[float, float], radius: float, tolerance: float) 
     n = 4 * max(2, math.ceil(_chords(radius, 2 * math.pi, tolerance) / 4))
     rho = radius * math.sqrt((2 * math.pi / n) / math.sin(2 * math.pi / n))
     angle = 2 * math.pi * (np.arange(n) + 0.5) / n
-    return np.asarray(centre) + rho * np.column_stack((np.cos(angle), np.sin(angle)))
+    return np.asarray(center) + rho * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
 def _chords(radius: float, sweep: float, tolerance: float) -> int:
@@ -367,7 +374,8 @@ def _chords(radius: float, sweep: float, tolerance: float) -> int:
     return max(MIN_CHORDS, math.ceil(sweep / (2 * half) * (1 - 1e-12)))
 
 
-def _positive(value: float, name: str) -> float:
+def positive(value: float, name: str) -> float:
+    """The value as a float; ValueError with its name unless it is positive and finite."""
     if not (math.isfinite(value) and value > 0):
         raise ValueError(f"{name} must be positive and finite, got {value!r}")
     return float(value)
@@ -392,8 +400,10 @@ def _ring(points: ArrayLike, name: str) -> Points:
     given = len(ring)
     if given:
         reach = float(np.abs(ring).max())
-        step = np.abs(ring - np.roll(ring, 1, axis=0)).max(axis=1)
-        keep = step > 2 * _EPS * reach  # nearer than that two points are one, rounded differently
+        step = np.abs(ring - np.concatenate((ring[-1:], ring[:-1])))
+        keep = (step > 2 * _EPS * reach).any(
+            axis=1
+        )  # nearer than that two points are one, rounded differently
         if not keep.all():
             ring = ring[keep]
     if len(ring) < 3:
@@ -446,14 +456,14 @@ def _place(polygon: shapely.Polygon) -> str:
 
 def _area_and_first_moment(ring: Points) -> tuple[float, Points]:
     """Signed area and ∫ r dA (2,) by Green's theorem (the paper's Eq. 4 and 7)."""
-    following = np.roll(ring, -1, axis=0)
+    following = np.concatenate((ring[1:], ring[:1]))
     cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
-    return float(cross.sum()) / 2, (cross[:, None] * (ring + following)).sum(axis=0) / 6
+    return float(cross.sum()) / 2, cross @ (ring + following) / 6
 
 
 def _polar_moment(ring: Points) -> float:
     """∫ |r|² dA, signed like the area."""
-    following = np.roll(ring, -1, axis=0)
+    following = np.concatenate((ring[1:], ring[:1]))
     cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
     square = (ring * ring + ring * following + following * following).sum(axis=1)
     return float((cross * square).sum()) / 12
@@ -465,15 +475,16 @@ def _polar_moment(ring: Points) -> float:
 @lru_cache(maxsize=4096)  # outlines are immutable: ten thousand equal boxes share one
 def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance: float | None) -> Outline:
     """The convex polygon `vertices` (counter-clockwise; one: a disc, two: a capsule) grown by `radius`."""
-    if radius == 0 and len(vertices) > 2:
-        return Outline(vertices)
-    _positive(radius, "radius of a pymunk shape")
     points = np.array(vertices)
+    if radius == 0 and len(vertices) > 2:
+        _ring(points, "vertices")  # a hull is simple, but may be flat
+        return Outline.from_curve([points])
+    positive(radius, "radius of a pymunk shape")
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE * (float(np.ptp(points, axis=0).min()) / 2 + radius)
     again = partial(_rounded, vertices, radius)
     if len(points) == 1:
-        return Outline._trusted([circle_points(vertices[0], radius, tolerance)], again)
+        return Outline.from_curve([circle_points(vertices[0], radius, tolerance)], again)
     edge = np.roll(points, -1, axis=0) - points
     heading = np.arctan2(edge[:, 1], edge[:, 0])
     arcs = []
@@ -482,7 +493,7 @@ def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance
         start = heading[i - 1] - math.pi / 2
         arc = arc_points(vertices[i], radius, start, max(sweep, 1e-6), tolerance)
         arcs.append(arc if sweep > 1e-6 else arc[:1])
-    return Outline._trusted([np.concatenate(arcs)], again)
+    return Outline.from_curve([np.concatenate(arcs)], again)
 
 
 @lru_cache(maxsize=4096)
@@ -498,10 +509,10 @@ def _half_space(
         raise ValueError(
             f"a segment of radius 0 must have a positive, finite length, got {length!r} from {a} to {b}"
         )
-    depth = SEGMENT_THICKNESS * length if thickness is None else _positive(thickness, "thickness")
+    depth = SEGMENT_THICKNESS * length if thickness is None else positive(thickness, "thickness")
     left = np.array((-along[1], along[0])) * (depth / length)
-    on_right = Outline._trusted([np.array((end, start, start - left, end - left))])
-    on_left = Outline._trusted([np.array((start, end, end + left, start + left))])
+    on_right = Outline.from_curve([np.array((end, start, start - left, end - left))])
+    on_left = Outline.from_curve([np.array((start, end, end + left, start + left))])
     if side == "both":
         on_right.mirror, on_left.mirror = on_left, on_right
     return on_left if side == "left" else on_right
@@ -535,8 +546,8 @@ def _resample_moved(
 def _restore(
     rings: tuple[Points, ...], resample: Callable[..., Outline] | None, mirror: tuple[Points, ...] | None
 ) -> Outline:
-    outline = Outline._trusted(rings, resample)
+    outline = Outline.from_curve(rings, resample)
     if mirror is not None:
-        outline.mirror = Outline._trusted(mirror)
+        outline.mirror = Outline.from_curve(mirror)
         outline.mirror.mirror = outline
     return outline

@@ -1,0 +1,12 @@
+"""Outlines of common shapes and mechanisms: each function returns an `Outline` that knows its curve.
+
+All are centred on the origin of the body's coordinates unless they say otherwise. `tolerance` is the
+largest sagitta of a chord (length), see `rigidarea.outline`; `Outline.sample(tolerance)` makes the same
+shape again with another one.
+"""
+
+from .basic import box, capsule, circle, ring, rounded_polygon
+from .gear import involute_gear
+from .geneva import Geneva, geneva
+
+__all__ = ["Geneva", "box", "capsule", "circle", "geneva", "involute_gear", "ring", "rounded_polygon"]
