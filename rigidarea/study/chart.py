@@ -1,0 +1,151 @@
+"""Accuracy against speed: every scene, every peer, every setting; fronts and what they say.
+
+Errors are deterministic and may be computed anywhere, in parallel. Costs are measured here, on one core,
+warm and interleaved. Both are kept as they come (`chart-errors.jsonl`, `chart-costs.jsonl` in the output
+folder), so that the same command goes on where it was stopped.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from . import front
+from .peers import get_peer, peers, record
+from .records import Progress, Row, append_rows, read_rows, report
+from .scene import Scene, get_scene, scenes
+from .sweep import Task, key, run_tasks
+from .timing import median_times, scene_job
+
+REPEATS, QUICK_REPEATS = 5, 3
+
+
+def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
+    """Run one setting and measure its error (null if the run failed): the task of the sweep."""
+    described = get_scene(scene)
+    error = described.measure(record(get_peer(peer).build(described, settings), described))
+    return {"error": error if math.isfinite(error) else None}
+
+
+def jobs(names: Sequence[str], peer_names: Sequence[str], quick: bool) -> list[Task]:
+    """Every (scene, peer, settings) that the peers accept, in a fixed order."""
+    found = []
+    for name in names:
+        scene = get_scene(name)
+        for peer_name in peer_names:
+            peer = get_peer(peer_name)
+            if not peer.refuses(scene):
+                for settings in peer.settings(scene, quick):
+                    found.append({"scene": name, "peer": peer_name, "settings": dict(settings)})
+    return found
+
+
+def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
+    """Which peer cannot do which scene, and why."""
+    rows = []
+    for name in names:
+        for peer_name in peer_names:
+            why = get_peer(peer_name).refuses(get_scene(name))
+            if why:
+                rows.append({"scene": name, "peer": peer_name, "why": why})
+    return rows
+
+
+def costs(tasks: Sequence[Task], repeats: int, store: Path | None) -> list[float]:
+    """Wall time per simulated second of every task, scene by scene, all settings of a scene interleaved."""
+    known = {key(row["task"]): row["cost_s_per_s"] for row in read_rows(store)} if store else {}
+    missing = [task for task in tasks if key(task) not in known]
+    progress = Progress("costs", len(missing))
+    for name in dict.fromkeys(task["scene"] for task in missing):
+        scene: Scene = get_scene(name)
+        here = [task for task in missing if task["scene"] == name]
+        timers = [scene_job(scene, task["peer"], task["settings"]) for task in here]
+        found = [seconds / scene.duration for seconds in median_times(timers, repeats)]
+        known.update({key(task): cost for task, cost in zip(here, found, strict=True)})
+        if store:
+            append_rows(store, [{"task": t, "cost_s_per_s": c} for t, c in zip(here, found, strict=True)])
+        progress.step(name, len(here))
+    return [known[key(task)] for task in tasks]
+
+
+def points(
+    rows: Sequence[Row], scene: str, ours: bool | None = None, peer: str | None = None
+) -> list[front.Point]:
+    """(cost, error) of a scene's rows: all of ours, or those of one peer."""
+    chosen = (
+        row
+        for row in rows
+        if row["scene"] == scene
+        and row["error"] is not None
+        and (peer is None or row["peer"] == peer)
+        and (ours is None or get_peer(row["peer"]).ours == ours)
+    )
+    return [front.Point(row["cost_s_per_s"], row["error"]) for row in chosen]
+
+
+def summarise(rows: Sequence[Row]) -> list[Row]:
+    """One row a scene and foreign peer: how our front (all our levels together) stands to theirs."""
+    summary = []
+    for name in dict.fromkeys(row["scene"] for row in rows):
+        scene = get_scene(name)
+        mine = points(rows, name, ours=True)
+        for peer in dict.fromkeys(row["peer"] for row in rows if row["scene"] == name):
+            if not get_peer(peer).ours:
+                found = front.compare(mine, points(rows, name, peer=peer), scene.resolution)
+                summary.append({"scene": name, "peer": peer, "tags": sorted(scene.tags), **found._asdict()})
+    return summary
+
+
+def chart(
+    out: Path,
+    quick: bool = False,
+    scene_names: Sequence[str] = (),
+    peer_names: Sequence[str] = (),
+    repeats: int | None = None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    resume: bool = True,
+) -> Row:
+    """Sweep, measure, draw; returns the object written to `out`/chart.json.
+
+    scene_names, peer_names: default all. repeats: rounds of timing (default 5, quick 3). scheduler, workers:
+    see `sweep.open_executor`. resume: use what an earlier, stopped run left in `out`.
+    """
+    names = list(scene_names) or list(scenes())
+    chosen = list(peer_names) or list(peers())
+    tasks = jobs(names, chosen, quick)
+    rounds = repeats or (QUICK_REPEATS if quick else REPEATS)
+    stores = out / "chart-errors.jsonl", out / "chart-costs.jsonl"
+    if not resume:
+        for store in stores:
+            store.unlink(missing_ok=True)
+    results = run_tasks(evaluate, tasks, stores[0], scheduler, workers, title="errors")
+    seconds = costs(tasks, rounds, stores[1])
+    rows = []
+    for task, result, cost in zip(tasks, results, seconds, strict=True):
+        scene = get_scene(task["scene"])
+        rows.append({**task, "error": result["error"], "error_name": scene.error_name, "cost_s_per_s": cost})
+    return report(
+        "chart",
+        {"quick": quick, "repeats": rounds, "scenes": names, "peers": chosen},
+        rows,
+        summary=summarise(rows),
+        refused=refusals(names, chosen),
+        scenes=[describe(get_scene(name)) for name in names],
+    )
+
+
+def describe(scene: Scene) -> Row:
+    """What a reader of the output has to know of a scene."""
+    return {
+        "scene": scene.name,
+        "title": scene.title,
+        "bodies": len(scene.bodies),
+        "duration_s": scene.duration,
+        "error_name": scene.error_name,
+        "resolution": scene.resolution,
+        "source": scene.source,
+        "tags": sorted(scene.tags),
+    }

@@ -1,0 +1,175 @@
+"""The pictures of the studies: matplotlib, Okabe-Ito colours, readable at 1000 pixels width."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from . import front
+from .chart import points
+from .peers import get_peer
+from .records import Row
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLOURS = {
+    "rigidarea": "#0072B2",
+    "rigidarea-frame": "#56B4E9",
+    "pymunk": "#D55E00",
+    "box2d": "#009E73",
+    "literal": "#CC79A7",
+}
+MARKERS = {"rigidarea": "o", "rigidarea-frame": "P", "pymunk": "s", "box2d": "^", "literal": "x"}
+OTHER_COLOURS = ("#E69F00", "#F0E442", "#000000")
+PAGE = (3, 3)
+"""Rows and columns of panels on a page of 1000 pixels width."""
+
+
+def _pyplot() -> Any:
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    plt.rcParams.update(
+        {
+            "font.size": 9,
+            "axes.titlesize": 9.5,
+            "axes.spines.top": False,
+            "axes.spines.right": False,
+            "axes.grid": True,
+            "grid.color": "#e4e4e4",
+            "grid.linewidth": 0.6,
+            "axes.axisbelow": True,
+            "svg.hashsalt": "rigidarea",
+            "legend.frameon": False,
+        }
+    )
+    return plt
+
+
+def colour(peer: str) -> str:
+    """The colour of a peer, the same in every picture."""
+    return COLOURS.get(peer) or OTHER_COLOURS[sum(map(ord, peer)) % len(OTHER_COLOURS)]
+
+
+def marker(peer: str) -> str:
+    """The marker of a peer, the same in every picture."""
+    return MARKERS.get(peer, "D")
+
+
+def save(figure: Figure, out: Path, name: str) -> list[Path]:
+    """PNG (1000 pixels for a figure 10 inches wide) and SVG."""
+    out.mkdir(parents=True, exist_ok=True)
+    paths = [out / f"{name}.png", out / f"{name}.svg"]
+    figure.savefig(paths[0], dpi=100)
+    figure.savefig(paths[1], metadata={"Date": None})
+    _pyplot().close(figure)
+    return paths
+
+
+def chart_pages(report: Row, out: Path) -> list[Path]:
+    """Error against cost, one panel a scene, nine panels a page, each peer's front as a stepped line."""
+    plt = _pyplot()
+    rows, scenes = report["results"], report["scenes"]
+    names = list(dict.fromkeys(row["peer"] for row in rows))
+    per_page = PAGE[0] * PAGE[1]
+    paths = []
+    for page in range(math.ceil(len(scenes) / per_page)):
+        figure, axes = plt.subplots(*PAGE, figsize=(10, 9.4), layout="constrained")
+        here = scenes[page * per_page : (page + 1) * per_page]
+        for ax, scene in zip(axes.flat, here, strict=False):
+            _panel(ax, rows, scene, names)
+        for ax in axes.flat[len(here) :]:
+            ax.set_axis_off()
+        handles = [
+            plt.Line2D([], [], color=colour(name), marker=marker(name), markersize=5, label=name)
+            for name in names
+        ]
+        figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+        figure.supxlabel("cost: wall time / simulated time", fontsize=10)
+        figure.supylabel("error (dimensionless; what it is stands in each panel)", fontsize=10)
+        paths += save(figure, out, f"chart-{page + 1}")
+    return paths
+
+
+def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> None:
+    floor = scene["resolution"]
+    for name in names:
+        found = [
+            front.Point(p.cost, max(p.error, floor / 3)) for p in points(rows, scene["scene"], peer=name)
+        ]
+        if not found:
+            continue
+        ax.plot(*zip(*found), ls="", marker=marker(name), ms=3, color=colour(name), alpha=0.35, mew=0.6)
+        line = front.front(found)
+        ax.plot(*zip(*line), color=colour(name), marker=marker(name), ms=4.5, lw=1.6, drawstyle="steps-post")
+    ax.set(xscale="log", yscale="log")
+    top = [row["error"] for row in rows if row["scene"] == scene["scene"] and row["error"]]
+    ax.set_ylim(floor / 4, 2 * min(max(top, default=1.0), 10.0))
+    ax.axhspan(floor / 4, floor, color="#f3f3f3", zorder=0)
+    ax.set_title(scene["title"], loc="left")
+    ax.text(
+        0.98,
+        0.97,
+        scene["error_name"],
+        transform=ax.transAxes,
+        ha="right",
+        va="top",
+        fontsize=7.5,
+        color="#444444",
+    )
+
+
+def chart_summary(report: Row, out: Path) -> list[Path]:
+    """Both ratios for every scene and peer, ours over theirs, one line a scene."""
+    plt = _pyplot()
+    summary = report["summary"]
+    if not summary:
+        return []
+    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
+    names = list(dict.fromkeys(row["scene"] for row in summary))
+    names.sort(key=lambda name: -_mean_log(summary, name))
+    peers = list(dict.fromkeys(row["peer"] for row in summary))
+    figure, axes = plt.subplots(
+        1, 2, figsize=(10, 1.6 + 0.24 * len(names)), sharey=True, layout="constrained", width_ratios=(1, 1)
+    )
+    both = ("cost_ratio_at_matched_error", "error_ratio_at_matched_cost")
+    labels = ("cost ratio at matched error", "error ratio at matched cost")
+    for ax, which, label in zip(axes, both, labels, strict=True):
+        ax.axvspan(1e-9, 1, color="#eaf3fa", zorder=0)
+        ax.axvline(1, color="#666666", lw=1)
+        finite = [row[which] for row in summary if row[which] and math.isfinite(row[which])] or [1.0]
+        low, high = min(*finite, 0.1) / 2, max(*finite, 10.0) * 2
+        for peer in peers:
+            for row in (row for row in summary if row["peer"] == peer):
+                value, y = row[which], names.index(row["scene"])
+                if value is None or math.isnan(value):
+                    continue
+                shown = min(max(value, low), high)
+                ax.plot(shown, y, marker=marker(peer), color=colour(peer), ms=6, ls="", alpha=0.9)
+        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=f"{label} (rigidarea / peer)")
+        ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
+        ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
+    axes[0].set_yticks(range(len(names)), [titles[name] for name in names])
+    axes[0].set_ylim(-0.7, len(names) - 0.3)
+    handles = [
+        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), label=f"against {p}") for p in peers
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    return save(figure, out, "chart-summary")
+
+
+def _mean_log(summary: Sequence[Row], scene: str) -> float:
+    values = [row["cost_ratio_at_matched_error"] for row in summary if row["scene"] == scene]
+    logs = [math.log10(v) if v and math.isfinite(v) else 9.0 for v in values]
+    return sum(logs) / len(logs)
+
+
+def our_name(rows: Sequence[Row]) -> list[str]:
+    """Names of our own peers in rows."""
+    return [name for name in dict.fromkeys(row["peer"] for row in rows) if get_peer(name).ours]

@@ -1,0 +1,76 @@
+"""The small interface behind which the engines stand.
+
+A peer builds a scene with some settings and hands back a run. `advance` is what gets timed: it must cost
+nothing of ours. Peers therefore step inside a C loop (`drive`), one foreign call a step; `call_overhead`
+measures what is left.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from itertools import repeat
+from typing import Any, Protocol
+
+import numpy as np
+
+from ..scene import ANGLE, Array, Scene, Trace
+
+Settings = Mapping[str, Any]
+"""Knobs of one run: plain numbers and strings, so that they can be written down and compared."""
+
+
+class Run(Protocol):
+    """A scene built by a peer, somewhere in its motion."""
+
+    def advance(self, frames: int) -> None:
+        """Simulate `frames` more frames. Timed: no Python of ours per step."""
+
+    def state(self) -> Array:
+        """States (n_body, 6) of all bodies in the scene's order and units (columns: `scene.X` …
+        `scene.OMEGA`).
+        """
+
+
+class Peer(Protocol):
+    """An engine, or one way of using it."""
+
+    name: str
+    ours: bool
+    """Whether this is rigidarea: its levels and steppings together make one front."""
+
+    def refuses(self, scene: Scene) -> str:
+        """Why this peer cannot do the scene; empty if it can."""
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """The settings to sweep, in order of growing cost where that is known."""
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """Set the scene up."""
+
+
+def drive(step: Callable[..., object], count: int, *arguments: object) -> None:
+    """Call `step(*arguments)` `count` times without a Python-level loop (the calls run inside C)."""
+    deque(map(step, *(repeat(argument, count) for argument in arguments)), maxlen=0)
+
+
+def record(run: Run, scene: Scene) -> Trace:
+    """Run a scene frame by frame and keep every state. Stops early once a state is not finite."""
+    states = [run.state()]
+    for _ in range(scene.frames):
+        run.advance(1)
+        states.append(run.state())
+        if not np.all(np.isfinite(states[-1])):
+            break
+    found = np.array(states)
+    if np.all(np.isfinite(found)):
+        found[:, :, ANGLE] = np.unwrap(found[:, :, ANGLE], axis=0)
+    times = scene.frame * np.arange(len(found), dtype=np.float64)
+    return Trace(tuple(body.name for body in scene.bodies), times, found)
+
+
+def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
+    """The knob `sampling` (chord tolerance over body size) for scenes with curves that have to be sampled."""
+    if "curved" not in scene.tags and "gears" not in scene.tags:
+        return [{}]
+    return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]

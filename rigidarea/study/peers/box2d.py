@@ -1,0 +1,176 @@
+"""Box2D v3 by way of `pyb2d3` (soft-step solver, single precision, one thread)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ..decompose import convex_pieces
+from ..scene import Array, Body, Circle, Polygon, Scene
+from .base import Run, Settings, drive, samplings
+
+MOST_VERTICES = 8
+"""Of a Box2D polygon (B2_MAX_POLYGON_VERTICES)."""
+
+
+class WorldRun:
+    """A Box2D world whose unit of length is the scene's body size."""
+
+    def __init__(self, scene: Scene, settings: Settings) -> None:
+        import pyb2d3
+
+        self.unit = 1 / scene.size
+        steps, substeps = settings["steps"], settings["substeps"]
+        self.steps, self.substeps, self.h = steps, substeps, scene.frame / steps
+        gravity = tuple(self.unit * g for g in scene.gravity)
+        hertz = 30.0
+        if settings["stiff"]:
+            # The stiffest contact that Box2D allows: it caps the frequency at a quarter of the substep rate.
+            hertz = max(hertz, 0.25 * substeps / self.h)
+        self.world = pyb2d3.World(gravity=gravity, contact_hertz=hertz, restitution_threshold=0.01)
+        self.world.sleeping_enabled = False  # a sleeping scene would cost nothing and prove nothing
+        tolerance = settings.get("sampling", 1e-3) * scene.size
+        self.bodies = [self._add(pyb2d3, scene, body, tolerance) for body in scene.bodies]
+        self._pivots(scene)
+
+    def _add(self, b2: Any, scene: Scene, body: Body, tolerance: float) -> Any:
+        make = {
+            "dynamic": self.world.create_dynamic_body,
+            "kinematic": self.world.create_kinematic_body,
+            "static": self.world.create_static_body,
+        }[body.kind]
+        made = make(
+            position=(self.unit * body.position[0], self.unit * body.position[1]),
+            rotation=b2.make_rot(body.angle),
+            linear_velocity=(self.unit * body.velocity[0], self.unit * body.velocity[1]),
+            angular_velocity=body.angular_velocity,
+        )
+        # Box2D mixes friction by the geometric mean and restitution by the maximum: equal values stay as
+        # they are.
+        material = b2.surface_material(
+            friction=scene.friction,
+            restitution=scene.elasticity,
+            tangent_speed=self.unit * body.surface_speed,
+        )
+        definition = b2.shape_def(density=1.0, material=material)
+        for shape in body.shapes:
+            if isinstance(shape, Circle):
+                made.create_shape(definition, b2.circle(radius=self.unit * shape.radius))
+            elif isinstance(shape, Polygon):
+                made.create_shape(definition, b2.polygon(self.unit * np.array(shape.points)))
+            elif body.kind == "static":
+                outer, holes = shape.rings(tolerance)
+                for ring in (outer, *holes):
+                    # Box2D collides with the right-hand side of a chain; our rings have the solid on their
+                    # left.
+                    made.create_chain(
+                        b2.chain_def(self._ccw(ring, hole=ring is not outer), material=material, is_loop=True)
+                    )
+            else:
+                for piece in convex_pieces(shape.rings(tolerance), MOST_VERTICES):
+                    made.create_shape(definition, b2.polygon(self.unit * piece))
+        if body.kind == "dynamic":
+            data = made.mass_data
+            data.mass, data.center = body.mass, (0.0, 0.0)
+            data.rotational_inertia = body.moment * self.unit**2
+            made.mass_data = data
+        return made
+
+    def _ccw(self, ring: Array, hole: bool) -> Array:
+        """Outer rings counter-clockwise, holes clockwise."""
+        x, y = ring.T
+        area = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+        turned = ring if (area > 0) != hole else ring[::-1]
+        return np.ascontiguousarray(self.unit * turned, dtype=np.float32)
+
+    def _pivots(self, scene: Scene) -> None:
+        if not scene.pivots:
+            return
+        ground = self.world.create_static_body(position=(0.0, 0.0))
+        index = {body.name: i for i, body in enumerate(scene.bodies)}
+        for pivot in scene.pivots:
+            i = index[pivot.body]
+            x, y = scene.bodies[i].position
+            self.world.create_revolute_joint(
+                ground,
+                self.bodies[i],
+                local_anchor_a=(self.unit * x, self.unit * y),
+                local_anchor_b=(0.0, 0.0),
+                enable_motor=pivot.brake > 0,
+                max_motor_torque=pivot.brake * self.unit**2,
+                motor_speed=0.0,
+            )
+
+    def advance(self, frames: int) -> None:
+        """World steps, called from a C loop."""
+        drive(self.world.step, frames * self.steps, self.h, self.substeps)
+
+    def state(self) -> Array:
+        """States (n_body, 6) in the scene's units; angles wrapped to (−π, π]."""
+        rows = []
+        for body in self.bodies:
+            p, v = body.position, body.linear_velocity
+            rows.append(
+                (
+                    p.x / self.unit,
+                    p.y / self.unit,
+                    body.angle,
+                    v.x / self.unit,
+                    v.y / self.unit,
+                    body.angular_velocity,
+                )
+            )
+        return np.array(rows, dtype=np.float64)
+
+
+class Box2D:
+    """Box2D v3 as its documentation advises: metre-sized bodies, a fixed step with substeps.
+
+    Settings: `steps` a frame, `substeps` a step, `stiff` (contact frequency at its cap instead of 30 Hz),
+    `sampling` of curves. The restitution threshold is lowered to 0.01 lengths/s, since the scenes want slow
+    bounces.
+    """
+
+    name = "box2d"
+    ours = False
+
+    def refuses(self, scene: Scene) -> str:
+        """Nothing, if `pyb2d3` is installed."""
+        try:
+            import pyb2d3  # noqa: F401
+        except ImportError:
+            return "pyb2d3 is not installed (extra: studies)"
+        return ""
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """Steps × substeps × contact softness × sampling."""
+        pairs = [(1, 4), (4, 4), (16, 4), (64, 1)]
+        if not quick:
+            pairs = [
+                (1, 4),
+                (1, 8),
+                (2, 4),
+                (4, 1),
+                (4, 4),
+                (1, 16),
+                (8, 4),
+                (16, 1),
+                (16, 4),
+                (1, 64),
+                (64, 1),
+                (64, 4),
+            ]
+        return [
+            {"steps": n, "substeps": m, "stiff": stiff, **sampling}
+            for n, m in pairs
+            for stiff in (False, True)
+            for sampling in samplings(scene, quick)
+        ]
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """A world of Box2D shapes."""
+        return WorldRun(scene, settings)
+
+
+PEER = Box2D()

@@ -1,0 +1,149 @@
+"""pymunk's own solver (Chipmunk's sequential impulses)."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import lib
+
+from ..decompose import convex_pieces
+from ..scene import Array, Body, Circle, Curve, Polygon, Scene
+from .base import Run, Settings, drive, samplings
+
+
+def make_body(body: Body) -> pymunk.Body:
+    """The pymunk body of a scene's body, without shapes."""
+    kind = {"dynamic": pymunk.Body.DYNAMIC, "kinematic": pymunk.Body.KINEMATIC, "static": pymunk.Body.STATIC}
+    made = pymunk.Body(body.mass, body.moment, kind[body.kind])
+    made.position = body.position
+    made.angle = body.angle
+    if body.kind != "static":
+        made.velocity = body.velocity
+        made.angular_velocity = body.angular_velocity
+    return made
+
+
+def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymunk.Shape]:
+    """Shapes for an engine of convex shapes: terrain as chains of segments, moving outlines as convex
+    pieces.
+    """
+    shapes: list[pymunk.Shape] = []
+    for shape in body.shapes:
+        if isinstance(shape, Circle):
+            shapes.append(pymunk.Circle(made, shape.radius))
+        elif isinstance(shape, Polygon):
+            shapes.append(pymunk.Poly(made, shape.points))
+        elif shape.convex:
+            shapes.append(pymunk.Poly(made, shape.rings(tolerance)[0].tolist()))
+        elif body.kind == "static":
+            outer, holes = shape.rings(tolerance)
+            for ring in (outer, *holes):
+                shapes.extend(_chain(made, ring))
+        else:
+            shapes.extend(
+                pymunk.Poly(made, piece.tolist()) for piece in convex_pieces(shape.rings(tolerance))
+            )
+    return shapes
+
+
+def _chain(made: pymunk.Body, ring: Array) -> list[pymunk.Segment]:
+    """Segments along a closed ring that know their neighbours, so that nothing catches on their joints."""
+    points = [(float(x), float(y)) for x, y in ring]
+    chain = []
+    for i, point in enumerate(points):
+        following = points[(i + 1) % len(points)]
+        segment = pymunk.Segment(made, point, following, 0.0)
+        segment.set_neighbors(points[i - 1], points[(i + 2) % len(points)])
+        chain.append(segment)
+    return chain
+
+
+def add_pivots(scene: Scene, space: pymunk.Space, bodies: dict[str, pymunk.Body]) -> None:
+    """Revolute joints to the world, with a motor at rest as brake."""
+    for pivot in scene.pivots:
+        made = bodies[pivot.body]
+        joint = pymunk.PivotJoint(space.static_body, made, made.position)
+        joint.collide_bodies = False
+        space.add(joint)
+        if pivot.brake:
+            motor = pymunk.SimpleMotor(space.static_body, made, 0.0)
+            motor.max_force = pivot.brake
+            space.add(motor)
+
+
+class SpaceRun:
+    """A pymunk space and its bodies; steps of equal length, taken by Chipmunk's own step function."""
+
+    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], steps: int) -> None:
+        self.space, self.bodies, self.steps = space, bodies, steps
+        self.h = scene.frame / steps
+
+    def advance(self, frames: int) -> None:
+        """Steps straight through Chipmunk: pymunk's bookkeeping (0.4 µs a step) is not counted either."""
+        drive(lib.cpSpaceStep, frames * self.steps, self.space._space, self.h)
+
+    def state(self) -> Array:
+        """States (n_body, 6)."""
+        return np.array(
+            [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in self.bodies], dtype=np.float64
+        )
+
+
+def surface(shape: pymunk.Shape, scene: Scene, body: Body) -> None:
+    """Friction and elasticity so that pymunk's product of the two shapes is the scene's value."""
+    shape.friction = math.sqrt(scene.friction)
+    shape.elasticity = math.sqrt(scene.elasticity)
+    if body.surface_speed:
+        shape.surface_velocity = (body.surface_speed, 0.0)
+
+
+class Chipmunk:
+    """pymunk as its users tune it: smaller steps, more iterations, a slop that suits the scene's size.
+
+    Settings: `steps` a frame; `iterations`; `slop` as a fraction of the body size (its documentation: as
+    high as you can without noticeable overlap); `sampling` of curves. The bias keeps pymunk's default.
+    """
+
+    name = "pymunk"
+    ours = False
+
+    def refuses(self, scene: Scene) -> str:
+        """Nothing: every scene can be put together from convex shapes."""
+        return ""
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """Steps × iterations × slop × sampling."""
+        steps = (1, 4, 16, 64) if quick else (1, 2, 4, 8, 16, 32, 64)
+        iterations = (10, 40) if "stack" in scene.tags or "gears" in scene.tags else (10,)
+        slops = (1e-3,) if quick else (1e-2, 1e-3, 1e-5)
+        return [
+            {"steps": n, "iterations": i, "slop": slop, **sampling}
+            for n in steps
+            for i in iterations
+            for slop in slops
+            for sampling in samplings(scene, quick)
+        ]
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """A space of pymunk's own shapes."""
+        space = pymunk.Space()
+        space.gravity = scene.gravity
+        space.iterations = settings["iterations"]
+        space.collision_slop = settings["slop"] * scene.size
+        tolerance = settings.get("sampling", 1e-3) * scene.size
+        made: dict[str, Any] = {}
+        for body in scene.bodies:
+            made[body.name] = make_body(body)
+            shapes = convex_shapes(body, made[body.name], tolerance)
+            for shape in shapes:
+                surface(shape, scene, body)
+            space.add(made[body.name], *shapes)
+        add_pivots(scene, space, made)
+        return SpaceRun(scene, space, list(made.values()), settings["steps"])
+
+
+PEER = Chipmunk()
+__all__ = ["PEER", "Chipmunk", "Curve", "SpaceRun", "add_pivots", "make_body", "surface"]

@@ -1,0 +1,244 @@
+"""What a study scene is: an engine-neutral set-up, its exact answer and its error measure.
+
+A scene names no engine. Bodies have their centre of mass at the local origin; angles are counter-clockwise;
+SI units. A peer (`rigidarea.study.peers`) builds it, runs it and hands back a `Trace`, from which the scene
+measures one dimensionless error.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import pkgutil
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from functools import cache
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..outline import arc_points, circle_points
+
+Array = NDArray[np.float64]
+Rings = tuple[Array, tuple[Array, ...]]
+
+G = 9.81
+"""Acceleration of gravity in every scene (length/time²)."""
+
+X, Y, ANGLE, VX, VY, OMEGA = range(6)
+"""Columns of a body's state."""
+
+
+@dataclass(frozen=True)
+class Circle:
+    """A disc about the body's origin; `radius` (length)."""
+
+    radius: float
+
+
+@dataclass(frozen=True)
+class Polygon:
+    """A convex polygon, counter-clockwise; `points` of shape (n, 2) (length)."""
+
+    points: tuple[tuple[float, float], ...]
+
+
+@dataclass(frozen=True)
+class Curve:
+    """An outline that may be curved, concave, holed.
+
+    `rings(tolerance)` gives (outer ring (n, 2), hole rings), none closed, chords within `tolerance` (length)
+    of the true curve. `convex` says that the outer ring is convex and there are no holes.
+    """
+
+    rings: Callable[[float], Rings]
+    convex: bool = False
+
+
+Shape = Circle | Polygon | Curve
+
+
+@dataclass(frozen=True)
+class Body:
+    """One body: shapes, inertia and start.
+
+    `mass` (mass) and `moment` (mass·length²) matter to dynamic bodies only. A kinematic body keeps its
+    velocity and angular velocity. `surface_speed` (length/time) moves the surface like a belt: a body
+    resting on top of it is dragged towards +x.
+    """
+
+    name: str
+    shapes: tuple[Shape, ...]
+    position: tuple[float, float] = (0.0, 0.0)
+    angle: float = 0.0
+    velocity: tuple[float, float] = (0.0, 0.0)
+    angular_velocity: float = 0.0
+    mass: float = 1.0
+    moment: float = 1.0
+    kind: Literal["dynamic", "kinematic", "static"] = "dynamic"
+    surface_speed: float = 0.0
+
+
+@dataclass(frozen=True)
+class Pivot:
+    """A revolute joint between a body's origin and the world, there from the start.
+
+    `brake` (force·length) is the largest torque with which the bearing opposes rotation.
+    """
+
+    body: str
+    brake: float = 0.0
+
+
+@dataclass(frozen=True)
+class Trace:
+    """States of all bodies, one row a frame, the start included.
+
+    `times` has shape (n_frame + 1,), `states` (n_frame + 1, n_body, 6) with columns x, y, angle, vx, vy,
+    omega; the angle is continuous (not wrapped).
+    """
+
+    names: tuple[str, ...]
+    times: Array
+    states: Array
+
+    def __getitem__(self, name: str) -> Array:
+        """States (n_frame + 1, 6) of the body called `name`."""
+        return self.states[:, self.names.index(name)]
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A set-up with an exact answer.
+
+    `friction` and `elasticity` are the values of every pair (engines combine the two bodies' values
+    differently, so a scene states the result). `size` (length) is that of a typical moving body: peers
+    choose their slop, sampling and units of length by it. `pressure` (force/length²) is the typical load on
+    that size; area stiffnesses are multiples of it. `resolution` is the error below which two results count
+    as equally good: by default a tenth of a pixel on a body drawn 1,000 pixels large.
+    """
+
+    name: str
+    title: str
+    bodies: tuple[Body, ...]
+    duration: float
+    error_name: str
+    error: Callable[[Trace], float]
+    source: str
+    gravity: tuple[float, float] = (0.0, -G)
+    friction: float = 0.0
+    elasticity: float = 0.0
+    pivots: tuple[Pivot, ...] = ()
+    size: float = 1.0
+    pressure: float = G
+    frame: float = 1 / 60
+    tags: frozenset[str] = frozenset()
+    resolution: float = 1e-4
+
+    @property
+    def frames(self) -> int:
+        """Number of frames in the scene's duration."""
+        return round(self.duration / self.frame)
+
+    def measure(self, trace: Trace) -> float:
+        """The error of a trace: a finite number >= 0, or infinity if the run left the numbers or the
+        scene.
+        """
+        if not np.all(np.isfinite(trace.states)):
+            return math.inf
+        value = float(self.error(trace))
+        return value if math.isfinite(value) else math.inf
+
+
+# Small builders ---------------------------------------------------------------------------------------------
+
+
+def box(width: float, height: float) -> Polygon:
+    """A rectangle about the origin."""
+    x, y = width / 2, height / 2
+    return Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
+
+
+def box_moment(mass: float, width: float, height: float) -> float:
+    """m (w² + h²)/12."""
+    return mass * (width**2 + height**2) / 12
+
+
+def disc(name: str, radius: float, position: tuple[float, float], mass: float = 1.0, **more: object) -> Body:
+    """A uniform disc, moment m r²/2."""
+    return Body(name, (Circle(radius),), position, mass=mass, moment=mass * radius**2 / 2, **more)  # type: ignore[arg-type]
+
+
+def block(
+    name: str, width: float, height: float, position: tuple[float, float], mass: float = 1.0, **more: object
+) -> Body:
+    """A uniform rectangle, moment m (w² + h²)/12."""
+    moment = box_moment(mass, width, height)
+    return Body(name, (box(width, height),), position, mass=mass, moment=moment, **more)  # type: ignore[arg-type]
+
+
+def floor(width: float = 100.0, depth: float = 1.0, name: str = "floor", **more: object) -> Body:
+    """A static slab whose upper face is y = 0."""
+    return Body(name, (box(width, depth),), (0.0, -depth / 2), kind="static", **more)  # type: ignore[arg-type]
+
+
+def arc(radius: float, start: float, stop: float, tolerance: float) -> Array:
+    """Points (n, 2) of the arc about the origin from angle `start` to `stop` (rad), both ends included.
+
+    Sampled so that the area is kept (`rigidarea.outline`), for all peers alike.
+    """
+    return arc_points((0.0, 0.0), radius, start, stop - start, tolerance)
+
+
+def full_circle(radius: float, tolerance: float) -> Array:
+    """Points (n, 2) of a circle about the origin, counter-clockwise, not closed, its area kept."""
+    return circle_points((0.0, 0.0), radius, tolerance)
+
+
+def slab_with_hole(radius: float, half: float) -> Curve:
+    """A square of half-side `half` with a circular hole of `radius` about the origin."""
+    outer = np.array([(-half, -half), (half, -half), (half, half), (-half, half)], dtype=float)
+    return Curve(lambda tolerance: (outer, (full_circle(radius, tolerance),)))
+
+
+def rest_error(trace: Trace, names: Iterable[str], size: float, last: float = 1.0) -> float:
+    """The largest departure from the starting placement during the `last` seconds, relative to `size`.
+
+    Displacement of the centre, or rotation times half the size, whichever is larger.
+    """
+    late = trace.times >= trace.times[-1] - last - 1e-9
+    worst = 0.0
+    for name in names:
+        state = trace[name]
+        moved = state[late, :3] - state[0, :3]
+        worst = max(worst, float(np.max(np.hypot(moved[:, X], moved[:, Y]))) / size)
+        worst = max(worst, float(np.max(np.abs(moved[:, ANGLE]))) / 2)
+    return worst
+
+
+# Registry ---------------------------------------------------------------------------------------------------
+
+
+@cache
+def scenes() -> dict[str, Scene]:
+    """Every scene by name: each module of `rigidarea.study.scenes` has one function `scene()`."""
+    from . import scenes as package
+
+    found = {}
+    for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
+        if info.name.startswith("_"):
+            continue
+        scene = importlib.import_module(f"{package.__name__}.{info.name}").scene()
+        if scene.name != info.name:
+            raise ValueError(f"scene module {info.name!r} defines a scene called {scene.name!r}")
+        found[scene.name] = scene
+    return found
+
+
+def get_scene(name: str) -> Scene:
+    """The scene called `name`; `ValueError` lists the known ones."""
+    known = scenes()
+    if name not in known:
+        raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(known)}")
+    return known[name]

@@ -1,0 +1,41 @@
+"""A block pushed up an incline stops after v²/(2 g (sin θ + μ cos θ)) and stays."""
+
+import math
+
+import numpy as np
+
+from ..scene import G, Scene, Trace, X, block, floor
+
+MU, V = 0.5, 4.0
+THETA = math.atan(0.3)
+DECELERATION = G * (math.sin(THETA) + MU * math.cos(THETA))
+
+
+def position(t: np.ndarray) -> np.ndarray:
+    """Distance up the incline at times `t`."""
+    t = np.minimum(t, V / DECELERATION)
+    return V * t - DECELERATION * t**2 / 2
+
+
+def error(trace: Trace) -> float:
+    """Largest error of the distance, relative to the whole distance."""
+    exact = position(trace.times)
+    return float(np.max(np.abs(trace["block"][:, X] - exact)) / exact[-1])
+
+
+def scene() -> Scene:
+    """4 m/s up a slope of tan θ = 0.3 with μ = 0.5 (it must not slide back); gravity is turned, not the
+    floor.
+    """
+    return Scene(
+        name="incline_up",
+        title="block pushed up an incline",
+        bodies=(floor(), block("block", 1.0, 0.5, (0.0, 0.25), velocity=(V, 0.0))),
+        gravity=(-G * math.sin(THETA), -G * math.cos(THETA)),
+        friction=MU,
+        duration=2.0,
+        error_name="distance, relative",
+        error=error,
+        source="Coulomb and Newton: deceleration g (sin θ + μ cos θ), then rest because tan θ < μ",
+        tags=frozenset({"friction", "flat"}),
+    )

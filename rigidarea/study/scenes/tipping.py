@@ -1,0 +1,57 @@
+"""A slender block on a steep rough incline tips about its lower corner."""
+
+import math
+
+import numpy as np
+
+from ..scene import ANGLE, G, Scene, Trace, block, floor
+
+WIDTH, HEIGHT, MU = 0.5, 1.0, 2.0
+ALPHA = math.atan(WIDTH / HEIGHT)
+"""Slope at which the block's weight passes through the corner: tan α = w/h."""
+THETA = math.atan(1.2 * WIDTH / HEIGHT)
+R = math.hypot(WIDTH, HEIGHT) / 2
+P2 = 3 * G / (4 * R)
+"""m g R/I about the corner, I = (4/3) m R²."""
+DURATION = 0.75
+
+
+def rotation(t: np.ndarray) -> np.ndarray:
+    """Angle turned at times `t`: φ'' = p² sin(φ + θ − α), from rest."""
+    from scipy.integrate import solve_ivp
+
+    end = float(np.max(t)) or 1.0
+    found = solve_ivp(
+        lambda _, y: (y[1], P2 * math.sin(y[0] + THETA - ALPHA)),
+        (0.0, end),
+        (0.0, 0.0),
+        method="DOP853",
+        t_eval=t,
+        rtol=1e-12,
+        atol=1e-12,
+    )
+    return np.asarray(found.y[0])
+
+
+def error(trace: Trace) -> float:
+    """Largest error of the angle, relative to the final angle."""
+    exact = rotation(trace.times)
+    return float(np.max(np.abs(-trace["block"][:, ANGLE] - exact)) / exact[-1])
+
+
+def scene() -> Scene:
+    """tan θ = 1.2 w/h; gravity is turned instead of the floor."""
+    return Scene(
+        name="tipping",
+        title="block tipping over",
+        bodies=(floor(), block("block", WIDTH, HEIGHT, (0.0, HEIGHT / 2))),
+        gravity=(G * math.sin(THETA), -G * math.cos(THETA)),
+        friction=MU,
+        duration=DURATION,
+        error_name="angle, relative",
+        error=error,
+        source="rotation about a corner, I = (4/3) m R²; tips when tan θ > w/h",
+        size=WIDTH,
+        pressure=G / WIDTH**2,
+        tags=frozenset({"corner"}),
+    )

@@ -1,0 +1,90 @@
+"""Large sweeps on a `concurrent.futures` executor: results written as they come, resumed by the same command.
+
+Local processes by default; with the address of a scheduler, a Dask cluster through its own
+`Client.get_executor()` (which runs a task again when the worker that had it dies).
+"""
+
+from __future__ import annotations
+
+import json
+import multiprocessing
+import os
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from .records import Progress, Row, append_rows, read_rows
+
+Task = dict[str, Any]
+"""Arguments of one call, plain values only: they are the key under which its result is kept."""
+
+
+def key(task: Task) -> str:
+    """The task as text, independent of the order of its keys."""
+    return json.dumps(task, sort_keys=True)
+
+
+@contextmanager
+def open_executor(scheduler: str | None = None, workers: int | None = None) -> Iterator[Executor]:
+    """A Dask cluster at `scheduler` ("tcp://host:port"), or `workers` local processes (default: one a
+    core).
+    """
+    if scheduler:
+        from dask.distributed import Client
+
+        with Client(scheduler) as client:
+            executor = client.get_executor(retries=3)
+            yield executor
+            executor.shutdown()
+        return
+    context = multiprocessing.get_context("spawn")  # a fork would copy compiled code and locks
+    with ProcessPoolExecutor(workers or os.cpu_count(), mp_context=context) as executor:
+        yield executor
+
+
+def run_tasks(
+    function: Callable[..., Row],
+    tasks: Sequence[Task],
+    store: Path | None,
+    scheduler: str | None = None,
+    workers: int | None = None,
+    title: str = "tasks",
+) -> list[Row]:
+    """Results `function(**task)` for every task, in the order of the tasks.
+
+    store: JSON-lines file that gets each result as it comes; tasks found there are not run again. None keeps
+        nothing.
+    workers: local processes; 0 runs everything in this process.
+    An exception in a task is raised here after the results that were ready have been written.
+    """
+    known: dict[str, Row] = {}
+    if store is not None:
+        known = {key(row["task"]): row["result"] for row in read_rows(store)}
+    wanted = {key(task): task for task in tasks}
+    missing = [task for text, task in wanted.items() if text not in known]
+    progress = Progress(title, len(wanted))
+    if len(wanted) > len(missing):
+        progress.step("already done", len(wanted) - len(missing))
+
+    def keep(task: Task, result: Row) -> None:
+        known[key(task)] = result
+        if store is not None:
+            append_rows(store, [{"task": task, "result": result}])
+        progress.step(" ".join(str(value) for value in task.values())[:60])
+
+    if missing and workers == 0 and not scheduler:
+        for task in missing:
+            keep(task, function(**task))
+    elif missing:
+        with open_executor(scheduler, workers) as executor:
+            futures: dict[Future[Row], Task] = {executor.submit(function, **task): task for task in missing}
+            for future in as_completed(futures) if not scheduler else _dask_completed(futures):
+                keep(futures[future], future.result())
+    return [known[key(task)] for task in tasks]
+
+
+def _dask_completed(futures: dict[Future[Row], Task]) -> Iterator[Future[Row]]:
+    """`as_completed` for the futures of Dask's executor, which are `concurrent.futures` futures as well."""
+    yield from as_completed(futures)

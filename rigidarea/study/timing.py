@@ -1,0 +1,78 @@
+"""Wall time of runs: warm, on one core, interleaved, median of repeats."""
+
+from __future__ import annotations
+
+import contextlib
+import gc
+import os
+import statistics
+import time
+from collections.abc import Callable, Iterator, Sequence
+
+from .peers import Run, Settings, get_peer
+from .scene import Scene
+
+SHORT_S = 1e-3
+"""Wall time (s) below which a run is repeated at once."""
+
+
+@contextlib.contextmanager
+def one_core() -> Iterator[None]:
+    """Keep this process on the core it is on, without garbage collection, for as long as the block lasts."""
+    before = os.sched_getaffinity(0) if hasattr(os, "sched_getaffinity") else None
+    collecting = gc.isenabled()
+    if before is not None:
+        os.sched_setaffinity(0, {min(before)})
+    gc.collect()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collecting:
+            gc.enable()
+        if before is not None:
+            os.sched_setaffinity(0, before)
+
+
+def timed(run: Run, frames: int) -> float:
+    """Wall time (s) of `frames` frames in one call."""
+    started = time.perf_counter()
+    run.advance(frames)
+    return time.perf_counter() - started
+
+
+def median_times(
+    jobs: Sequence[Callable[[], float]],
+    repeats: int,
+    patience_s: float = 1.0,
+    after: Callable[[], None] | None = None,
+) -> list[float]:
+    """The median over `repeats` rounds of what each job returns (s), every round running all jobs once.
+
+    A drift of the machine then hits all alike. A job that took longer than `patience_s` is not repeated: its
+    noise is small beside it.
+    """
+    times: list[list[float]] = [[] for _ in jobs]
+    with one_core():
+        for _ in range(repeats):
+            for job, found in zip(jobs, times, strict=True):
+                if not found or sum(found) < patience_s:
+                    found.append(job())
+                    if after:
+                        after()
+    return [statistics.median(found) for found in times]
+
+
+def scene_job(scene: Scene, peer: str, settings: Settings) -> Callable[[], float]:
+    """A job that builds the scene anew and times it: wall time (s) of its whole duration, set-up not counted.
+
+    Runs below a millisecond are short beside the noise of a clock interrupt: the median of five of them.
+    """
+
+    def job() -> float:
+        found = [timed(get_peer(peer).build(scene, settings), scene.frames)]
+        while found[0] < SHORT_S and len(found) < 5:
+            found.append(timed(get_peer(peer).build(scene, settings), scene.frames))
+        return statistics.median(found)
+
+    return job
