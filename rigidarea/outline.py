@@ -44,6 +44,7 @@ MAX_STAND_IN_VERTICES = 8
 """Most vertices of a polygonal stand-in: Chipmunk's GJK walks them all."""
 
 _EPS = float(np.finfo(np.float64).eps)
+_LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 
 class Outline:
@@ -96,7 +97,7 @@ class Outline:
         lower, upper = np.minimum.reduce(rings[0]), np.maximum.reduce(rings[0])
         middle = (
             lower + upper
-        ) / 2  # all sums relative to it: far from the origin the plain ones have no digits
+        ) / 2  # sums are taken relative to it: far from the origin they lose all digits
         total, first = 0.0, np.zeros(2)
         oriented = []
         for i, ring in enumerate(rings):
@@ -123,18 +124,11 @@ class Outline:
         Raises ValueError for other geometries, empty and invalid polygons.
         """
         if not isinstance(polygon, shapely.Polygon) or polygon.is_empty:
-            what = (
-                f"{polygon.geom_type} {polygon.wkt[:60]}"
-                if isinstance(polygon, shapely.Geometry)
-                else repr(polygon)
-            )
             raise ValueError(
-                f"expected one non-empty shapely Polygon, got {what}; of a MultiPolygon take each of .geoms"
+                f"expected one non-empty shapely Polygon (of several, each alone), got {polygon!r:.80}"
             )
-        return cls(
-            shapely.get_coordinates(polygon.exterior),
-            [shapely.get_coordinates(hole) for hole in polygon.interiors],
-        )
+        exterior, *interiors = map(shapely.get_coordinates, (polygon.exterior, *polygon.interiors))
+        return cls(exterior, interiors)
 
     @classmethod
     def from_pymunk(
@@ -181,7 +175,8 @@ class Outline:
             return _rounded(tuple(map(tuple, shape.get_vertices())), shape.radius, tolerance)
         if isinstance(shape, pymunk.Segment):
             if shape.radius > 0:
-                return _rounded((tuple(shape.a), tuple(shape.b)), shape.radius, tolerance)
+                ends = dict.fromkeys((tuple(shape.a), tuple(shape.b)))  # a segment without length is a disc
+                return _rounded(tuple(ends), shape.radius, tolerance)
             return _half_space(tuple(shape.a), tuple(shape.b), side, thickness)
         raise ValueError(f"expected a pymunk Circle, Poly or Segment, got {type(shape).__name__}")
 
@@ -252,14 +247,11 @@ class Outline:
             raise ValueError(f"expected finite angle and shift, got angle {angle!r}, shift ({dx!r}, {dy!r})")
         c, s = math.cos(angle), math.sin(angle)
         turn = np.array([[c, s], [-s, c]])
-        moved = [(ring @ turn if angle else ring) + (dx, dy) for ring in self.rings]
+        moved = [ring @ turn + (dx, dy) for ring in self.rings]  # by an angle of 0 the product is exact
         again = None if self._resample is None else partial(_resample_moved, self._resample, angle, dx, dy)
         outline = Outline.from_curve(moved, again)
-        if self.mirror is not None and self.mirror.mirror is self:
-            outline.mirror = Outline.from_curve(
-                [(ring @ turn if angle else ring) + (dx, dy) for ring in self.mirror.rings]
-            )
-            outline.mirror.mirror = outline
+        if self.mirror is not None:
+            _face_each_other(outline, Outline.from_curve([r @ turn + (dx, dy) for r in self.mirror.rings]))
         return outline
 
     # --- into a pymunk space ---
@@ -400,10 +392,11 @@ def _ring(points: ArrayLike, name: str) -> Points:
     given = len(ring)
     if given:
         reach = float(np.abs(ring).max())
-        step = np.abs(ring - np.concatenate((ring[-1:], ring[:-1])))
-        keep = (step > 2 * _EPS * reach).any(
-            axis=1
-        )  # nearer than that two points are one, rounded differently
+        if reach > _LARGEST:
+            raise ValueError(f"{name} must have coordinates below {_LARGEST:g}, got {reach:.6g}")
+        # nearer than this two points are one, rounded differently
+        apart = np.abs(ring - np.concatenate((ring[-1:], ring[:-1]))) > 2 * _EPS * reach
+        keep = apart.any(axis=1)
         if not keep.all():
             ring = ring[keep]
     if len(ring) < 3:
@@ -445,7 +438,7 @@ def _check_valid(rings: list[Points]) -> None:
 
 
 def _place(polygon: shapely.Polygon) -> str:
-    """ "at (x, y)" out of GEOS's reason, "Self-intersection[x y]"."""
+    """Where GEOS says it is: its reason reads like "Self-intersection[x y]"."""
     reason = str(shapely.is_valid_reason(polygon))
     found = re.search(r"\[(\S+) ([^\]\s]+)", reason)
     return f"at ({float(found[1]):.6g}, {float(found[2]):.6g})" if found else f"({reason})"
@@ -476,9 +469,10 @@ def _polar_moment(ring: Points) -> float:
 def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance: float | None) -> Outline:
     """The convex polygon `vertices` (counter-clockwise; one: a disc, two: a capsule) grown by `radius`."""
     points = np.array(vertices)
+    if not np.isfinite(points).all():
+        raise ValueError(f"coordinates of a pymunk shape must be finite, got {vertices}")
     if radius == 0 and len(vertices) > 2:
-        _ring(points, "vertices")  # a hull is simple, but may be flat
-        return Outline.from_curve([points])
+        return Outline.from_curve([_ring(points, "vertices")])  # a hull is simple, but may be flat
     positive(radius, "radius of a pymunk shape")
     if tolerance is None:
         tolerance = DEFAULT_TOLERANCE * (float(np.ptp(points, axis=0).min()) / 2 + radius)
@@ -514,8 +508,12 @@ def _half_space(
     on_right = Outline.from_curve([np.array((end, start, start - left, end - left))])
     on_left = Outline.from_curve([np.array((start, end, end + left, start + left))])
     if side == "both":
-        on_right.mirror, on_left.mirror = on_left, on_right
+        _face_each_other(on_right, on_left)
     return on_left if side == "left" else on_right
+
+
+def _face_each_other(one: Outline, other: Outline) -> None:
+    one.mirror, other.mirror = other, one
 
 
 def _bounding_octagon(hull: Points) -> Points:
@@ -528,9 +526,8 @@ def _bounding_octagon(hull: Points) -> Points:
         support = (hull @ normal.T).max(axis=0)
         # n·x = s and n'·x = s' with n' 45° on
         s, t, n, m = support[:-1, None], support[1:, None], normal[:-1], normal[1:]
-        corners = (
-            s * np.column_stack((m[:, 1], -m[:, 0])) + t * np.column_stack((-n[:, 1], n[:, 0]))
-        ) / math.sin(math.pi / 4)
+        corners = s * np.column_stack((m[:, 1], -m[:, 0])) - t * np.column_stack((n[:, 1], -n[:, 0]))
+        corners /= math.sin(math.pi / 4)
         area = abs(_area_and_first_moment(corners - corners[0])[0])
         if area < best_area:
             best, best_area = corners, area
@@ -548,6 +545,5 @@ def _restore(
 ) -> Outline:
     outline = Outline.from_curve(rings, resample)
     if mirror is not None:
-        outline.mirror = Outline.from_curve(mirror)
-        outline.mirror.mirror = outline
+        _face_each_other(outline, Outline.from_curve(mirror))
     return outline

@@ -10,6 +10,7 @@ they cross. (Litvin & Fuentes, *Gear Geometry and Applied Theory*, 2nd ed., chap
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from functools import partial
 from typing import NamedTuple
 
@@ -262,7 +263,7 @@ def _arc(radius: float, angle: NDArray[np.float64]) -> NDArray[np.float64]:
     return radius * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
-def _bisect(f, low: float, high: float) -> float:  # type: ignore[no-untyped-def]
+def _bisect(f: Callable[[float], float], low: float, high: float) -> float:
     """The root of an increasing function, to the last bit."""
     for _ in range(200):
         middle = (low + high) / 2
