@@ -1,1 +1,21 @@
-"""Rigid-body contact by overlap area for pymunk."""
+"""Rigid-body contact by overlap area for pymunk.
+
+    import pymunk, rigidarea as ra
+    contact = ra.attach(space)
+    contact.step(1 / 60)
+"""
+
+from .contact import REGIONS, AreaContact, SimulationError, StepLimitWarning, attach, attached
+from .outline import Outline
+
+__version__ = "0.1.0"
+
+__all__ = [
+    "REGIONS",
+    "AreaContact",
+    "Outline",
+    "SimulationError",
+    "StepLimitWarning",
+    "attach",
+    "attached",
+]

@@ -58,6 +58,7 @@ LOOP = np.dtype(
         ("y", "f8"),
         ("chord_x", "f8"),  # sum of (end - start) over the arcs of A, A's frame (length)
         ("chord_y", "f8"),
+        ("lever", "f8"),  # sum of (|end|^2 - |start|^2) / 2 over the arcs of A, about the centroid (length^2)
         ("region", "i4"),  # of a hole: the loop it is a hole of; of a region: itself
     ],
     align=True,
@@ -139,6 +140,7 @@ def _measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start:
     sy = 0.0
     chord_x = 0.0
     chord_y = 0.0
+    lever = 0.0
     perimeter = 0.0
     ux = p[stop - 1, 0] - ox
     uy = p[stop - 1, 1] - oy
@@ -154,6 +156,7 @@ def _measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start:
         if on_a:
             chord_x += vx - ux
             chord_y += vy - uy
+            lever += 0.5 * (vx * vx + vy * vy - ux * ux - uy * uy)
         on_a = label[i] == A_EDGE
         ux = vx
         uy = vy
@@ -163,10 +166,13 @@ def _measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start:
     loop.start = start
     loop.stop = stop
     loop.area = 0.5 * doubled
-    loop.x = ox + sx / (3.0 * doubled)
-    loop.y = oy + sy / (3.0 * doubled)
+    sx /= 3.0 * doubled
+    sy /= 3.0 * doubled
+    loop.x = ox + sx
+    loop.y = oy + sy
     loop.chord_x = chord_x
     loop.chord_y = chord_y
+    loop.lever = lever - sx * chord_x - sy * chord_y
     loop.region = n
     return n + 1
 
@@ -566,8 +572,15 @@ def _gather(work: Work, n: int) -> int:
             continue
         region = loops[hole.region]
         area = region.area + hole.area
-        region.x = (region.x * region.area + hole.x * hole.area) / area
-        region.y = (region.y * region.area + hole.y * hole.area) / area
+        x = (region.x * region.area + hole.x * hole.area) / area
+        y = (region.y * region.area + hole.y * hole.area) / area
+        region.lever += (
+            hole.lever
+            + (region.x - x) * region.chord_x + (region.y - y) * region.chord_y
+            + (hole.x - x) * hole.chord_x + (hole.y - y) * hole.chord_y
+        )  # fmt: skip
+        region.x = x
+        region.y = y
         region.area = area
         region.chord_x += hole.chord_x
         region.chord_y += hole.chord_y
@@ -596,6 +609,7 @@ def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a.y, b.y = b.y, a.y
     a.chord_x, b.chord_x = b.chord_x, a.chord_x
     a.chord_y, b.chord_y = b.chord_y, a.chord_y
+    a.lever, b.lever = b.lever, a.lever
     a.region, b.region = b.region, a.region
 
 

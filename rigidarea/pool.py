@@ -97,8 +97,8 @@ def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
 def _flat(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[float, float]:
     """(chord, arm) for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FLAT_DEPTH (design 2.3).
 
-    A straight edge pressed `FLAT_DEPTH * extent` into the hull meets a chord; its stiffness is k chord, its
-    leverage on a free body the arm of its middle about the centroid.
+    A straight edge pressed `FLAT_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
+    stiffness is k chord, its leverage on a free body the arm of its middle about the centroid.
     """
     step = max(1, len(points) // 64)
     edge = (np.roll(points, -step, axis=0) - points)[::step]
@@ -114,11 +114,15 @@ def _flat(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[floa
     crossing = (h0 > 0) != (h1 > 0)
     with np.errstate(divide="ignore", invalid="ignore"):
         s = along + (along[following] - along) * np.where(crossing, h0 / (h0 - h1), 0.0)
-    inside = np.where(crossing, s, np.nan)
-    first = np.fmin.reduce(inside, axis=0)
-    last = np.fmax.reduce(inside, axis=0)
-    chord = np.nan_to_num(last - first)
-    arm = np.nan_to_num(0.5 * (first + last)) - tangent @ centroid
+    # the line enters and leaves the outline in turn: of its stretches inside, the longest
+    s = np.sort(np.where(crossing, s, np.nan), axis=0)
+    pairs = len(s) // 2
+    low, high = s[0 : 2 * pairs : 2], s[1 : 2 * pairs : 2]
+    stretch = np.nan_to_num(high - low)
+    longest = stretch.argmax(axis=0)
+    column = np.arange(stretch.shape[1])
+    chord = stretch[longest, column]
+    arm = np.nan_to_num(0.5 * (low + high)[longest, column]) - tangent @ centroid
     gyration2 = extent**2 / 8.0  # of a disc of that diameter: only the ranking depends on it
     best = int(np.argmax(chord * (1.0 + arm**2 / gyration2)))
     return float(chord[best]), float(abs(arm[best]))

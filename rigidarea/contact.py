@@ -1,0 +1,577 @@
+"""`attach(space)`: a pymunk space whose contacts are area contacts, until `detach()`."""
+
+from __future__ import annotations
+
+import itertools
+import math
+import warnings
+import weakref
+from typing import Any
+
+import numpy as np
+import pymunk
+import pymunk.batch
+from numba import config
+from pymunk._chipmunk_cffi import ffi, lib
+
+from . import stepping
+from .chipmunk import LayoutError, address_of, layout
+from .energy import stored_energy
+from .force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
+from .outline import Outline, positive
+from .pair import FREE_PAIRS, end_pair, new_pair
+from .store import OFFSETS, Store, load_law
+
+LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
+DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
+HOOKS = ("auto", "compiled", "python")
+
+#: One row a contact region, as `AreaContact.regions` gives them.
+REGIONS = np.dtype(
+    [
+        ("shape_a", "O"),
+        ("shape_b", "O"),
+        ("body_a", "O"),
+        ("body_b", "O"),
+        ("area", "f8"),  # (length^2)
+        ("centroid", "f8", 2),  # where the force acts, world (length)
+        ("direction", "f8", 2),  # unit, from A to B
+        ("chord", "f8"),  # (length)
+        ("force", "f8"),  # normal force on B along direction (force); on A the opposite
+        ("friction", "f8"),  # force on B along direction turned by +90 degrees
+        ("speed", "f8"),  # closing speed (length/time)
+        ("slip", "f8"),  # tangential speed of A relative to B, surface velocity included (length/time)
+    ]
+)
+
+_epochs = itertools.count(1)
+_STATE = pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE
+_FULL = _STATE | pymunk.batch.BodyFields.VELOCITY | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+
+
+class SimulationError(RuntimeError):
+    """A step went wrong for a reason that the message names (body and step)."""
+
+
+class StepLimitWarning(UserWarning):
+    """A frame needs more steps than `max_steps` allows."""
+
+
+class AreaContact:
+    """Area contact of one space: what `attach` returns.
+
+    Attributes that may be set at any time: `stiffness`, `rest_speed`, `max_steps`, `phase`.
+    """
+
+    def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
+        self._settings = settings
+        self._error: BaseException | None = None
+        self._warned = False
+        self._memory: dict[tuple[int, int], Any] = {}
+        #: Most steps of one frame; where it binds a StepLimitWarning is given, once.
+        self.max_steps = 1000
+        #: Largest phase of the stiffest contact in one step (radians), see `stepping.PHASE`.
+        self.phase = stepping.PHASE
+        self._install(space)
+
+    # --- attaching ---
+
+    def _install(self, space: pymunk.Space) -> None:
+        if lib.cpSpaceGetUserData(space._space) != ffi.NULL:
+            raise ValueError(
+                "expected a space that nothing is attached to; its user data is taken: detach() that contact first"
+            )
+        self._space: pymunk.Space | None = space
+        self._store = Store()
+        self._shapes: dict[int, pymunk.Shape] = {}
+        self._seen_ids = -1
+        self._state = state = self._store.state[0]
+        settings = self._settings
+        state["law"] = LAWS[settings["law"]]
+        state["direction"] = DIRECTIONS[settings["direction"]]
+        state["exponent"] = settings["exponent"]
+        state["length"] = settings["length"] or 0.0
+        state["stiffness"] = settings["stiffness"] or 0.0
+        state["rest_speed"] = settings["rest_speed"] or 0.0
+        state["epoch"] = next(_epochs)
+        state["restoring"] = bool(self._memory)
+        self.compiled = self._choose_hook(settings["hook"])
+        self._register_shapes()
+        hook = Hook(self)
+        handler_key = (None, None)
+        space.on_collision(pre_solve=hook, separate=hook.separate)
+        self._hook = hook
+        self._handler = space._handlers[handler_key]
+        if self.compiled:
+            from . import hook as machine
+
+            self._handler._handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", machine.pre_solve.address)
+            self._handler._handler.separateFunc = ffi.cast("cpCollisionSeparateFunc", machine.separate.address)
+        lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
+        # Chipmunk calls separate once more for what touches when the space goes: not into freed tables.
+        self._end = _finalize(space)
+
+    def _choose_hook(self, wanted: str) -> bool:
+        if wanted == "python":
+            return False
+        try:
+            if config.DISABLE_JIT:
+                raise LayoutError("numba does not compile (NUMBA_DISABLE_JIT is set)")
+            for name, offset in layout().items():
+                self._state[name] = offset
+        except LayoutError:
+            if wanted == "compiled":
+                raise
+            return False
+        return True
+
+    @property
+    def space(self) -> pymunk.Space:
+        """The attached space. RuntimeError after `detach`."""
+        if self._space is None:
+            raise RuntimeError("this contact is detached: attach the space again")
+        return self._space
+
+    def detach(self) -> None:
+        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again."""
+        space = self._space
+        if space is None:
+            return
+        self._check_hooked()
+        self._end.detach()
+        lib.cpSpaceSetUserData(space._space, ffi.NULL)
+        space.on_collision(pre_solve=pymunk.empty_callback, separate=pymunk.empty_callback)
+        for arbiter in space._get_arbiters():
+            arbiter.data = ffi.NULL
+        self._space = None
+
+    def _check_hooked(self) -> None:
+        assert self._space is not None
+        if self._handler.pre_solve is not self._hook:
+            raise RuntimeError(
+                "the space's global pre_solve was replaced after attach(): area contact is off. Register callbacks "
+                "for a collision type (on_collision(type, None, ...)) instead of for all"
+            )
+
+    def _adopt(self, space: pymunk.Space) -> None:
+        """Take over a copy of the attached space, with what its contacts remembered."""
+        self._install(space)
+
+    # --- shapes ---
+
+    def _register_shapes(self) -> None:
+        """Give every shape of the space that has none yet its outline; choose what was left to be chosen."""
+        space = self.space
+        counter = lib.cpSpaceGetShapeIDCounter(space._space)
+        if counter == self._seen_ids:
+            return
+        for shape in space.shapes:
+            if shape._hashid not in self._shapes:
+                self._register(shape)
+        self._seen_ids = counter
+        if len(self._shapes) > 2 * len(space.shapes) + 64:
+            self._shapes = {shape._hashid: shape for shape in space.shapes}
+        self._store.sync()
+        self._choose()
+
+    def _register(self, shape: pymunk.Shape) -> None:
+        outline = Outline.from_pymunk(shape)
+        body = shape.body
+        dynamic = body is not None and body.body_type == pymunk.Body.DYNAMIC
+        inverse_mass = 1.0 / body.mass if dynamic and body is not None and body.mass > 0 else 0.0
+        inverse_moment = 1.0 / body.moment if dynamic and body is not None and body.moment > 0 else 0.0
+        self._store.shape(shape._hashid, outline, outline.mirror, inverse_mass, inverse_moment)
+        self._shapes[shape._hashid] = shape
+
+    def refresh(self, shape: pymunk.Shape) -> None:
+        """Read a shape's geometry again, after `unsafe_set_vertices` and the like."""
+        self._shapes.pop(shape._hashid, None)
+        self._register(shape)
+        self._store.sync()
+
+    def _sizes(self) -> dict[pymunk.Body, float]:
+        """The chord on which each dynamic body would lie (length)."""
+        sizes: dict[pymunk.Body, float] = {}
+        tables, pool = self._store.tables, self._store.pool
+        for ident, shape in self._shapes.items():
+            body = shape.body
+            if body is None or body.body_type != pymunk.Body.DYNAMIC or shape.sensor or shape.space is None:
+                continue
+            flat = float(pool.heads[tables.shapes[self._store.slots[ident]]["outline"]]["flat"])
+            sizes[body] = max(sizes.get(body, 0.0), flat)
+        return sizes
+
+    def _choose(self) -> None:
+        sizes: dict[pymunk.Body, float] | None = None
+        if self._state["stiffness"] == 0.0:
+            sizes = self._sizes()
+            if not sizes:
+                return  # nothing that could touch yet
+            self._state["stiffness"] = stepping.choose_stiffness(
+                self.space, sizes, self._settings["penetration"]
+            )
+        if self._settings["length"] is None:
+            sizes = sizes or self._sizes()
+            self._state["length"] = max(sizes.values(), default=1.0)
+        if self._settings["rest_speed"] is None:
+            sizes = sizes or self._sizes()
+            self._state["rest_speed"] = stepping.choose_rest_speed(
+                self.space, sizes, float(self._state["stiffness"])
+            )
+
+    @property
+    def stiffness(self) -> float:
+        """k of F = k A (force/length^2). 0 while it waits to be chosen: no dynamic body was there yet."""
+        return float(self._state["stiffness"])
+
+    @stiffness.setter
+    def stiffness(self, value: float) -> None:
+        self._state["stiffness"] = self._settings["stiffness"] = positive(value, "stiffness")
+
+    @property
+    def rest_speed(self) -> float:
+        """First touch slower than this (length/time) is no impact: no restitution, a dashpot instead."""
+        return float(self._state["rest_speed"])
+
+    @rest_speed.setter
+    def rest_speed(self, value: float) -> None:
+        self._state["rest_speed"] = self._settings["rest_speed"] = _not_negative(value, "rest_speed")
+
+    # --- stepping ---
+
+    def step(self, dt: float) -> int:
+        """Advance the space by one frame dt (time) in as many equal steps as its stiffest contact needs.
+
+        Returns the number of steps. Raises ValueError for dt that is not positive and finite, SimulationError
+        (naming body and step) when a body's position stops being finite; the state is then that of the last good
+        step.
+        """
+        n = self.steps(dt)
+        space = self.space
+        buffer = pymunk.batch.Buffer()
+        good = self._snapshot(space, buffer, _FULL)
+        for i in range(n):
+            space.step(dt / n)
+            now = self._snapshot(space, buffer, _FULL)
+            if not stepping.finite(now):
+                self._restore(space, good, now, i, n)
+            good = now
+        return n
+
+    def steps(self, dt: float) -> int:
+        """The number of steps that `step(dt)` would take. Raises ValueError for dt not positive and finite."""
+        positive(dt, "dt")
+        self._check_hooked()
+        self._register_shapes()
+        store = self._store
+        stamp = lib.cpSpaceGetTimestamp(self.space._space)
+        law = load_law(self._state)
+        frequency = stepping.highest_frequency(store.pool, store.tables, len(store.known_shapes), law, stamp)
+        n = max(1, math.ceil(dt * frequency / self.phase))
+        if n > self.max_steps:
+            if not self._warned:
+                self._warned = True
+                warnings.warn(
+                    f"a frame of {dt:g} needs {n} steps (stiffest contact {frequency:.4g} rad per unit time) and "
+                    f"max_steps allows {self.max_steps}: contacts may be inaccurate or unstable. Lower the "
+                    "stiffness, or raise max_steps",
+                    StepLimitWarning,
+                    stacklevel=3,
+                )
+            n = self.max_steps
+        return n
+
+    @staticmethod
+    def _snapshot(space: pymunk.Space, buffer: Any, fields: Any) -> np.ndarray:
+        buffer.clear()
+        pymunk.batch.get_space_bodies(space, fields, buffer)
+        return np.frombuffer(buffer.float_buf(), dtype=np.float64).copy()
+
+    def _restore(self, space: pymunk.Space, good: np.ndarray, now: np.ndarray, i: int, n: int) -> None:
+        bodies: list[pymunk.Body] = []
+        lib.cpSpaceEachBody(space._space, lib.ext_cpSpaceBodyIteratorFunc, ffi.new_handle(bodies))
+        rows = now.reshape(-1, 6)
+        bad = [
+            ffi.from_handle(lib.cpBodyGetUserData(body))
+            for body, row in zip(bodies, rows)
+            if not np.isfinite(row).all()
+        ]
+        for body, row in zip(bodies, good.reshape(-1, 6)):
+            lib.cpBodySetAngle(body, row[2])
+            lib.cpBodySetPosition(body, tuple(row[:2]))
+            lib.cpBodySetVelocity(body, tuple(row[3:5]))
+            lib.cpBodySetAngularVelocity(body, row[5])
+        known = list(space.bodies)
+        names = ", ".join(f"bodies[{known.index(b)}]" if b in known else repr(b) for b in bad[:3])
+        raise SimulationError(
+            f"the state of {names} is not finite after step {i + 1} of {n} of this frame; all bodies were put "
+            "back to the step before"
+        )
+
+    # --- what it shows ---
+
+    @property
+    def regions(self) -> np.ndarray:
+        """The contact regions of the last step, one REGIONS row each, in the order in which pairs first touched."""
+        stamp = lib.cpSpaceGetTimestamp(self.space._space)
+        tables = self._store.tables
+        live = tables.regions[tables.regions["stamp"] == stamp]
+        out = np.zeros(len(live), REGIONS)
+        for row, region, pair in zip(out, live, tables.pairs[live["pair"]]):
+            a = self._shapes[int(pair["shape_a"])]
+            b = self._shapes[int(pair["shape_b"])]
+            row["shape_a"], row["shape_b"], row["body_a"], row["body_b"] = a, b, a.body, b.body
+            row["centroid"] = region["x"], region["y"]
+            row["direction"] = region["nx"], region["ny"]
+        for name in ("area", "chord", "force", "friction", "speed", "slip"):
+            out[name] = live[name]
+        return out
+
+    def energy(self) -> float:
+        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
+        space = self.space
+        total = 0.0
+        for body in space.bodies:
+            if body.body_type == pymunk.Body.DYNAMIC:
+                center = body.local_to_world(body.center_of_gravity)
+                total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(center)
+                if math.isfinite(body.moment):
+                    total += 0.5 * body.moment * body.angular_velocity**2
+        return total + stored_energy(self._store, self._shapes, lib.cpSpaceGetTimestamp(space._space))
+
+    # --- what machine code asks for ---
+
+    def _serve(self, request: int, arbiter: pymunk.Arbiter) -> None:
+        from . import hook as machine
+
+        if request == machine.NEW_SHAPE:
+            a, b = arbiter.shapes
+            for shape in (a, b):
+                if shape._hashid not in self._shapes:
+                    self._register(shape)
+            self._store.sync()
+            self._choose()
+        elif request == machine.NEW_PAIR:
+            if self._store.tables.counters[FREE_PAIRS] == 0:
+                self._store.grow_pairs()
+            self._recall(arbiter)
+        elif request == machine.MORE_WORK:
+            self._store.grow_work()
+        elif request == machine.MORE_REGIONS:
+            self._store.grow_regions()
+        elif request == machine.BAD_STATE:
+            space = self.space
+            known = list(space.bodies)
+            where = [
+                f"bodies[{known.index(body)}]" if body in known else "the static body"
+                for body in (shape.body for shape in arbiter.shapes)
+            ]
+            raise SimulationError(
+                f"the contact force between {where[0]} and {where[1]} is not finite in step "
+                f"{lib.cpSpaceGetTimestamp(space._space)} of the space; it was not applied"
+            )
+
+    def _pair_of(self, arbiter: pymunk.Arbiter) -> int:
+        """The pair's number in the tables, for the Python hook: kept in the arbiter, as machine code does."""
+        epoch = int(self._state["epoch"])
+        memory = address_of(arbiter._arbiter.data)
+        if memory >> 32 != epoch:
+            if self._store.tables.counters[FREE_PAIRS] == 0:
+                self._store.grow_pairs()
+            self._recall(arbiter)
+            memory = address_of(arbiter._arbiter.data)
+        if memory >> 32 != epoch:
+            a, b = (pymunk.Shape._from_cp_shape(p) for p in (arbiter._arbiter.a, arbiter._arbiter.b))
+            assert a is not None and b is not None
+            pair = int(new_pair(self._store.tables, a._hashid, b._hashid))
+            memory = (epoch << 32) | pair
+            arbiter._arbiter.data = ffi.cast("void *", memory)
+        return memory & 0xFFFFFFFF
+
+    def _forget(self, arbiter: pymunk.Arbiter) -> None:
+        memory = address_of(arbiter._arbiter.data)
+        if memory >> 32 == int(self._state["epoch"]):
+            end_pair(self._store.tables, memory & 0xFFFFFFFF)
+        arbiter._arbiter.data = ffi.NULL
+
+    # --- copies ---
+
+    def _remember(self) -> dict[tuple[int, int], Any]:
+        """What the contacts remember, by the two shapes' places in space.shapes: for a copy of the space."""
+        place = {shape._hashid: i for i, shape in enumerate(self.space.shapes)}
+        tables = self._store.tables
+        memory: dict[tuple[int, int], Any] = {}
+        for pair in tables.pairs:
+            key = place.get(int(pair["shape_a"])), place.get(int(pair["shape_b"]))
+            if pair["shape_a"] >= 0 and None not in key:
+                rows = []
+                r = int(pair["head"])
+                while r >= 0:
+                    rows.append(tables.regions[r].copy())
+                    r = int(tables.regions[r]["next"])
+                memory[key] = (int(pair["side_a"]), int(pair["side_b"]), rows)  # type: ignore[index]
+        return memory
+
+    def _recall(self, arbiter: pymunk.Arbiter) -> None:
+        """In a copied space: give a pair that the original knew its memory back."""
+        if not self._memory:
+            self._state["restoring"] = 0
+            return
+        shapes = list(self.space.shapes)
+        a, b = (pymunk.Shape._from_cp_shape(p) for p in (arbiter._arbiter.a, arbiter._arbiter.b))
+        assert a is not None and b is not None
+        found = self._memory.pop((shapes.index(a), shapes.index(b)), None)
+        if found is None:
+            return
+        store = self._store
+        while len(found[2]) > store.tables.counters[1]:
+            store.grow_regions()
+        number = int(new_pair(store.tables, a._hashid, b._hashid))
+        pair = store.tables.pairs[number]
+        pair["side_a"], pair["side_b"] = found[:2]
+        for row in reversed(found[2]):
+            r = int(store.tables.counters[0])
+            store.tables.counters[0] = store.tables.regions[r]["next"]
+            store.tables.counters[1] -= 1
+            store.tables.regions[r] = row
+            store.tables.regions[r]["pair"] = number
+            store.tables.regions[r]["next"] = pair["head"]
+            pair["head"] = r
+        arbiter._arbiter.data = ffi.cast("void *", (int(self._state["epoch"]) << 32) | number)
+
+    def __getstate__(self) -> dict[str, Any]:
+        return {
+            "_settings": {
+                **self._settings,
+                "stiffness": self.stiffness or None,
+                "rest_speed": self.rest_speed,
+                "length": float(self._state["length"]) or None,
+            },
+            "max_steps": self.max_steps,
+            "phase": self.phase,
+            "_memory": self._remember() if self._space is not None else self._memory,
+        }
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._space = None
+        self._error = None
+        self._warned = False
+
+
+class Hook:
+    """The Python side of the hook: pymunk calls it; it serves machine code, or is the hook itself."""
+
+    def __init__(self, contact: AreaContact) -> None:
+        self.contact = contact
+
+    def __call__(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+        from . import hook as machine
+
+        contact = self.contact
+        try:
+            if contact._space is not space:  # a copy, stepped for the first time
+                contact._adopt(space)
+            request = int(contact._state["request"])
+            if contact.compiled and request != machine.NOTHING:
+                contact._serve(request, arbiter)
+                contact._state["request"] = machine.NOTHING
+            else:
+                machine.python_pre_solve(arbiter, space, contact._store, contact._pair_of, contact._serve)
+        except Exception as error:  # cffi would print it and go on: keep it, raise it after the step
+            if contact._error is None:
+                contact._error = error
+                space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
+
+    def separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+        if self.contact._space is space:
+            self.contact._forget(arbiter)
+
+
+def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
+    space._post_step_callbacks.pop(key)
+    error, contact._error = contact._error, None
+    if error is not None:
+        raise error
+
+
+def _finalize(space: pymunk.Space) -> weakref.finalize:
+    # Chipmunk calls separate once more for what touches when the space goes: not into tables that are gone
+    return weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
+
+
+def _not_negative(value: float, name: str) -> float:
+    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value >= 0):
+        raise ValueError(f"{name} must be a finite number >= 0, got {value!r}")
+    return float(value)
+
+
+def _one_of(value: str, name: str, known: Any) -> str:
+    if value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    return value
+
+
+def attach(
+    space: pymunk.Space,
+    stiffness: float | None = None,
+    *,
+    penetration: float = stepping.PENETRATION,
+    law: str = "area",
+    length: float | None = None,
+    direction: str = "chord",
+    exponent: float = 1.0,
+    rest_speed: float | None = None,
+    hook: str = "auto",
+) -> AreaContact:
+    """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
+
+    stiffness: k of F = k A (force/length^2). None: chosen so that no body sinks deeper than `penetration` (a
+        fraction of its size) under its own weight; where no body is there yet, when the first one is.
+    law: "area" (F = k A at the centroid, Eq. 5 and 7), or "energy" (F = k A L / length along the gradient of
+        k A^2 / (2 length), conservative between any two outlines; length None: the largest body's size).
+    direction: "chord" (exact and independent of the sampling), or "nodal" (Eq. 8-15, weights depth^exponent).
+    rest_speed: first touch slower than this (length/time) rests instead of bouncing. None: from gravity.
+    hook: "compiled" (machine code), "python" (the same, readable and slow), "auto" (compiled where it can run).
+
+    Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
+    their `friction`, callbacks' overrides included.
+
+    Raises ValueError for settings out of range, for a space that is attached already, and where another global
+    pre_solve or separate is set (nothing is overwritten).
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    settings = {
+        "stiffness": None if stiffness is None else positive(stiffness, "stiffness"),
+        "penetration": positive(penetration, "penetration"),
+        "law": _one_of(law, "law", LAWS),
+        "length": None if length is None else positive(length, "length"),
+        "direction": _one_of(direction, "direction", DIRECTIONS),
+        "exponent": _not_negative(exponent, "exponent"),
+        "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
+        "hook": _one_of(hook, "hook", HOOKS),
+    }
+    handler = space._handlers.get((None, None))
+    if handler is not None:
+        if isinstance(handler.pre_solve, Hook):
+            raise ValueError("this space is attached already; use attached(space), or detach() it first")
+        for phase in ("pre_solve", "separate"):
+            if getattr(handler, phase) is not None:
+                raise ValueError(
+                    f"the space already has a global {phase} callback, which attach() would overwrite: register it "
+                    "for its collision types (on_collision(type, None, ...)), or remove it with "
+                    f"on_collision({phase}=pymunk.empty_callback)"
+                )
+    return AreaContact(space, settings)
+
+
+def attached(space: pymunk.Space) -> AreaContact | None:
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too."""
+    handler = space._handlers.get((None, None))
+    if handler is None or not isinstance(handler.pre_solve, Hook):
+        return None
+    contact = handler.pre_solve.contact
+    if contact._space is not space:
+        contact._adopt(space)
+    return contact

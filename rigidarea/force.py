@@ -1,0 +1,295 @@
+"""Force of one contact region: the area law, its direction, restitution, damping and friction.
+
+Notation: n is the unit direction from A to B, t = (-n_y, n_x); F pushes A along -n and B along +n; closing speed
+and slip are those of A relative to B at the point of application. Everything here is about one region and two
+bodies; who they are, and where regions are kept between steps, is `pair.py`'s business.
+
+Laws (design 2.3), L the chord of the region, A its area:
+
+- `area`    F = k A (Eq. 5), at the centroid (Eq. 7). Stiffness dF/ddelta = k L. Against one straight edge exactly
+            conservative.
+- `energy`  F = k A L / l with a reference length l: the gradient of U = k A^2 / (2 l), conservative between any
+            two outlines, along the line of action that the gradient has. Stiffness k L^2 / l.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from .overlap import A_EDGE, B_EDGE
+
+LAW_AREA, LAW_ENERGY = 0, 1
+CHORD, NODAL = 0, 1
+
+#: Tangential over normal stiffness of a region (Cundall & Strack 1979 leave it free; 2/7 is usual: below the value
+#: at which a rolling disc's tangential period equals its normal one).
+TANGENT_STIFFNESS = 2.0 / 7.0
+#: Restitution below this is taken as this: the exact law needs a damping factor that grows as 1/e.
+LEAST_RESTITUTION = 0.01
+#: A contact that has lasted this many radians of its own natural motion is no impact any more, but rest.
+REST_PHASE = 50.0
+#: A chord below this fraction of sqrt(area) is rounding: the direction is then taken from memory, or anew.
+NO_CHORD = 1e-6
+
+#: One region, remembered while it lives. Also the record of what it did in the last step.
+REGION = np.dtype(
+    [
+        ("stamp", "i8"),  # space step in which it was last there
+        ("pair", "i4"),
+        ("next", "i4"),  # next region of the pair, or of the free list; -1: none
+        ("resting", "i4"),  # 0: impact, 1: rest
+        ("opened", "i4"),  # 1 once the bodies have moved apart within this contact
+        ("area", "f8"),  # (length^2)
+        ("x", "f8"),  # point of application, world (length)
+        ("y", "f8"),
+        ("nx", "f8"),  # direction, A to B
+        ("ny", "f8"),
+        ("chord", "f8"),  # (length)
+        ("force", "f8"),  # normal force, never negative (force)
+        ("friction", "f8"),  # tangential force on B along t (force)
+        ("couple", "f8"),  # moment on B of the resting pressure's damping (force length)
+        ("spring", "f8"),  # tangential force of the friction spring (force)
+        ("tangent_stiffness", "f8"),  # its stiffness when last loaded (force/length)
+        ("damping", "f8"),  # a of F = k A (1 + a speed) (time/length)
+        ("phase", "f8"),  # radians of natural motion since first touch
+        ("first_speed", "f8"),  # closing speed at first touch (length/time)
+        ("speed", "f8"),  # closing speed (length/time)
+        ("rate2", "f8"),  # its natural frequency squared, on these two bodies alone (1/time^2)
+        ("slip", "f8"),  # tangential speed of A relative to B (length/time)
+    ],
+    align=True,
+)
+
+
+class Law(NamedTuple):
+    """What the user chose for every region of a space."""
+
+    stiffness: float  # k (force/length^2: a pressure per unit depth of the plane, Eq. 5 and 6)
+    law: int  # LAW_AREA or LAW_ENERGY
+    length: float  # l of the energy law (length)
+    direction: int  # CHORD or NODAL
+    exponent: float  # q of Eq. 12, for NODAL
+    rest_speed: float  # first touch slower than this: rest from the start (length/time)
+
+
+class Motion(NamedTuple):
+    """A rigid body as a region sees it, world axes."""
+
+    x: float  # centre of gravity (length)
+    y: float
+    vx: float  # (length/time)
+    vy: float
+    w: float  # (1/time)
+    inverse_mass: float
+    inverse_moment: float
+
+
+class Pull(NamedTuple):
+    """Force and moment on B, about its centre; and the moment on A. A's force is the opposite."""
+
+    fx: float
+    fy: float
+    moment_a: float
+    moment_b: float
+
+
+@njit(cache=True)
+def restitution_damping(e: float) -> float:
+    """alpha = a v0 for which F = f(depth) (1 + a speed) returns exactly e v0, whatever f.
+
+    m v dv/dx = -f (1 + a v) separates: both ways through the same integral of f give
+    alpha (1 + e) = ln[(1 + alpha) / (1 - alpha e)] (design 2.4). The right side minus the left is negative just
+    above 0 and infinite at 1/e; its one root between is found by bisection.
+    """
+    if e >= 1.0:
+        return 0.0
+    e = max(e, LEAST_RESTITUTION)
+    low = 0.0
+    high = 1.0 / e
+    for _ in range(60):
+        mid = 0.5 * (low + high)
+        if math.log1p(mid) - math.log1p(-mid * e) < mid * (1.0 + e):
+            low = mid
+        else:
+            high = mid
+    return 0.5 * (low + high)
+
+
+@njit(cache=True)
+def damping_ratio(e: float) -> float:
+    """Damping ratio of the linear spring and dashpot that returns e: 0 for e = 1, near 1 for e = 0."""
+    if e >= 1.0:
+        return 0.0
+    s = math.log(max(e, LEAST_RESTITUTION))
+    return -s / math.sqrt(math.pi * math.pi + s * s)
+
+
+@njit(cache=True)
+def _ray(polygon: np.ndarray, label: np.ndarray, start: int, stop: int, i: int, nx: float, ny: float) -> float:
+    """Distance from vertex i along n to the nearest edge of the other outline in the region (Eq. 9); 0 if none."""
+    px = polygon[i, 0]
+    py = polygon[i, 1]
+    own = label[i]
+    best = np.inf
+    j = stop - 1
+    for k in range(start, stop):
+        if label[j] != own:
+            ux = polygon[j, 0] - px
+            uy = polygon[j, 1] - py
+            vx = polygon[k, 0] - px
+            vy = polygon[k, 1] - py
+            cu = nx * uy - ny * ux
+            cv = nx * vy - ny * vx
+            if (cu > 0.0) != (cv > 0.0):
+                s = cu / (cu - cv)
+                d = nx * (ux + s * (vx - ux)) + ny * (uy + s * (vy - uy))
+                if 0.0 <= d < best:
+                    best = d
+        j = k
+    return best if best < np.inf else 0.0
+
+
+@njit(cache=True)
+def nodal_direction(
+    polygon: np.ndarray, label: np.ndarray, start: int, stop: int, exponent: float
+) -> tuple[float, float]:
+    """Unit direction A to B by the paper's Alg. 2, lines 6-14 (Eq. 8-15), in the polygon's frame; (0, 0) if none.
+
+    Nodes are the vertices of an arc that are no crossings. Where one outline has no node in the region the other's
+    direction stands alone (the paper then sees no contact, Fig. 1b).
+    """
+    total_x = 0.0
+    total_y = 0.0
+    for own in (A_EDGE, B_EDGE):
+        sum_x = 0.0
+        sum_y = 0.0
+        before = stop - 1
+        for i in range(start, stop):
+            after = i + 1 if i + 1 < stop else start
+            if label[i] == own and label[before] == own:
+                dx = polygon[after, 0] - polygon[before, 0]
+                dy = polygon[after, 1] - polygon[before, 1]
+                length = math.sqrt(dx * dx + dy * dy)
+                if length > 0.0:
+                    nx = -dy / length  # Eq. 8; counter-clockwise: into the region, towards the other's boundary
+                    ny = dx / length
+                    depth = _ray(polygon, label, start, stop, i, nx, ny)  # Eq. 9
+                    tributary = 0.5 * (
+                        math.hypot(polygon[i, 0] - polygon[before, 0], polygon[i, 1] - polygon[before, 1])
+                        + math.hypot(polygon[after, 0] - polygon[i, 0], polygon[after, 1] - polygon[i, 1])
+                    )  # Eq. 11
+                    weight = tributary * depth**exponent  # Eq. 10 and 12, without the common factor
+                    sum_x += weight * nx
+                    sum_y += weight * ny
+            before = i
+        length = math.sqrt(sum_x * sum_x + sum_y * sum_y)
+        if length > 0.0:
+            sign = -1.0 if own == A_EDGE else 1.0  # Eq. 13, 14, then 15: n points from A to B
+            total_x += sign * sum_x / length
+            total_y += sign * sum_y / length
+    length = math.sqrt(total_x * total_x + total_y * total_y)
+    if length == 0.0:
+        return 0.0, 0.0
+    return total_x / length, total_y / length
+
+
+@njit(cache=True)
+def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float, float]:
+    """Unit direction A to B: A's outward normal integrated over its arcs is the chord turned by -90 degrees.
+
+    (0, 0) where the chord is nothing: one outline inside the other, or two bars crossed.
+    """
+    length = math.sqrt(chord_x * chord_x + chord_y * chord_y)
+    if length <= NO_CHORD * math.sqrt(area):
+        return 0.0, 0.0
+    return chord_y / length, -chord_x / length
+
+
+@njit(cache=True)
+def region_force(
+    r: np.ndarray, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
+    surface_x: float, surface_y: float, dt: float, born: bool,
+) -> Pull:  # fmt: skip
+    """Force of region r (one REGION record: area, x, y, nx, ny, chord set; its memory is brought up to date).
+
+    The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
+    resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
+    """
+    nx = r.nx
+    ny = r.ny
+    rax = r.x - a.x
+    ray = r.y - a.y
+    rbx = r.x - b.x
+    rby = r.y - b.y
+    ux = (a.vx - a.w * ray) - (b.vx - b.w * rby)
+    uy = (a.vy + a.w * rax) - (b.vy + b.w * rbx)
+    speed = ux * nx + uy * ny
+    slip = -ux * ny + uy * nx - (-surface_x * ny + surface_y * nx)
+    arm_a = rax * ny - ray * nx
+    arm_b = rbx * ny - rby * nx
+    inverse_masses = a.inverse_mass + b.inverse_mass
+    inverse = inverse_masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+
+    if law.law == LAW_AREA:
+        elastic = law.stiffness * r.area
+        stiffness = law.stiffness * r.chord
+    else:
+        elastic = law.stiffness * r.area * r.chord / law.length
+        stiffness = law.stiffness * r.chord * r.chord / law.length
+    r.rate2 = stiffness * inverse
+    step_phase = dt * math.sqrt(r.rate2)
+
+    if born:
+        r.first_speed = speed
+        r.spring = 0.0
+        r.tangent_stiffness = 0.0
+        r.phase = 0.0
+        r.opened = 0
+        r.resting = 1 if speed <= law.rest_speed else 0
+        r.damping = 0.0 if r.resting else restitution_damping(elasticity) / speed
+    r.phase += step_phase
+    if speed < 0.0:
+        r.opened = 1
+    if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
+        r.resting = 1
+
+    couple = 0.0
+    if r.resting:
+        # pressure of a Winkler bed with dashpots: a resultant at the centroid, and a moment against turning
+        c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
+        force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
+        bed = c * r.chord * r.chord / 12.0
+        couple = bed * (a.w - b.w) / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
+        most = force * r.chord / 6.0  # more would need the pressure to pull at one end
+        couple = min(most, max(-most, couple))
+    else:
+        force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse))
+
+    tangential = 0.0
+    if friction > 0.0:
+        arm_a = rax * nx + ray * ny
+        arm_b = rbx * nx + rby * ny
+        inverse_t = inverse_masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+        kt = TANGENT_STIFFNESS * stiffness
+        # the spring remembers a force; where the region shrinks the force shrinks with it, so no energy comes free
+        if kt < r.tangent_stiffness:
+            r.spring *= kt / r.tangent_stiffness
+        r.tangent_stiffness = kt
+        r.spring += kt * slip * dt
+        ct = 2.0 * math.sqrt(kt / inverse_t) if inverse_t > 0.0 else 0.0
+        most = friction * force
+        r.spring = min(most, max(-most, r.spring))
+        tangential = r.spring + ct * slip / (1.0 + dt * ct * inverse_t)
+        tangential = min(most, max(-most, tangential))
+    r.force = force
+    r.friction = tangential
+    r.couple = couple
+    r.speed = speed
+    r.slip = slip
+    fx = force * nx - tangential * ny
+    fy = force * ny + tangential * nx
+    return Pull(fx, fy, -(rax * fy - ray * fx) - couple, rbx * fy - rby * fx + couple)

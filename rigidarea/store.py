@@ -1,0 +1,233 @@
+"""The tables of one attached space, and the struct through which machine code finds them.
+
+All arrays live here, as numpy arrays that grow by doubling. `Store.state` is one record of addresses and settings;
+its own address is the space's user data, so that two attached spaces never meet. `load_*` are the other direction:
+from that record back to the named tuples of arrays that the kernels take (as views without reference counting,
+which alone would cost as much as clipping two boxes).
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import carray, njit
+
+from .force import REGION, Law
+from .memory import pointer
+from .overlap import LOOP, Work, enlarged, fits, new_work
+from .pair import COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
+from .pool import HEAD, HasRings, Pool, pack
+
+_ARRAYS = [
+    *("points", "following", "ring_of", "rings", "boxes", "heads"),
+    *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "loops"),
+    *("shapes", "pairs", "regions", "counters", "slots"),
+]
+#: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
+OFFSETS = [
+    *("body_position", "body_transform", "body_velocity", "body_spin", "body_force", "body_torque"),
+    *("body_inverse_mass", "body_inverse_moment", "shape_surface_velocity"),
+    *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_data", "arbiter_shape_a"),
+    *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process"),
+]
+STATE = np.dtype(
+    [(f"{name}_at", "u8") for name in _ARRAYS]
+    + [(f"{name}_n", "i8") for name in _ARRAYS]
+    + [(name, "i8") for name in OFFSETS]
+    + [
+        ("stiffness", "f8"),
+        ("length", "f8"),
+        ("exponent", "f8"),
+        ("rest_speed", "f8"),
+        ("law", "i8"),
+        ("direction", "i8"),
+        ("request", "i8"),  # what machine code asks Python for
+        ("restoring", "i8"),  # pairs are to be looked up in a copied space's memory
+        ("epoch", "u8"),  # upper half of what is kept in arbiters: tells this attachment's pairs from another's
+    ],
+    align=True,
+)
+
+
+@njit(cache=True, inline="always")
+def load_pool(s: Any) -> Pool:
+    """The outlines of the space whose state record is s."""
+    return Pool(
+        carray(pointer(s.points_at), (s.points_n, 2), np.float64),
+        carray(pointer(s.following_at), (s.following_n,), np.int32),
+        carray(pointer(s.ring_of_at), (s.ring_of_n,), np.int32),
+        carray(pointer(s.rings_at), (s.rings_n, 2), np.int32),
+        carray(pointer(s.boxes_at), (s.boxes_n, 4), np.float64),
+        carray(pointer(s.heads_at), (s.heads_n,), HEAD),
+    )
+
+
+@njit(cache=True, inline="always")
+def load_work(s: Any) -> Work:
+    """The scratch of the space whose state record is s."""
+    return Work(
+        carray(pointer(s.stack_at), (s.stack_n, 2), np.int32),
+        carray(pointer(s.cross_at), (s.cross_n, 3), np.int32),
+        carray(pointer(s.param_at), (s.param_n, 2), np.float64),
+        carray(pointer(s.spot_at), (s.spot_n, 2), np.float64),
+        carray(pointer(s.order_at), (s.order_n, s.cross_n), np.int32),
+        carray(pointer(s.done_at), (s.done_n,), np.uint8),
+        carray(pointer(s.hit_at), (s.hit_n,), np.uint8),
+        carray(pointer(s.polygon_at), (s.polygon_n, 2), np.float64),
+        carray(pointer(s.label_at), (s.label_n,), np.uint8),
+        carray(pointer(s.loops_at), (s.loops_n,), LOOP),
+    )
+
+
+@njit(cache=True, inline="always")
+def load_tables(s: Any) -> Tables:
+    """The shapes, pairs and regions of the space whose state record is s."""
+    return Tables(
+        carray(pointer(s.shapes_at), (s.shapes_n,), SHAPE),
+        carray(pointer(s.pairs_at), (s.pairs_n,), PAIR),
+        carray(pointer(s.regions_at), (s.regions_n,), REGION),
+        carray(pointer(s.counters_at), (s.counters_n,), np.int64),
+    )
+
+
+@njit(cache=True, inline="always")
+def load_law(s: Any) -> Law:
+    """The force law of the space whose state record is s."""
+    return Law(s.stiffness, s.law, s.length, s.direction, s.exponent, s.rest_speed)
+
+
+class Store:
+    """Growing tables of one space. Nothing here knows pymunk: shapes are Chipmunk's integer ids."""
+
+    def __init__(self) -> None:
+        self.state = np.zeros(1, STATE)
+        self._fill = {"points": 0, "rings": 0, "boxes": 0, "heads": 0, "shapes": 0}
+        self.pool = Pool(
+            np.zeros((64, 2)),
+            np.zeros(64, np.int32),
+            np.zeros(64, np.int32),
+            np.zeros((16, 2), np.int32),
+            np.zeros((64, 4)),
+            np.zeros(16, HEAD),
+        )
+        self.work = new_work()
+        self.tables = Tables(
+            np.zeros(16, SHAPE), np.zeros(0, PAIR), np.zeros(0, REGION), np.zeros(COUNTERS, np.int64)
+        )
+        self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
+        self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
+        self._outlines: dict[int, int] = {}
+        self._kept: list[HasRings] = []  # ids stay unique while the objects live
+        self._most = (0, 0)  # points and rings of the largest outline
+        self.grow_pairs(64)
+        self.grow_regions(64)
+        self.sync()
+
+    def sync(self) -> None:
+        """Write the arrays' addresses and sizes into the state record."""
+        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), "slots": self.slots}
+        state = self.state[0]
+        for name in _ARRAYS:
+            state[f"{name}_at"] = arrays[name].ctypes.data
+            state[f"{name}_n"] = len(arrays[name])
+
+    def grow_pairs(self, least: int = 0) -> None:
+        """Twice the pairs (at least `least`), the new ones free."""
+        old = self.tables.pairs
+        new = np.zeros(max(least, 2 * len(old)), PAIR)
+        new[: len(old)] = old
+        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
+        new["shape_a"][len(old) :] = -1
+        new["next"][-1] = self.tables.counters[FREE_PAIR]
+        self.tables.counters[FREE_PAIR] = len(old)
+        self.tables.counters[FREE_PAIRS] += len(new) - len(old)
+        self.tables = self.tables._replace(pairs=new)
+        self.sync()
+
+    def grow_regions(self, least: int = 0) -> None:
+        """Twice the regions (at least `least`), the new ones free."""
+        old = self.tables.regions
+        new = np.zeros(max(least, 2 * len(old)), REGION)
+        new[: len(old)] = old
+        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
+        new["stamp"][len(old) :] = -1
+        new["next"][-1] = self.tables.counters[FREE_REGION]
+        self.tables.counters[FREE_REGION] = len(old)
+        self.tables.counters[FREE_REGIONS] += len(new) - len(old)
+        self.tables = self.tables._replace(regions=new)
+        self.sync()
+
+    def grow_work(self) -> None:
+        """Twice the room for crossings."""
+        points, rings = self._most
+        self.work = enlarged(self.work, 2 * points, 2 * rings)
+        self.sync()
+
+    def outline(self, outline: HasRings) -> int:
+        """The outline's number in the pool; packed the first time it is seen."""
+        number = self._outlines.get(id(outline))
+        if number is not None:
+            return number
+        one = pack([outline])
+        fill = self._fill
+        room = {}
+        for name, array in self.pool._asdict().items():
+            key = "points" if name in ("following", "ring_of") else name
+            need = fill[key] + len(getattr(one, name))
+            if need > len(array):
+                bigger = np.zeros((max(need, 2 * len(array)), *array.shape[1:]), array.dtype)
+                bigger[: len(array)] = array
+                array = bigger
+            room[name] = array
+        self.pool = pool = Pool(**room)
+        p, r, b, h = fill["points"], fill["rings"], fill["boxes"], fill["heads"]
+        pool.points[p : p + len(one.points)] = one.points
+        pool.following[p : p + len(one.points)] = one.following + p
+        pool.ring_of[p : p + len(one.points)] = one.ring_of + r
+        pool.rings[r : r + len(one.rings)] = one.rings + p
+        pool.boxes[b : b + len(one.boxes)] = one.boxes
+        pool.heads[h] = one.heads[0]
+        pool.heads[h]["point"] += p
+        pool.heads[h]["ring"] += r
+        pool.heads[h]["box"] += b
+        fill["points"] += len(one.points)
+        fill["rings"] += len(one.rings)
+        fill["boxes"] += len(one.boxes)
+        fill["heads"] += 1
+        self._most = (max(self._most[0], len(one.points)), max(self._most[1], len(one.rings)))
+        if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
+            self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
+        self._outlines[id(outline)] = h
+        self._kept.append(outline)
+        return h
+
+    def shape(
+        self, ident: int, outline: HasRings, mirror: HasRings | None, inverse_mass: float, inverse_moment: float
+    ) -> None:
+        """Tell the tables which outline Chipmunk's shape `ident` has. Call `sync` after the last."""
+        number = self.outline(outline)
+        other = -1 if mirror is None else self.outline(mirror)
+        if ident >= len(self.slots):
+            slots = np.full(max(ident + 1, 2 * len(self.slots)), -1, np.int32)
+            slots[: len(self.slots)] = self.slots
+            self.slots = slots
+        row = self.slots[ident]
+        if row < 0:
+            row = self._fill["shapes"]
+            if row == len(self.tables.shapes):
+                shapes = np.zeros(2 * row, SHAPE)
+                shapes[:row] = self.tables.shapes
+                self.tables = self.tables._replace(shapes=shapes)
+            self._fill["shapes"] += 1
+            self.slots[ident] = row
+        self.tables.shapes[row] = (number, other, inverse_mass, inverse_moment)
+
+    def knows(self, ident: int) -> bool:
+        """Whether shape `ident` has an outline here."""
+        return 0 <= ident < len(self.slots) and bool(self.slots[ident] >= 0)
+
+    @property
+    def known_shapes(self) -> np.ndarray:
+        """The rows of tables.shapes in use."""
+        return self.tables.shapes[: self._fill["shapes"]]
