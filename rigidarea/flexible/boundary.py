@@ -110,7 +110,9 @@ def build(
         a, b = roots.pop(), roots.pop()
         c = 0.5 * (centre[a] + centre[b])
         centre.append(c)
-        radius.append(float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b])))
+        radius.append(
+            float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b]))
+        )
         left.append(a)
         right.append(b)
         roots.append(len(centre) - 1)
@@ -178,7 +180,9 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -
 
 
 @njit(cache=True)
-def candidates(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, stack: Ints, out: Ints) -> int:
+def candidates(
+    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, stack: Ints, out: Ints
+) -> int:
     """Pairs of leaves whose circles come within ``margin``: fills ``out`` (k, 2), returns their number, -1 if full.
 
     Circles do not mind rotation, so the trees are built once, in the body frames. ``margin`` covers the deformation

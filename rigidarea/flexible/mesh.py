@@ -9,7 +9,8 @@ from the boundary of this mesh.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import itertools
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -82,7 +83,7 @@ def resample(ring: Array, size: float) -> Array:
     total = np.concatenate([[0.0], np.cumsum(length)])
     at = np.concatenate([total[corner], [total[-1] + total[corner[0]]]])
     marks = []
-    for a, b in zip(at[:-1], at[1:], strict=True):
+    for a, b in itertools.pairwise(at):
         if b - a < 0.5 * size:
             raise ValueError(
                 f"mesh size must not exceed a feature: expected at most {2 * (b - a):.4g} (twice the shortest"
@@ -135,7 +136,7 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
         t = np.clip(np.einsum("ijk,ijk->ij", p[:, None] - a, s) / edge_length[i] ** 2, 0.0, 1.0)
         return h, np.linalg.norm(p[:, None] - a - t[..., None] * s, axis=2).min(1)
 
-    inner = _seeds(polygon, size_and_gap, float(edge_length.min()), tree)
+    inner = _seeds(polygon, size_and_gap, middle, edge_length, growth)
     for n in range(ROUNDS + 1):
         tri = _delaunay_inside(np.vstack([boundary, inner]), polygon)
         missing = _missing(edge, tri)
@@ -176,21 +177,25 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
     return mesh
 
 
-def _seeds(polygon: shapely.Polygon, size_and_gap, finest: float, tree: cKDTree) -> Array:  # type: ignore[no-untyped-def]
+def _seeds(
+    polygon: shapely.Polygon, size_and_gap: Callable[[Array], tuple[Array, Array]], middle: Array, length: Array,
+    growth: float,
+) -> Array:  # fmt: skip
+    """Lattice points of all bands, the finest first; ``middle`` (e, 2) and ``length`` (e,) of the boundary edges."""
     x0, y0, x1, y1 = polygon.bounds
     kept = np.empty((0, 2))
-    spacing = finest
+    finest = spacing = float(length.min())
     while spacing < max(x1 - x0, y1 - y0):
-        rows = np.arange(y0 + 0.5 * spacing, y1, spacing * np.sqrt(0.75))
-        cols = np.arange(x0 + 0.5 * spacing, x1, spacing)
-        if len(rows) * len(cols) > 4_000_000:
-            # a fine band on a large body: only lattice points near the boundary can belong to it
-            reach = BAND * spacing / 0.05
-            lattice = _near_lattice(tree, x0, y0, spacing, reach)
-        else:
-            lattice = np.stack(np.meshgrid(cols, rows), -1)
-            lattice[1::2, :, 0] += 0.5 * spacing
-            lattice = lattice.reshape(-1, 2)
+        # Only points near edges finer than this band belong to it: h = length + growth × distance < BAND × spacing
+        own = length < BAND * spacing
+        reach = ((BAND * spacing - length[own]) / growth)[:, None] if growth > 0 else np.inf
+        low = np.maximum((middle[own] - reach).min(0), [x0, y0])
+        high = np.minimum((middle[own] + reach).max(0), [x1, y1])
+        rows = np.arange(low[1] + 0.5 * spacing, high[1], spacing * np.sqrt(0.75))
+        cols = np.arange(low[0] + 0.5 * spacing, high[0], spacing)
+        lattice = np.stack(np.meshgrid(cols, rows), -1)
+        lattice[1::2, :, 0] += 0.5 * spacing
+        lattice = lattice.reshape(-1, 2)
         lattice = lattice[shapely.contains_xy(polygon, lattice[:, 0], lattice[:, 1])]
         if len(lattice):
             h, gap = size_and_gap(lattice)
@@ -202,17 +207,6 @@ def _seeds(polygon: shapely.Polygon, size_and_gap, finest: float, tree: cKDTree)
             kept = np.vstack([kept, lattice])
         spacing *= BAND
     return kept
-
-
-def _near_lattice(tree: cKDTree, x0: float, y0: float, spacing: float, reach: float) -> Array:
-    row = spacing * np.sqrt(0.75)
-    n = int(np.ceil(reach / spacing))
-    j, i = np.mgrid[-n : n + 1, -n : n + 1]
-    centre = np.round((tree.data - [x0 + 0.5 * spacing, y0 + 0.5 * spacing]) / [spacing, row]).astype(int)
-    cells = np.unique(np.column_stack([np.add.outer(centre[:, 0], i.ravel()).ravel(),
-                                       np.add.outer(centre[:, 1], j.ravel()).ravel()]), axis=0)  # fmt: skip
-    x = x0 + 0.5 * spacing + spacing * (cells[:, 0] + 0.5 * (cells[:, 1] % 2))
-    return np.column_stack([x, y0 + 0.5 * spacing + row * cells[:, 1]])
 
 
 def _delaunay_inside(points: Array, polygon: shapely.Polygon) -> NDArray[np.int64]:

@@ -78,7 +78,9 @@ def reduce(
         raise ValueError(f"modes must be at most {2 * len(mesh.points) - 6} for this mesh, got {modes}")
     if cache is None:
         return _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
-    digest = hashlib.sha256(repr((VERSION, material, tuple(contact_rings), hub, clamped, modes, flexible)).encode())
+    digest = hashlib.sha256(
+        repr((VERSION, material, tuple(contact_rings), hub, clamped, modes, flexible)).encode()
+    )
     for a in (mesh.points, mesh.triangles, *mesh.rings):
         digest.update(np.ascontiguousarray(a).tobytes())
     path = Path(cache) / f"{digest.hexdigest()[:32]}.npz"
@@ -191,7 +193,10 @@ def _reduce(
             square, vectors = spl.eigsh(scaled, k=modes, sigma=0.0, v0=start)
             phi[free], omega = vectors / root[:, None], square**0.5
     solver = spl.splu(
-        k[free][:, free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        k[free][:, free].tocsc(),
+        permc_spec="MMD_AT_PLUS_A",
+        diag_pivot_thresh=0.0,
+        options={"SymmetricMode": True},
     )
     where = np.full(n, -1)
     where[free] = np.arange(len(free))

@@ -27,7 +27,12 @@ Ints = NDArray[np.int64]
 
 # enter_*: the crossing where A enters B (edge and parameter on each body), leave_*: where it leaves
 REGION = np.dtype(
-    [(f"{end}_{body}{what}", t) for end in ("enter", "leave") for body in "ab" for what, t in (("", "i8"), ("_t", "f8"))]
+    [
+        (f"{end}_{body}{what}", t)
+        for end in ("enter", "leave")
+        for body in "ab"
+        for what, t in (("", "i8"), ("_t", "f8"))
+    ]
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
     + [("compliance", "f8"), ("x_chord", "f8"), ("y_chord", "f8")]
@@ -64,14 +69,18 @@ def _crossings(
                 jb = b.next[j]
                 rx, ry = wb.position[j, 0] - px, wb.position[j, 1] - py
                 sx, sy = wb.position[jb, 0] - px, wb.position[jb, 1] - py
-                o_r = dx * ry - dy * rx  # Eq. 1-3 as orientation tests: no division before a crossing is certain
+                o_r = (
+                    dx * ry - dy * rx
+                )  # Eq. 1-3 as orientation tests: no division before a crossing is certain
                 o_s = dx * sy - dy * sx
                 if (o_r >= 0.0) == (o_s >= 0.0):
                     continue
                 ex, ey = wb.position[jb, 0] - wb.position[j, 0], wb.position[jb, 1] - wb.position[j, 1]
                 # one formula for both ends, so that edges that share a vertex agree on its side to the last bit
                 o_p = ex * (py - wb.position[j, 1]) - ey * (px - wb.position[j, 0])
-                o_q = ex * (wa.position[ia, 1] - wb.position[j, 1]) - ey * (wa.position[ia, 0] - wb.position[j, 0])
+                o_q = ex * (wa.position[ia, 1] - wb.position[j, 1]) - ey * (
+                    wa.position[ia, 0] - wb.position[j, 0]
+                )
                 if (o_p >= 0.0) == (o_q >= 0.0):
                     continue
                 if count == len(out):

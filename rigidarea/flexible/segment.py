@@ -38,7 +38,9 @@ def contact(
     fx = fy = moment = stiff = 0.0
     for m in range(n_pairs + 1):
         leaf_a = s.pairs[m, 0] if m < n_pairs else -2
-        if leaf_a != last:  # pairs come grouped by the slave's leaf or not: a group is whatever is consecutive
+        if (
+            leaf_a != last
+        ):  # pairs come grouped by the slave's leaf or not: a group is whatever is consecutive
             if stiff > 0.0:
                 if count == len(s.regions):
                     return MANY

@@ -44,9 +44,13 @@ def test_regions_against_shapely(seed):
     shift = 1.8 * np.array([np.cos(t := rng.uniform(0, 6)), np.sin(t)])
     regions, _, _ = evaluate(ra, pose(5, -3, angle[0]), rb, pose(*(shift + [5, -3]), angle[1]))
     pa = affinity.translate(affinity.rotate(shapely.Polygon(ra[0], ra[1:]), angle[0], (0, 0), True), 5, -3)
-    pb = affinity.translate(affinity.rotate(shapely.Polygon(rb[0]), angle[1], (0, 0), True), *(shift + [5, -3]))
+    pb = affinity.translate(
+        affinity.rotate(shapely.Polygon(rb[0]), angle[1], (0, 0), True), *(shift + [5, -3])
+    )
     parts = sorted((g for g in shapely.get_parts(pa.intersection(pb)) if g.area > 0), key=lambda g: g.area)
-    assert [r["area"] for r in np.sort(regions, order="area")] == pytest.approx([g.area for g in parts], rel=1e-10)
+    assert [r["area"] for r in np.sort(regions, order="area")] == pytest.approx(
+        [g.area for g in parts], rel=1e-10
+    )
     for r, g in zip(np.sort(regions, order="area"), parts, strict=True):
         assert (r["x"], r["y"]) == pytest.approx(g.centroid.coords[0], abs=1e-9)
 

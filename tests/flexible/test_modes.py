@@ -56,8 +56,10 @@ def test_reduction_equals_dense_algebra(ring, modes):
 def test_hub_is_a_mean(ring):
     w = hub_rows(ring.points, ring.rings[1])
     rigid, centre, inertia = rigid_modes(ring.points, lumped_mass(ring, STEEL))
-    unit = rigid * np.array([1, 1, np.sqrt(inertia / lumped_mass(ring, STEEL).sum())]) * np.sqrt(
-        lumped_mass(ring, STEEL).sum()
+    unit = (
+        rigid
+        * np.array([1, 1, np.sqrt(inertia / lumped_mass(ring, STEEL).sum())])
+        * np.sqrt(lumped_mass(ring, STEEL).sum())
     )
     assert w.T @ unit == pytest.approx(np.eye(3), abs=1e-4)  # ring and bore share a centre to 1e-6 m
 

@@ -1,0 +1,228 @@
+"""Two cylinders pressed together (the paper's section 3.1, Fig. 4 and 5), and what it does not do: predict them.
+
+Calibrated, as in the paper: rigid discs overlap until their intersection is 2 a wide, k = F/A, q = 1/2, and the
+pressure comes from Alg. 3. Both readings of the paper's numbers are run: its Eq. 27–29 as written (R* = R/2,
+a = 0.6808 m) and the a = 0.97 m it prints (R* = R). "Nodes" are taken as boundary nodes of a disc.
+
+Predicted: elastic discs (plane strain), stiff contact, no calibration; half-width and peak come from a fit of
+p² = p₀² (1 − x²/a²) to the contact pressure. Hertz neglects tangential displacements, which at these loads
+(p₀/E = 4.7 %) narrow the contact by 2 %: the comparison uses his kinematics (``along`` in ``statics.solve``), the
+full kinematics stand beside it.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.cases import report
+from rigidarea.flexible import nodal
+from rigidarea.flexible.boundary import Boundary, build, workspace
+from rigidarea.flexible.element import Material
+from rigidarea.flexible.mesh import triangulate
+from rigidarea.flexible.modes import reduce
+from rigidarea.flexible.region import arcs
+from rigidarea.flexible.statics import solve
+
+Array = NDArray[np.float64]
+
+RADIUS, YOUNG, POISSON, FORCE = 8.0, 200.0, 0.3, 10.0
+MODULUS = YOUNG / (2 * (1 - POISSON**2))  # Eq. 28
+STIFF = 1e2 * MODULUS  # predicted: penetration p/k is 1/200 of the approach; 10 times more changes a by 0.1 %
+PAPER = {"p_max_pa": 6.59, "p_max_theory_pa": 6.61, "half_width_m": 0.97, "p_max_error_percent": 0.37}
+
+
+def half_width(radius: float) -> float:
+    """Eq. 29 for an equivalent radius R*."""
+    return float(np.sqrt(4 * FORCE * radius / (np.pi * MODULUS)))
+
+
+def calibrated(nodes: int, a: float) -> dict[str, Any]:
+    """The paper's benchmark for discs of ``nodes`` boundary nodes: pressures of its Alg. 3 and of the balanced one."""
+    t = 2 * np.pi * np.arange(nodes) / nodes
+    ring = RADIUS * np.column_stack([np.cos(t), np.sin(t)])
+    disc = build([ring])
+    wa, wb = workspace(disc), workspace(disc)
+    s = nodal.scratch(2 * nodes)
+    none = np.zeros(0)
+    # a node of each disc on the line of centres
+    pose_a = np.array([0.0, 0.0, 0.0, 1.0])
+    pose_b = np.array([0.0, 2 * np.sqrt(RADIUS**2 - a**2), 0.0, -1.0])
+    pairs = nodal.search(disc, pose_a, disc, pose_b, 0.0, s)
+    nodal.contact(disc, wa, pose_a, none, disc, wb, pose_b, none, pairs, 1, 1.0, 0.5, True, s)
+    region = s.regions[0].copy()
+    k = FORCE / region["area"]  # Eq. 33
+    n_a, n_b = arcs(disc, wa, pose_a, none, disc, wb, pose_b, none, region, 1, s.x, s.y, s.edge, s.t)
+    arc = np.column_stack([s.x[0, : n_a + 1], s.y[0, : n_a + 1]])
+    other = np.column_stack([s.x[1, : n_b + 1], s.y[1, : n_b + 1]])
+    normal, distance, tributary, weight = nodal.literal(arc, other, 0.5)
+    centroid = np.array([0.5 * region["chord"], 0.0])
+    # in the chord frame the force on A points to +y
+    normal_a = -normal * np.sign(normal[:, 1:2]) * -1.0
+    alpha = nodal.literal_alpha(normal_a, weight, arc[1:-1], centroid, np.array([0.0, k * region["area"]]))
+    inside = wa.pressure > 0
+    return {
+        "nodes": nodes,
+        "half_width_m": 0.5 * float(region["chord"]),
+        "force_n": k * float(region["area"]),
+        "x": arc[1:-1, 0] - 0.5 * region["chord"],
+        "pressure": alpha * np.sqrt(distance),
+        "x_balanced": wa.position[inside, 0],
+        "pressure_balanced": k * wa.pressure[inside],
+    }
+
+
+def graded_ring(fine: float, shift: float, top: bool) -> Array:
+    """A disc's boundary, spacing ``fine`` around the contact point (top or bottom) and coarser away from it."""
+    angle, step = [shift * fine / RADIUS], fine / RADIUS
+    while angle[-1] < 1.5 * half_width(0.5 * RADIUS) / RADIUS:
+        angle.append(angle[-1] + step)
+    while angle[-1] + 0.5 * step < np.pi - 0.5 * step:
+        step = min(step * 1.1, 0.12)
+        angle.append(angle[-1] + step)
+    half = np.array(angle[:-1])
+    t = np.concatenate([-half[:0:-1] if shift == 0 else -half[::-1], half]) + (0.5 if top else -0.5) * np.pi
+    return RADIUS * np.column_stack([np.cos(t), np.sin(t)])
+
+
+def discs(division: int, cache: Path | None = None) -> tuple[Boundary, Boundary, int]:
+    """Two elastic discs, a/division the node spacing in the contact, meshes not matching; and the nodes of one."""
+    bodies, nodes = [], 0
+    for shift, top in ((0.0, True), (0.5, False)):
+        ring = graded_ring(half_width(0.5 * RADIUS) / division, shift, top)
+        mesh = triangulate([ring], growth=0.12, max_size=1.0)
+        body = reduce(mesh, Material(YOUNG, POISSON, 1.0, 1.0, "strain"), cache=cache)
+        bodies.append(build([ring - body.centre], flexibility=body.flexibility))
+        nodes = len(mesh.points)
+    return bodies[0], bodies[1], nodes
+
+
+def predicted(division: int, full: bool = False, cache: Path | None = None) -> dict[str, Any]:
+    """Full FE statics under the force F; half-width and peak pressure against Hertz."""
+    a, b, nodes = discs(division, cache)
+    along = None if full else (0.0, 1.0)
+
+    def press(approach: float):  # type: ignore[no-untyped-def]
+        return solve(a, (0, 0, 0), b, (0, 2 * RADIUS - approach, 0), STIFF, along)
+
+    # secant on the approach; the force is smooth and nearly linear in it
+    d0, d1 = 0.17, 0.19
+    f0, s = press(d0).force[1] - FORCE, press(d1)
+    while abs(s.force[1] - FORCE) > 1e-6 * FORCE:
+        f1 = s.force[1] - FORCE
+        d0, d1, f0 = d1, d1 - f1 * (d1 - d0) / (f1 - f0), f1
+        s = press(d1)
+    theory = half_width(0.5 * RADIUS)
+    peak = 2 * FORCE / (np.pi * theory)
+    x, keep = s.position[:, 0], s.pressure > 0.3 * peak  # the rim of the contact is blurred by the mesh
+    slope, square = np.polyfit(x[keep] ** 2, s.pressure[keep] ** 2, 1, w=np.sqrt(s.weight[keep]))
+    width, top = np.sqrt(-square / slope), np.sqrt(square)
+    return {
+        "division": division, "nodes": nodes, "approach_m": d1, "half_width_m": float(width), "p_max_pa": float(top),
+        "half_width_error_percent": 100 * float(width / theory - 1), "p_max_error_percent": 100 * float(top / peak - 1),
+        "x": x, "pressure": s.pressure,
+    }  # fmt: skip
+
+
+def run(
+    out: Path | None = None, divisions: tuple[int, ...] = (8, 16, 32), cache: Path | None = None
+) -> dict[str, Any]:
+    """Both readings, calibrated and predicted; figures 4 and 5 redrawn into ``out``."""
+    clock = report.Clock()
+    counts = (250, 500, 1000, 2000, 5000, 10000)
+    readings: dict[str, Any] = {}
+    curves = {}
+    for name, radius in (("equations", 0.5 * RADIUS), ("printed", RADIUS)):
+        a = half_width(radius)
+        peak = 2 * FORCE / (np.pi * a)  # Eq. 31
+        rows = []
+        for n in counts:
+            c = curves[name, n] = calibrated(n, a)
+            rows.append({
+                "nodes": n, "element_m": 2 * RADIUS * np.sin(np.pi / n), "half_width_m": c["half_width_m"],
+                "force_n": c["force_n"], "p_max_pa": float(c["pressure_balanced"].max()),
+                "p_max_error_percent": 100 * abs(float(c["pressure_balanced"].max()) / peak - 1),
+                "p_max_pa_literal": float(c["pressure"].max()),
+                "p_max_error_percent_literal": 100 * abs(float(c["pressure"].max()) / peak - 1),
+            })  # fmt: skip
+        # circles are no parabolas: the error has a floor of order (a/R)², so orders are fitted to each one's own limit
+        order = {}
+        for kind in ("", "_literal"):
+            value = np.array([r["p_max_pa" + kind] for r in rows])
+            h = np.array([r["element_m"] for r in rows[:4]])
+            order["order" + kind] = float(np.polyfit(np.log(h), np.log(np.abs(value[:4] - value[-1])), 1)[0])
+        readings[name] = {"half_width_theory_m": a, "p_max_theory_pa": peak, "meshes": rows, **order}
+    clock.setup()
+    report.say("hertz: predicted, full FE statics")
+    studies = [predicted(d, cache=cache) for d in divisions]
+    full = predicted(divisions[min(1, len(divisions) - 1)], True, cache)
+    best = studies[-1]
+    at = readings["equations"]["meshes"][counts.index(5000)]
+    results = {
+        **{
+            key: at[key]
+            for key in (
+                "half_width_m",
+                "p_max_pa",
+                "p_max_error_percent",
+                "force_n",
+                "p_max_error_percent_literal",
+            )
+        },  # fmt: skip
+        "nodes": 5000,
+        "predicted_half_width_error_percent": best["half_width_error_percent"],
+        "predicted_p_max_error_percent": best["p_max_error_percent"],
+        "readings": readings,
+        "predicted": [{k: v for k, v in s.items() if k not in ("x", "pressure")} for s in studies],
+        "predicted_full_kinematics": {k: v for k, v in full.items() if k not in ("x", "pressure")},
+    }
+    if out is not None:
+        _figures(out, readings, curves, best)
+    settings = {"radius_m": RADIUS, "young_pa": YOUNG, "poisson": POISSON, "force_n": FORCE, "q": 0.5,
+                "stiffness_predicted_pa_per_m": STIFF, "divisions": list(divisions)}  # fmt: skip
+    return report.result("hertz", settings, results, PAPER, clock, 0.0)
+
+
+def _figures(out: Path, readings: dict[str, Any], curves: dict[Any, Any], best: dict[str, Any]) -> None:
+    fig, axes = report.figure(10, 4.2, 1, 2)
+    x = np.linspace(-1, 1, 400)
+    for ax, name in zip(axes, ("equations", "printed"), strict=True):
+        a, peak = readings[name]["half_width_theory_m"], readings[name]["p_max_theory_pa"]
+        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=report.BLUE, lw=2, label="Hertz")
+        for n, marker, colour in (
+            (500, "o", report.RED),
+            (1000, "s", report.GREEN),
+            (5000, ".", report.BLACK),
+        ):
+            c = curves[name, n]
+            ax.plot(
+                c["x"],
+                c["pressure"],
+                marker,
+                ms=4,
+                color=colour,
+                label=f"Alg. 3, {n} nodes",
+                fillstyle="none",
+            )
+        ax.set(xlabel="x (m)", ylabel="contact pressure (Pa)",
+               title={"equations": "R* = R/2, as Eq. 27 says", "printed": "R* = R, as the paper prints"}[name])  # fmt: skip
+        ax.legend(loc="lower center")
+    axes[0].plot(best["x"], best["pressure"], "-", color=report.ORANGE, lw=1, label="predicted, FE statics")
+    axes[0].legend(loc="lower center")
+    report.save(fig, out, "hertz_fig4")
+    fig, ax = report.figure()
+    for name, colour in (("equations", report.BLUE), ("printed", report.RED)):
+        rows = readings[name]["meshes"]
+        h = [r["element_m"] for r in rows]
+        ax.loglog(h, [r["p_max_error_percent_literal"] for r in rows], "o--", color=colour, fillstyle="none",
+                  label=f"Alg. 3 literally, a = {readings[name]['half_width_theory_m']:.3f} m,"
+                        f" order {readings[name]['order_literal']:.2f}")  # fmt: skip
+        ax.loglog(h, [r["p_max_error_percent"] for r in rows], "s-", color=colour,
+                  label=f"balanced, same a, order {readings[name]['order']:.2f}")  # fmt: skip
+    ax.axhline(0.37, color=report.BLACK, ls=":", label="the paper: 0.37 %")
+    ax.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
+    ax.legend()
+    report.save(fig, out, "hertz_fig5")
