@@ -14,10 +14,12 @@ import pymunk.batch
 from numba import config
 from pymunk._chipmunk_cffi import ffi, lib
 
+from . import hook as machine
 from . import stepping
 from .chipmunk import LayoutError, address_of, layout
 from .energy import stored_energy
 from .force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
+from .hook import pair_of_shapes
 from .outline import Outline, positive
 from .pair import FREE_PAIRS, end_pair, new_pair
 from .store import OFFSETS, Store, load_law
@@ -103,8 +105,6 @@ class AreaContact:
         self._hook = hook
         self._handler = space._handlers[handler_key]
         if self.compiled:
-            from . import hook as machine
-
             self._handler._handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", machine.pre_solve.address)
             self._handler._handler.separateFunc = ffi.cast("cpCollisionSeparateFunc", machine.separate.address)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
@@ -342,11 +342,8 @@ class AreaContact:
     # --- what machine code asks for ---
 
     def _serve(self, request: int, arbiter: pymunk.Arbiter) -> None:
-        from . import hook as machine
-
         if request == machine.NEW_SHAPE:
-            a, b = arbiter.shapes
-            for shape in (a, b):
+            for shape in pair_of_shapes(arbiter):
                 if shape._hashid not in self._shapes:
                     self._register(shape)
             self._store.sync()
@@ -381,8 +378,7 @@ class AreaContact:
             self._recall(arbiter)
             memory = address_of(arbiter._arbiter.data)
         if memory >> 32 != epoch:
-            a, b = (pymunk.Shape._from_cp_shape(p) for p in (arbiter._arbiter.a, arbiter._arbiter.b))
-            assert a is not None and b is not None
+            a, b = pair_of_shapes(arbiter)
             pair = int(new_pair(self._store.tables, a._hashid, b._hashid))
             memory = (epoch << 32) | pair
             arbiter._arbiter.data = ffi.cast("void *", memory)
@@ -418,8 +414,7 @@ class AreaContact:
             self._state["restoring"] = 0
             return
         shapes = list(self.space.shapes)
-        a, b = (pymunk.Shape._from_cp_shape(p) for p in (arbiter._arbiter.a, arbiter._arbiter.b))
-        assert a is not None and b is not None
+        a, b = pair_of_shapes(arbiter)
         found = self._memory.pop((shapes.index(a), shapes.index(b)), None)
         if found is None:
             return
@@ -466,8 +461,6 @@ class Hook:
         self.contact = contact
 
     def __call__(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
-        from . import hook as machine
-
         contact = self.contact
         try:
             if contact._space is not space:  # a copy, stepped for the first time

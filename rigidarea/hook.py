@@ -130,10 +130,15 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         return
     shape_a = _address(arbiter + s.arbiter_shape_a)
     shape_b = _address(arbiter + s.arbiter_shape_a + 8)
-    if _sensor(shape_a) or _sensor(shape_b):
-        return
     body_a = _address(arbiter + s.arbiter_body_a)
     body_b = _address(arbiter + s.arbiter_body_a + 8)
+    sign = 1.0
+    if _hash_id(shape_a) > _hash_id(shape_b):  # Chipmunk may exchange the two from step to step
+        shape_a, shape_b = shape_b, shape_a
+        body_a, body_b = body_b, body_a
+        sign = -1.0
+    if _sensor(shape_a) or _sensor(shape_b):
+        return
     a = _motion(s, body_a)
     b = _motion(s, body_b)
     if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
@@ -166,7 +171,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     given = _floats(arbiter + s.arbiter_surface, 2)
     va = _floats(shape_a + s.shape_surface_velocity, 2)
     vb = _floats(shape_b + s.shape_surface_velocity, 2)
-    vx, vy = surface_velocity(va[0], va[1], vb[0], vb[1], normal[0], normal[1], given[0], given[1])
+    vx, vy = surface_velocity(
+        va[0], va[1], vb[0], vb[1], normal[0], normal[1], sign * given[0], sign * given[1]
+    )
     surface = Surface(
         _floats(arbiter + s.arbiter_friction, 1)[0], _floats(arbiter + s.arbiter_elasticity, 1)[0], vx, vy
     )
@@ -220,6 +227,14 @@ def separate(arbiter: int, space: int, data: int) -> None:
 # --- the same in Python ---
 
 
+def pair_of_shapes(arbiter: Arbiter) -> tuple[pymunk.Shape, pymunk.Shape]:
+    """A and B: the shape that was added first is A. (Chipmunk may exchange the two from step to step.)"""
+    a = pymunk.Shape._from_cp_shape(arbiter._arbiter.a)
+    b = pymunk.Shape._from_cp_shape(arbiter._arbiter.b)
+    assert a is not None and b is not None
+    return (a, b) if a._hashid < b._hashid else (b, a)
+
+
 def _python_motion(body: pymunk.Body) -> Motion:
     dynamic = body.body_type == pymunk.Body.DYNAMIC
     x, y = body.local_to_world(body.center_of_gravity)
@@ -246,9 +261,8 @@ def python_pre_solve(
     Two differences: a force set through pymunk wakes a sleeping body, so bodies in contact never fall asleep; and
     it costs 30 times as much.
     """
-    shape_a, shape_b = arbiter._arbiter.a, arbiter._arbiter.b
-    a, b = pymunk.Shape._from_cp_shape(shape_a), pymunk.Shape._from_cp_shape(shape_b)
-    assert a is not None and b is not None and a.body is not None and b.body is not None
+    a, b = pair_of_shapes(arbiter)
+    assert a.body is not None and b.body is not None
     if not arbiter.process_collision or a.sensor or b.sensor:
         return
     if pymunk.Body.DYNAMIC not in (a.body.body_type, b.body.body_type):
@@ -259,10 +273,11 @@ def python_pre_solve(
     p = pair_of(arbiter)
     n = arbiter._arbiter.n
     given = arbiter._arbiter.surface_vr
+    sign = 1.0 if arbiter._arbiter.a == a._shape else -1.0
     surface = Surface(
         arbiter.friction,
         arbiter.restitution,
-        *surface_velocity(*a.surface_velocity, *b.surface_velocity, n.x, n.y, given.x, given.y),
+        *surface_velocity(*a.surface_velocity, *b.surface_velocity, n.x, n.y, sign * given.x, sign * given.y),
     )
     stamp = pymunk._chipmunk_cffi.lib.cpSpaceGetTimestamp(space._space)
     motion_a, motion_b = _python_motion(a.body), _python_motion(b.body)

@@ -57,6 +57,7 @@ class Work(NamedTuple):
     touched: Ints  # (n + 1,) contact points that carry load; [-1] their number
     node_load: Array  # (f, 2) force on an FE boundary node, body frame
     node_flag: NDArray[np.bool_]  # (f,) listed in ``loaded``
+    hub_load: Array  # (3,) force and moment on the hub, body frame
     loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
 
 
@@ -135,7 +136,7 @@ def workspace(b: Boundary) -> Work:
     n, f = len(b.points), (len(b.modes) - 3) // 2
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
-        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(f + 1, np.int64),
+        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3), np.zeros(f + 1, np.int64),
     )  # fmt: skip
 
 
@@ -154,6 +155,9 @@ def node_displacement(b: Boundary, w: Work, modal: Array, node: int, stamp: int)
             fx, fy = w.node_load[j, 0], w.node_load[j, 1]
             ux += b.flexibility[2 * node, 2 * j] * fx + b.flexibility[2 * node, 2 * j + 1] * fy
             uy += b.flexibility[2 * node + 1, 2 * j] * fx + b.flexibility[2 * node + 1, 2 * j + 1] * fy
+        for k in range(3):
+            ux += b.flexibility[2 * node, k - 3] * w.hub_load[k]
+            uy += b.flexibility[2 * node + 1, k - 3] * w.hub_load[k]
     w.displacement[node, 0] = ux
     w.displacement[node, 1] = uy
     w.displacement_stamp[node] = stamp

@@ -32,9 +32,10 @@ X, Y, ANGLE, VX, VY, OMEGA = range(6)
 
 @dataclass(frozen=True)
 class Circle:
-    """A disc about the body's origin; `radius` (length)."""
+    """A disc; `radius` (length), `center` in the body's coordinates (length)."""
 
     radius: float
+    center: tuple[float, float] = (0.0, 0.0)
 
 
 @dataclass(frozen=True)

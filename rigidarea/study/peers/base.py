@@ -71,6 +71,11 @@ def record(run: Run, scene: Scene) -> Trace:
 
 def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
     """The knob `sampling` (chord tolerance over body size) for scenes with curves that have to be sampled."""
-    if "curved" not in scene.tags and "gears" not in scene.tags:
+    values: tuple[float, ...]
+    if "gears" in scene.tags:
+        values = (1e-2, 1e-3) if quick else (1e-2, 1e-3, 1e-4)
+    elif "curved" in scene.tags:
+        values = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5)
+    else:
         return [{}]
-    return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
+    return [{"sampling": value} for value in values]

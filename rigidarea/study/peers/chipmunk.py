@@ -33,7 +33,7 @@ def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymun
     shapes: list[pymunk.Shape] = []
     for shape in body.shapes:
         if isinstance(shape, Circle):
-            shapes.append(pymunk.Circle(made, shape.radius))
+            shapes.append(pymunk.Circle(made, shape.radius, shape.center))
         elif isinstance(shape, Polygon):
             shapes.append(pymunk.Poly(made, shape.points))
         elif shape.convex:

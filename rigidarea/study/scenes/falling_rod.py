@@ -52,7 +52,7 @@ def scene() -> Scene:
         name="falling_rod",
         title="rod falling on a smooth floor",
         bodies=(floor(), rod),
-        duration=0.55,
+        duration=0.5,
         error_name="angle, relative",
         error=error,
         source="energy with y = h sin θ: (I + m h² cos² θ) θ'² = 2 m g h (sin θ₀ − sin θ)",
