@@ -1,0 +1,87 @@
+"""Each peer's set-up, checked by scenes that this peer is known to do well.
+
+A wrong sign, unit, mass or friction would show as an error of order one; the bounds are three times what the
+engine did when this was written, with the settings given.
+"""
+
+import numpy as np
+import pytest
+
+from rigidarea.study.peers import drive, get_peer, peers, record
+from rigidarea.study.scene import get_scene, scenes
+
+PYMUNK = {"steps": 16, "iterations": 40, "slop": 1e-3, "sampling": 1e-3}
+BOX2D = {"steps": 16, "substeps": 4, "stiff": True, "length": 10, "sampling": 1e-3}
+
+# scene: bounds for pymunk, box2d
+KNOWN = {
+    "rest": (1e-4, 1e-5),
+    "cradle": (
+        1e-12,
+        1e-5,
+    ),  # elastic impacts one by one are what impulses do exactly (single precision: 1e-6)
+    "off_centre_hit": (1e-12, 1e-5),  # mass, moment and arm
+    "conveyor": (1e-3, 5e-4),  # sign of the belt
+    "incline_slide": (2e-3, 5e-4),  # friction
+    "v_groove_spin": (1e-5, 3e-3),  # friction on terrain, spin, moment
+    "wedge": (4e-3, 2e-3),  # masses
+    "rocking": (8e-3, 1e-3),  # angle at the start
+    "geneva": (5e-3, 5e-3),  # pivot, kinematic body, off-centre circle, convex pieces
+    "bowl_roll": (0.2, 0.2),  # terrain; sampling limits both
+}
+
+
+@pytest.mark.parametrize("peer,settings,column", [("pymunk", PYMUNK, 0), ("box2d", BOX2D, 1)])
+@pytest.mark.parametrize("name", list(KNOWN))
+def test_known_scenes(peer, settings, column, name):
+    """The engine does this scene as well as it can."""
+    if get_peer(peer).refuses(get_scene(name)):
+        pytest.skip("not installed")
+    scene = get_scene(name)
+    assert scene.measure(record(get_peer(peer).build(scene, settings), scene)) < KNOWN[name][column]
+
+
+@pytest.mark.parametrize("peer", list(peers()))
+def test_build_starts_as_described(peer):
+    """Before the first step every body is where the scene says, in its units."""
+    for scene in scenes().values():
+        engine = get_peer(peer)
+        if engine.refuses(scene):
+            continue
+        settings = engine.settings(scene, quick=True)[0]
+        state = engine.build(scene, settings).state()
+        wanted = np.array([(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in scene.bodies])
+        off = state - wanted
+        off[:, 2] = np.arctan2(np.sin(off[:, 2]), np.cos(off[:, 2]))
+        assert np.abs(off).max() < 1e-5 * (1 + np.abs(wanted).max()), scene.name  # single precision
+
+
+@pytest.mark.parametrize("peer", list(peers()))
+def test_same_run_twice(peer):
+    """Same settings, same bits; and one call for many frames is the same as many calls."""
+    scene = get_scene("oblique_bounce")
+    engine = get_peer(peer)
+    settings = engine.settings(scene, quick=True)[0]
+    first, second = (record(engine.build(scene, settings), scene).states for _ in range(2))
+    assert np.array_equal(first, second)
+    run = engine.build(scene, settings)
+    run.advance(scene.frames)
+    assert np.array_equal(run.state(), first[-1])
+
+
+@pytest.mark.parametrize("peer", list(peers()))
+def test_settings_are_plain_and_different(peer):
+    """Settings can be written down, and none is run twice."""
+    import json
+
+    for scene in scenes().values():
+        for quick in (True, False):
+            texts = [json.dumps(dict(s), sort_keys=True) for s in get_peer(peer).settings(scene, quick)]
+            assert len(texts) == len(set(texts)) > 0
+
+
+def test_drive_calls_in_c():
+    """`drive` calls as often as asked, with the arguments given."""
+    calls = []
+    drive(lambda *arguments: calls.append(arguments), 3, 1, "a")
+    assert calls == [(1, "a")] * 3

@@ -1,0 +1,323 @@
+"""Every exact answer of the study's scenes against an independent formula, quadrature or solver."""
+
+import math
+
+import numpy as np
+import pytest
+from scipy.integrate import quad, solve_ivp
+
+from rigidarea.study.scene import G, Trace, scenes
+from rigidarea.study.scenes import (
+    bowl_roll,
+    bowl_slide,
+    dome,
+    falling_rod,
+    gears,
+    geneva,
+    incline_up,
+    journal_bounce,
+    ladder,
+    loop,
+    mass_chain,
+    oblique_bounce,
+    oblique_discs,
+    off_centre_hit,
+    overhang,
+    ring_on_peg,
+    rocking,
+    slip_to_roll,
+    tipping,
+    v_groove_spin,
+    wedge,
+)
+from rigidarea.study.scenes.bounce import flight
+
+
+def still(scene):
+    """A trace in which nothing moves."""
+    times = scene.frame * np.arange(scene.frames + 1)
+    start = [(*b.position, b.angle, 0.0, 0.0, 0.0) for b in scene.bodies]
+    states = np.repeat(np.array(start)[None], len(times), axis=0)
+    return Trace(tuple(body.name for body in scene.bodies), times, states)
+
+
+@pytest.mark.parametrize("name", list(scenes()))
+def test_scene_is_consistent(name):
+    """Names, frames, inertia; a trace that stands still gives a finite error, one with a NaN an infinite
+    one.
+    """
+    scene = scenes()[name]
+    assert scene.name == name
+    assert scene.frames > 0
+    assert len({body.name for body in scene.bodies}) == len(scene.bodies)
+    for body in scene.bodies:
+        if body.kind == "dynamic":
+            assert body.mass > 0
+            assert body.moment > 0
+    assert {pivot.body for pivot in scene.pivots} <= {body.name for body in scene.bodies}
+    trace = still(scene)
+    assert math.isfinite(scene.measure(trace))
+    trace.states[-1, -1, 0] = math.nan
+    assert scene.measure(trace) == math.inf
+
+
+def test_errors_see_motion():
+    """Standing still is right where it should be, and wrong where something should move."""
+    for scene in scenes().values():
+        error = scene.measure(still(scene))
+        right = "rest" in scene.tags or scene.name == "superball"  # whose measure is energy
+        assert (error < 1e-12) == right, scene.name
+
+
+def test_bounce_flight_times():
+    """The flights join: each lasts 2 v/g with v = e^n sqrt(2 g h)."""
+    v = math.sqrt(2 * G * 1.0)
+    for n in (1, 2, 3):
+        start, stop = flight(n)
+        assert stop - start == pytest.approx(2 * 0.7**n * v / G, rel=1e-12)
+        assert flight(n + 1)[0] == pytest.approx(stop, rel=1e-12)
+
+
+def test_oblique_bounce_by_momentum_balance():
+    """Angular momentum about the point of contact is kept: friction and normal force pass through it."""
+    vx, vy, omega = oblique_bounce.after()
+    r = oblique_bounce.RADIUS
+    before = -r * oblique_bounce.V_T  # z of r × m v with r = (0, r), per unit mass
+    after = -r * vx + r**2 / 2 * omega
+    assert after == pytest.approx(before, rel=1e-12)
+    assert vy == pytest.approx(oblique_bounce.E * oblique_bounce.V_N)
+    assert vx + r * omega > 0  # the contact point still slides forwards, as the derivation assumes
+
+
+def test_incline_up_by_energy():
+    """m v²/2 = (m g sin θ + μ m g cos θ) d, and it stays because tan θ < μ."""
+    d = incline_up.position(np.array([100.0]))[0]
+    theta, mu = incline_up.THETA, incline_up.MU
+    assert incline_up.V**2 / 2 == pytest.approx(G * (math.sin(theta) + mu * math.cos(theta)) * d, rel=1e-12)
+    assert math.tan(theta) < mu
+
+
+def test_slip_to_roll_keeps_angular_momentum():
+    """About a point of the floor: v + r ω/2 is constant (Coriolis), at every time."""
+    t = np.linspace(0, 2, 41)
+    x, rim = slip_to_roll.motion(t)
+    v = np.gradient(x, t)[1:-1]
+    # central differences of a piecewise quadratic are exact but at the kink
+    off = np.abs(v + rim[1:-1] / 2 - slip_to_roll.V)
+    assert np.sum(off > 1e-9) <= 2
+    assert rim[-1] == pytest.approx(2 / 3 * slip_to_roll.V)
+
+
+def test_tipping_by_energy():
+    """φ'²/2 = p² (cos(θ − α) − cos(φ + θ − α)); time by quadrature."""
+    end = float(tipping.rotation(np.array([0.0, tipping.DURATION]))[-1])
+    lean = tipping.THETA - tipping.ALPHA
+
+    # φ = u² takes the root singularity out; near 0 the difference of cosines is u² sin(lean)
+    def integrand(u):
+        drop = 2 * math.sin(lean + u * u / 2) * math.sin(u * u / 2)
+        return (
+            2 * u / math.sqrt(2 * tipping.P2 * drop) if u else 2 / math.sqrt(2 * tipping.P2 * math.sin(lean))
+        )
+
+    assert quad(integrand, 0, math.sqrt(end), epsabs=1e-12)[0] == pytest.approx(tipping.DURATION, rel=1e-9)
+
+
+def test_rocking_quarter_period():
+    """Quadrature, differential equation and, for small slender blocks, Housner's formula agree."""
+    quarter = rocking.quarter()
+    assert rocking.tilt_at(np.array([0.0, quarter]))[-1] == pytest.approx(0.0, abs=1e-10)
+    # sin x = x (1 − x²/6): Housner's small angles cost α²/6 = 0.6 % at most
+    assert quarter == pytest.approx(rocking.housner_quarter(), rel=rocking.ALPHA**2 / 6)
+
+
+@pytest.mark.parametrize(
+    "length,amplitude", [(bowl_slide.RHO, bowl_slide.START), (1.5 * bowl_slide.RHO, 0.7)]
+)
+def test_pendulum(length, amplitude):
+    """Jacobi's functions against the differential equation; the period against quadrature."""
+    period = bowl_slide.period(length, amplitude)
+    t = np.linspace(0, period, 17)
+    found = solve_ivp(
+        lambda _, y: (y[1], -G / length * math.sin(y[0])),
+        (0, period),
+        (amplitude, 0),
+        t_eval=t,
+        rtol=1e-11,
+        atol=1e-11,
+    )
+    assert bowl_slide.swing(t, length, amplitude) == pytest.approx(found.y[0], abs=1e-8)
+    k = math.sin(amplitude / 2)
+    integral = quad(lambda s: 1 / math.sqrt(1 - (k * math.sin(s)) ** 2), 0, math.pi / 2)[0]
+    assert period == pytest.approx(4 * math.sqrt(length / G) * integral, rel=1e-12)
+
+
+def test_rolling_pendulums_by_energy():
+    """The bowl's 3/2 and the ring's 1 + I/(m R²) are kinetic energies of rolling, per unit mass and speed."""
+    rho, speed = bowl_roll.RHO, 1.0
+    spin = speed / bowl_slide.RADIUS  # rolling: the disc's rim speed equals that of its centre
+    inertia = bowl_slide.RADIUS**2 / 2
+    assert (speed**2 + inertia * spin**2) / speed**2 * rho == pytest.approx(1.5 * rho)
+    spin = speed / ring_on_peg.INNER  # the ring turns about the contact at its inner radius
+    energy = speed**2 + ring_on_peg.GYRATION2 * spin**2
+    assert energy * ring_on_peg.RHO == pytest.approx(ring_on_peg.LENGTH)
+
+
+def test_journal_bounce():
+    """Starts at the drop, touches after half a period, and bouncing on the axis is stable."""
+    low = journal_bounce.height(np.array([0.0, journal_bounce.PERIOD / 2, journal_bounce.PERIOD]))
+    c, h = journal_bounce.CLEARANCE, journal_bounce.DROP
+    assert low == pytest.approx([h - c, -c, h - c], abs=1e-12)
+    assert abs(2 - 8 * h / c) < 2
+
+
+def test_loop_and_dome_leave_where_the_wall_stops_pushing():
+    """Energy at the moment of leaving, and N = 0 there; afterwards free fall."""
+    # height of the start over the path's centre; whether the disc is inside the circle; kinetic energy at
+    # first
+    cases = ((loop, -loop.RHO, True, loop.SPEED**2 / 2), (dome, dome.RHO * math.cos(dome.START), False, 0.0))
+    for module, height, inside, energy in cases:
+        t = np.linspace(0, module.scene().duration, 2001)
+        place, left = module.motion(t)
+        rho = module.RHO
+        y = float(np.interp(left, t, place[:, 1]))
+        v2 = 2 * (energy + G * (height - y))
+        # N = 0: the weight alone bends the path, v²/ρ = g |y|/ρ; linear interpolation between times costs
+        # 1e-5
+        assert v2 / rho == pytest.approx(G * y / rho, rel=1e-4)
+        assert np.hypot(*place[t <= left].T) == pytest.approx(rho, rel=1e-9)
+        flying = place[t > left + 1e-3]
+        second = np.diff(flying, 2, axis=0) / (t[1] - t[0]) ** 2
+        # differences of numbers near 1 over (4e-4)²: 1e-9 of rounding each
+        assert second == pytest.approx(np.tile((0.0, -G), (len(second), 1)), abs=1e-6)
+        assert np.all((np.hypot(*flying.T) < rho) == inside)
+
+
+def test_loop_lands_after_the_scene_ends():
+    """The parabola is inside the circle until the end of the scene."""
+    scene = loop.scene()
+    place, _ = loop.motion(np.array([scene.duration]))
+    assert np.hypot(*place[0]) < loop.RHO
+
+
+def test_v_groove_normal_forces():
+    """The three balances written out as vectors, solved numerically."""
+    phi, mu = v_groove_spin.PHI, v_groove_spin.MU
+    normals = np.array([(math.sin(phi), math.cos(phi)), (-math.sin(phi), math.cos(phi))])
+    # the surface moves with ω × (−r n) = −r ω (−n_y, n_x); friction is against it
+    friction = mu * np.column_stack((-normals[:, 1], normals[:, 0]))
+    forces = np.linalg.solve((normals + friction).T, (0.0, G))
+    assert v_groove_spin.normal_forces() == pytest.approx(forces, rel=1e-12)
+    # torque Σ (−r n) × friction
+    torque = sum(
+        -v_groove_spin.RADIUS * (n[0] * f[1] - n[1] * f[0]) * force
+        for n, f, force in zip(normals, friction, forces)
+    )
+    inertia = v_groove_spin.RADIUS**2 / 2
+    assert torque / inertia == pytest.approx(-v_groove_spin.deceleration(), rel=1e-12)
+    assert v_groove_spin.SPIN > v_groove_spin.deceleration() * v_groove_spin.scene().duration
+
+
+def test_wedge_by_newton():
+    """Unknowns: wedge's acceleration, block's relative one, the force between them."""
+    s, c = math.sin(wedge.SLOPE), math.cos(wedge.SLOPE)
+    m, big = wedge.M_BLOCK, wedge.M_WEDGE
+    # block: m (−A + a c) = N s; m (−a s) = N c − m g; wedge: −M A = −N s
+    matrix = np.array([(-m, m * c, -s), (0, -m * s, -c), (-big, 0, s)])
+    found = np.linalg.solve(matrix, (0, -m * G, 0))
+    assert wedge.accelerations() == pytest.approx(found[:2], rel=1e-12)
+    # and the block stays on the wedge until the end of the scene
+    path = found[1] * wedge.scene().duration ** 2 / 2
+    assert 0.8 + path + wedge.SIDE / 2 < wedge.LENGTH / c
+
+
+def test_ladder():
+    """Leaving time by quadrature and by the differential equation; the wall's force vanishes there."""
+    time = ladder.leaving_time()
+    t = np.array([0.0, time - 1e-4, time, time + 1e-4])
+    theta = ladder.angle_at(t)
+    assert theta[2] == pytest.approx(ladder.leaving_angle(), abs=1e-9)
+    x = np.cos(theta[1:])
+    # the wall pushes with m x''; second difference of step 1e-4 with angles to 1e-12: good to 1e-3
+    assert (x[0] - 2 * x[1] + x[2]) / 1e-8 == pytest.approx(0.0, abs=5e-3)
+    h, thick = ladder.LENGTH / 2, ladder.THICK / 2
+    second = quad(lambda y: (1 - abs(y)) * y * y, -1, 1)[
+        0
+    ]  # of a rhombus about a diagonal, per area and height²
+    assert ladder.moment(1.0) == pytest.approx(second * (h**2 + thick**2), rel=1e-9)
+
+
+def test_falling_rod_by_energy():
+    """Kinetic plus potential energy is constant along the solution."""
+    t = np.linspace(0, falling_rod.scene().duration, 2001)
+    theta = falling_rod.angle_at(t)
+    rate = np.gradient(theta, t)
+    energy = (ladder.moment(1.0) + np.cos(theta) ** 2) * rate**2 / 2 + G * np.sin(theta)
+    assert energy[5:-5] == pytest.approx(np.full(1991, energy[0]), rel=1e-5)  # second-order differences
+    # the tip, not the flat side, touches: the sides lean atan(thickness/length) from the axis
+    assert theta[-1] > math.atan(ladder.THICK / ladder.LENGTH)
+
+
+def test_impacts_keep_momentum():
+    """Linear (and angular) momentum, and the asked coefficient of restitution."""
+    velocities = oblique_discs.after()
+    assert velocities.sum(axis=0) == pytest.approx([oblique_discs.V, 0.0], abs=1e-12)
+    normal = np.array((math.cos(oblique_discs.SLANT), math.sin(oblique_discs.SLANT)))
+    separation = (velocities[1] - velocities[0]) @ normal
+    assert separation == pytest.approx(oblique_discs.E * oblique_discs.V * normal[0])
+
+    j = off_centre_hit.impulse()
+    disc, bar, omega = -3.0 + j, -j / 2, -0.6 * j / off_centre_hit.I_BAR
+    assert disc - (bar + 0.6 * omega) == pytest.approx(off_centre_hit.E * 3.0)
+
+    speeds, masses = mass_chain.after(), np.array(mass_chain.MASSES)
+    assert masses @ speeds == pytest.approx(mass_chain.V)
+    assert masses @ speeds**2 == pytest.approx(mass_chain.V**2)
+    assert np.all(np.diff(speeds) > 0)  # none catches the next one up
+
+
+def test_overhang_is_stable():
+    """The centre of mass of everything above each edge is inside it, by a tenth of what the limit allows."""
+    centres = overhang.centres()
+    half = overhang.LENGTH / 2
+    edges = np.concatenate(([0.0], centres[:-1] + half))
+    for i, edge in enumerate(edges):
+        inside = edge - centres[i:].mean()
+        assert inside > 0
+        assert inside == pytest.approx(0.1 * half / (len(centres) - i), abs=0.1 * half)
+
+
+def test_geneva_angle():
+    """The scene's formula against the geometry: the pin lies on the slot's centre line."""
+    parts = geneva.drive()
+    crank = np.linspace(-parts.entry_angle - 0.2, parts.entry_angle + 0.2, 41)
+    moved = geneva.wheel_angle(crank)
+    start = parts.wheel_angle(float(crank[0]))
+    assert start + moved == pytest.approx([parts.wheel_angle(float(c)) for c in crank], abs=1e-12)
+    for c, angle in zip(crank, start + moved):
+        if abs(c) < parts.entry_angle:
+            pin = parts.crank_radius * np.array((math.cos(c), math.sin(c))) - (geneva.CENTRES, 0.0)
+            assert math.atan2(pin[1], pin[0]) == pytest.approx(math.remainder(angle, 2 * math.pi), abs=1e-9)
+
+
+def test_gears_start_touching():
+    """At the start the exact flanks of the scene touch and do not overlap."""
+    import shapely
+    from shapely.affinity import rotate, translate
+
+    scene = gears.scene()
+    driver, driven = (shapely.Polygon(body.shapes[0].rings(1e-6)[0]) for body in scene.bodies)
+    body = scene.bodies[1]
+
+    def placed(more):
+        return translate(rotate(driven, body.angle + more, (0, 0), use_radians=True), *body.position)
+
+    # Facets of 1e-6 m: overlap of a film of a few of them at most; a hundredth of the backlash more and it
+    # cuts.
+    film = driver.intersection(placed(0.0)).area
+    play = gears.BACKLASH * gears.MODULE
+    assert film < 1e-6 * 0.2
+    pressed = driver.intersection(placed(0.05 * play / gears.RADII[1])).area
+    apart = driver.intersection(placed(-0.05 * play / gears.RADII[1])).area
+    assert apart == 0.0 or pressed == 0.0
+    assert max(apart, pressed) > 3 * film
