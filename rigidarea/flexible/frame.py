@@ -1,0 +1,50 @@
+"""Planar floating frame of reference (FFRF) with lumped masses and free-free modes.
+
+A. A. Shabana, Dynamics of Multibody Systems, 5th ed., chapter 5. A node is at r = R + A(θ)(x + Φ q), so
+ṙ = Ṙ + A(J (x + Φ q) θ̇ + Φ q̇), J the quarter turn. Free-free modes about the centre of mass have no linear and
+no angular momentum at rest, which leaves of LᵀML
+
+    M_RR = m I,  M_θθ = J₀ + 2 hᵀq + qᵀq,  M_θq = (G q)ᵀ,  M_qq = I,  M_Rθ = 0,  M_Rq = 0
+
+and of −LᵀML̇ the quadratic velocity forces Q_θ = −2 θ̇ (h + q)ᵀq̇, Q_q = θ̇² (h + q) − 2 θ̇ G q̇. (M_Rθ and M_Rq are zero
+because the modes have no net momentum in any orientation.)
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+
+@njit(cache=True)
+def inertia_forces(
+    j0: float, h: Array, g: Array, q: Array, dq: Array, ddq: Array, omega: float, alpha: float, out: Array
+) -> float:
+    """M q̈ − Q_v of one body: returns the row of θ (a moment), writes the modal rows (m,) to ``out``.
+
+    j0: moment of inertia of the undeformed body; h, g: ``stretch`` and ``coupling`` of ``modes.Reduced``; omega, alpha:
+    angular velocity and acceleration of the frame. The rows of R are m R̈.
+    """
+    m = len(q)
+    if m == 0:
+        return j0 * alpha
+    moment = 0.0
+    j = j0
+    for i in range(m):
+        gq = gd = 0.0
+        for k in range(m):
+            gq += g[i, k] * q[k]
+            gd += g[i, k] * dq[k]
+        j += 2.0 * h[i] * q[i] + q[i] * q[i]
+        moment += gq * ddq[i] + 2.0 * omega * (h[i] + q[i]) * dq[i]
+        out[i] = gq * alpha + ddq[i] - omega * omega * (h[i] + q[i]) + 2.0 * omega * gd
+    return moment + j * alpha
+
+
+def kinetic_energy(mass: float, j0: float, h: Array, g: Array, v: Array, omega: float, q: Array, dq: Array) -> float:
+    """½ q̇ᵀ M q̇ of one body, v (2,) the velocity of the frame's origin."""
+    j = j0 + 2 * h @ q + q @ q
+    return float(0.5 * mass * (v @ v) + 0.5 * j * omega**2 + omega * (g @ q) @ dq + 0.5 * dq @ dq)

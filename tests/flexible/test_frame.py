@@ -1,0 +1,45 @@
+"""FFRF terms against brute force: LᵀML and LᵀML̇q̇ from the nodal masses."""
+
+import numpy as np
+import pytest
+
+from rigidarea.flexible.element import Material, lumped_mass, stiffness
+from rigidarea.flexible.frame import inertia_forces, kinetic_energy
+from rigidarea.flexible.mesh import triangulate
+from rigidarea.flexible.modes import free_modes, reduce, rigid_modes
+
+
+def test_against_brute_force():
+    rng = np.random.default_rng(1)
+    t = 2 * np.pi * np.arange(14) / 14
+    mesh = triangulate([np.column_stack([(1 + 0.3 * np.cos(2 * t)) * np.cos(t), 0.7 * np.sin(t) + 0.1 * np.cos(3 * t)])])
+    mat = Material(10.0, 0.3, 2.0)
+    mass = lumped_mass(mesh, mat)
+    rigid, centre, inertia = rigid_modes(mesh.points, mass)
+    phi, _ = free_modes(stiffness(mesh, mat), mass, rigid, 5)
+    body = reduce(mesh, mat, modes=5)
+    assert body.inertia == pytest.approx(inertia)
+    x, m2, turn = (mesh.points - centre).ravel(), np.repeat(mass, 2), np.array([[0.0, -1.0], [1.0, 0.0]])
+
+    def rotate(matrix, vectors):
+        return np.einsum("ij,nj...->ni...", matrix, vectors.reshape(-1, 2, *vectors.shape[1:])).reshape(vectors.shape)
+
+    theta, omega, alpha = 0.7, 1.3, -0.4
+    q, dq, ddq = 0.2 * rng.standard_normal((3, 5))
+    a = np.array([[np.cos(theta), -np.sin(theta)], [np.sin(theta), np.cos(theta)]])
+    u = x + phi @ q
+    columns = [np.tile([1.0, 0.0], len(mass)), np.tile([0.0, 1.0], len(mass)), rotate(a @ turn, u)]
+    jacobian = np.column_stack([*columns, rotate(a, phi)])  # L
+    # L̇ q̇: what is left of the acceleration at q̈ = 0
+    rest = rotate(-a, u) * omega**2 + 2 * rotate(a @ turn, phi @ dq) * omega
+    acceleration = np.concatenate([[0.3, -0.2, alpha], ddq])
+    exact = jacobian.T @ (m2 * (jacobian @ acceleration + rest))
+    out = np.zeros(5)
+    moment = inertia_forces(body.inertia, body.stretch, body.coupling, q, dq, ddq, omega, alpha, out)
+    assert exact[:2] == pytest.approx(body.mass * acceleration[:2], rel=1e-10)
+    assert moment == pytest.approx(exact[2], rel=1e-10)
+    assert out == pytest.approx(exact[3:], rel=1e-9)
+    velocity = np.concatenate([[0.5, 0.1, omega], dq])
+    energy = 0.5 * m2 @ (jacobian @ velocity) ** 2
+    ours = kinetic_energy(body.mass, body.inertia, body.stretch, body.coupling, velocity[:2], omega, q, dq)
+    assert ours == pytest.approx(energy, rel=1e-12)
