@@ -1,0 +1,137 @@
+"""rigidarea itself: the rigid level, with equal steps and with its own choice of steps."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pymunk
+
+import rigidarea
+
+from ..scene import Body, Circle, Polygon, Scene
+from .base import Run, Settings, drive, samplings
+from .chipmunk import SpaceRun, add_pivots, make_body, surface
+
+
+def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[pymunk.Shape]:
+    """Shapes for area contact: outlines as they are, concave or holed. tolerance None: the library's own."""
+    shapes: list[pymunk.Shape] = []
+    for shape in body.shapes:
+        if isinstance(shape, Circle):
+            circle = pymunk.Circle(made, shape.radius, shape.center)
+            if tolerance is not None:
+                circle.outline = rigidarea.Outline.from_pymunk(circle, tolerance)  # type: ignore[attr-defined]
+            shapes.append(circle)
+        elif isinstance(shape, Polygon):
+            shapes.append(pymunk.Poly(made, shape.points))
+        else:
+            outer, holes = shape.rings(1e-3 if tolerance is None else tolerance)
+            shapes.append(rigidarea.Outline(outer, holes).add_to(made))
+    return shapes
+
+
+def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pymunk.Body], Any]:
+    """A space with the scene's bodies and area contact attached: (space, bodies, contact).
+
+    Settings: `stiffness` in multiples of the scene's pressure (none: the library chooses); `sampling` of
+    curves over the body size; `phase`; any other setting goes to `rigidarea.attach`.
+    """
+    space = pymunk.Space()
+    space.gravity = scene.gravity
+    sampling = settings.get("sampling")
+    made: dict[str, pymunk.Body] = {}
+    for body in scene.bodies:
+        made[body.name] = make_body(body)
+        shapes = area_shapes(body, made[body.name], None if sampling is None else sampling * scene.size)
+        for shape in shapes:
+            surface(shape, scene, body)
+        space.add(made[body.name], *shapes)
+    add_pivots(scene, space, made)
+    more = {k: v for k, v in settings.items() if k not in ("stiffness", "sampling", "phase", "steps")}
+    stiffness = settings.get("stiffness")
+    contact = rigidarea.attach(space, None if stiffness is None else stiffness * scene.pressure, **more)
+    if "phase" in settings:
+        contact.phase = settings["phase"]
+    contact.max_steps = 10**6
+    return space, list(made.values()), contact
+
+
+class FrameRun(SpaceRun):
+    """Frames as a user asks for them: `contact.step(1/60)` from Python."""
+
+    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
+        super().__init__(scene, space, bodies, contact.steps(scene.frame))
+        self.contact, self.frame = contact, scene.frame
+
+    def advance(self, frames: int) -> None:
+        """Frames of the scene's length; a contact that fails leaves states that are not finite."""
+        try:
+            drive(self.contact.step, frames, self.frame)
+        except rigidarea.SimulationError:
+            for body in self.bodies:
+                body.position = (math.nan, math.nan)
+
+
+class StepRun(SpaceRun):
+    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
+
+    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
+        super().__init__(scene, space, bodies, contact.steps(scene.frame))
+        self.contact = contact
+
+
+def _curved(scene: Scene) -> bool:
+    return any(not isinstance(shape, Polygon) for body in scene.bodies for shape in body.shapes)
+
+
+class Area:
+    """Rigid level, equal steps: their number from the stiffness and `phase` (ω h) at the start, then kept."""
+
+    name = "rigidarea"
+    ours = True
+
+    def refuses(self, scene: Scene) -> str:
+        """Nothing."""
+        return ""
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """Stiffness × phase × sampling."""
+        stiffness = (1e2, 1e4, 1e6) if quick else (1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7)
+        phases = (0.5, 1.0) if quick else (0.25, 0.5, 1.0)
+        return [
+            {"stiffness": k, "phase": phase, **sampling}
+            for k in stiffness
+            for phase in phases
+            for sampling in self._samplings(scene, quick)
+        ]
+
+    def _samplings(self, scene: Scene, quick: bool) -> list[dict[str, float]]:
+        known = samplings(scene, quick)
+        if known == [{}] and _curved(scene):
+            return [{"sampling": 1e-4}] if quick else [{"sampling": value} for value in (1e-3, 1e-4, 1e-5)]
+        return known
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """An attached space."""
+        return StepRun(scene, *area_space(scene, settings))
+
+
+class AreaFrames(Area):
+    """Rigid level as a user runs it: `attach(space)` and `contact.step(frame)`, its own stiffness and
+    steps.
+    """
+
+    name = "rigidarea-frame"
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """Allowed penetration × sampling."""
+        allowed = (2e-4,) if quick else (1e-2, 1e-3, 2e-4, 1e-5)
+        return [{"penetration": p, **sampling} for p in allowed for sampling in self._samplings(scene, quick)]
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """An attached space, stepped by frames."""
+        return FrameRun(scene, *area_space(scene, settings))
+
+
+PEERS = (Area(), AreaFrames())
