@@ -118,6 +118,12 @@ def test_convex(points, convex):
     assert Outline(points).convex is convex
 
 
+@pytest.mark.parametrize("angle", np.linspace(0, 3, 30))
+def test_collinear_points_stay_convex_under_rounding(angle):
+    points = [(0, 0), (1, 0), (2, 0), (3, 0), (3, 0.5), (3, 1), (2, 1), (1.7, 1), (0, 1)]
+    assert Outline(points).rotated(angle).translated(5, -7).convex
+
+
 def test_a_hole_is_not_convex():
     assert not Outline(SQUARE, [square(1, 1)]).convex
 
@@ -301,6 +307,14 @@ def test_pymunk_shapes_have_their_area_and_place(shape, center):
     assert Outline.from_pymunk(shape, tolerance=1e-3) is outline
 
 
+def test_a_corner_of_a_billionth_of_a_degree_gets_no_arc():
+    """Chipmunk's hull keeps it; three chords there would be of no length."""
+    shape = pymunk.Poly(None, [(-1, 0), (0, -1e-11), (1, 0), (1, 2), (-1, 2)], radius=0.5)
+    assert len(shape.get_vertices()) == 5
+    ring = Outline.from_pymunk(shape).rings[0]
+    assert np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).min() > 0.01
+
+
 def test_a_segment_without_length_is_a_disc():
     disc = Outline.from_pymunk(pymunk.Segment(None, (1, 1), (1, 1), 0.5))
     assert disc.area == pytest.approx(math.pi / 4, rel=ROUNDING)
@@ -385,6 +399,7 @@ def star(n, inner):
         (star(4, 0.5), pymunk.Poly),
         (star(30, 0.8), pymunk.Circle),
         (star(30, 0.8) * (5, 1) + (3, 3), pymunk.Poly),
+        (star(30, 0.8) * (5, 1) @ [[0.92, 0.39], [-0.39, 0.92]], pymunk.Poly),  # aslant by 23°
     ],
 )
 def test_the_stand_in_contains_the_outline_and_weighs_nothing(points, kind):
@@ -395,6 +410,7 @@ def test_the_stand_in_contains_the_outline_and_weighs_nothing(points, kind):
     assert shape.body is body
     assert (body.mass, body.moment, shape.mass) == (2.0, 3.0, 0.0)
     assert (shape.friction, shape.elasticity, shape.collision_type, shape.sensor) == (0.4, 0.6, 5, True)
+    shape.cache_bb()  # else pymunk answers for where the shape was before
     for point in outline.rings[0].tolist():
         assert shape.point_query(point).distance <= 1e-12
     if kind is pymunk.Poly:

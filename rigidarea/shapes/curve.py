@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Parameters (n,) -> points (n, 2)."""
 
-_FINE = 512  # steps in which curvature is measured: many more than any chord count that comes out
+_FINE = 512  # steps at first in which curvature is measured; never fewer than 8 a chord
+_WITHIN = np.arange(1, 8) / 8  # where, between a chord's ends, its distance from the curve is measured
 
 
 def sample_curve(
@@ -24,37 +25,41 @@ def sample_curve(
     with density sqrt(κ/(8·tolerance)) along the curve; the count is then raised until the sagittas,
     measured, obey.
     """
-    fine = np.linspace(first, last, _FINE + 1)
-    points = curve(fine)
-    step = np.diff(points, axis=0)
-    length = np.hypot(step[:, 0], step[:, 1])
-    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
-    turn = np.abs(np.gradient(heading))
-    density = np.sqrt(turn * length / (8 * tolerance))
-    if spacing is not None:
-        density = np.maximum(density, length / spacing)
-    count = np.concatenate(((0.0,), np.cumsum(density)))
+    steps = _FINE
+    while True:
+        fine = np.linspace(first, last, steps + 1)
+        count = _ideal_count(curve(fine), tolerance, spacing)
+        if steps >= 8 * count[-1]:
+            break
+        steps = math.ceil(8.1 * count[-1])
     chords = max(1, math.ceil(count[-1]))
     while True:
-        at = np.linspace(0, count[-1], chords + 1)
-        chosen = np.interp(at, count, fine) if count[-1] > 0 else np.linspace(first, last, chords + 1)
-        sampled = curve(chosen)
-        if _sagitta(sampled, chosen, points, fine) <= tolerance and (
-            spacing is None or np.hypot(*np.diff(sampled, axis=0).T).max() <= spacing
+        chosen = np.interp(np.linspace(0, count[-1], chords + 1), count, fine)
+        chosen[0], chosen[-1] = first, last  # (where the curve is straight, the count stands still)
+        points = curve(chosen)
+        if _sagitta(curve, chosen, points) <= tolerance and (
+            spacing is None or np.hypot(*np.diff(points, axis=0).T).max() <= spacing
         ):
-            return sampled
+            return points
         chords += 1
 
 
-def _sagitta(
-    sampled: NDArray[np.float64],
-    chosen: NDArray[np.float64],
-    points: NDArray[np.float64],
-    fine: NDArray[np.float64],
-) -> float:
-    """Largest distance of the finely known curve from the chord over it."""
-    sign = 1 if chosen[-1] > chosen[0] else -1
-    chord = np.clip(np.searchsorted(sign * chosen, sign * fine, side="right") - 1, 0, len(chosen) - 2)
-    start, along = sampled[chord], (sampled[1:] - sampled[:-1])[chord]
-    away = points - start
-    return float(np.max(np.abs(along[:, 0] * away[:, 1] - along[:, 1] * away[:, 0]) / np.hypot(*along.T)))
+def _ideal_count(points: NDArray[np.float64], tolerance: float, spacing: float | None) -> NDArray[np.float64]:
+    """How many chords there should be up to each of finely spaced points (n, 2) of a curve; (n,), starting
+    at 0."""
+    step = np.diff(points, axis=0)
+    length = np.hypot(step[:, 0], step[:, 1])
+    heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))
+    density = np.sqrt(np.abs(np.gradient(heading)) * length / (8 * tolerance))
+    if spacing is not None:
+        density = np.maximum(density, length / spacing)
+    return np.concatenate(((0.0,), np.cumsum(density)))
+
+
+def _sagitta(curve: Curve, chosen: NDArray[np.float64], points: NDArray[np.float64]) -> float:
+    """Largest distance of the curve from the chord over it."""
+    between = chosen[:-1, None] + _WITHIN * np.diff(chosen)[:, None]
+    away = curve(between.ravel()).reshape(*between.shape, 2) - points[:-1, None]
+    along = np.diff(points, axis=0)[:, None]
+    cross = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
+    return float(np.max(np.abs(cross) / np.hypot(along[..., 0], along[..., 1])))
