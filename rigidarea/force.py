@@ -18,8 +18,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-
+from .jit import kernel
 from .overlap import A_EDGE, B_EDGE
 
 LAW_AREA, LAW_ENERGY = 0, 1
@@ -97,7 +96,7 @@ class Pull(NamedTuple):
     moment_b: float
 
 
-@njit(cache=True)
+@kernel
 def restitution_damping(e: float) -> float:
     """alpha = a v0 for which F = f(depth) (1 + a speed) returns exactly e v0, whatever f.
 
@@ -119,7 +118,7 @@ def restitution_damping(e: float) -> float:
     return 0.5 * (low + high)
 
 
-@njit(cache=True)
+@kernel
 def damping_ratio(e: float) -> float:
     """Damping ratio of the linear spring and dashpot that returns e: 0 for e = 1, near 1 for e = 0."""
     if e >= 1.0:
@@ -128,7 +127,7 @@ def damping_ratio(e: float) -> float:
     return -s / math.sqrt(math.pi * math.pi + s * s)
 
 
-@njit(cache=True)
+@kernel
 def _ray(polygon: np.ndarray, label: np.ndarray, start: int, stop: int, i: int, nx: float, ny: float) -> float:
     """Distance from vertex i along n to the nearest edge of the other outline in the region (Eq. 9); 0 if none."""
     px = polygon[i, 0]
@@ -153,7 +152,7 @@ def _ray(polygon: np.ndarray, label: np.ndarray, start: int, stop: int, i: int, 
     return best if best < np.inf else 0.0
 
 
-@njit(cache=True)
+@kernel
 def nodal_direction(
     polygon: np.ndarray, label: np.ndarray, start: int, stop: int, exponent: float
 ) -> tuple[float, float]:
@@ -197,7 +196,7 @@ def nodal_direction(
     return total_x / length, total_y / length
 
 
-@njit(cache=True)
+@kernel
 def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float, float]:
     """Unit direction A to B: A's outward normal integrated over its arcs is the chord turned by -90 degrees.
 
@@ -209,7 +208,7 @@ def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float,
     return chord_y / length, -chord_x / length
 
 
-@njit(cache=True)
+@kernel
 def region_force(
     r: np.ndarray, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
     surface_x: float, surface_y: float, dt: float, born: bool,

@@ -23,11 +23,12 @@ from typing import TYPE_CHECKING, Any
 import numba
 import numpy as np
 import pymunk
-from numba import carray, njit, types
+from numba import types
 
 from .chipmunk import register_symbols
 from .force import Motion
-from .memory import pointer
+from .jit import kernel
+from .memory import array_at
 from .pair import (
     DONE,
     FREE_PAIRS,
@@ -62,26 +63,26 @@ _ask_python = types.ExternalFunction(
 )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _floats(address: int, n: int) -> np.ndarray:
-    return carray(pointer(address), (n,), np.float64)
+    return array_at(address, (n,), np.float64)
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _address(address: int) -> int:
-    return carray(pointer(address), (1,), np.uint64)[0]
+    return array_at(address, (1,), np.uint64)[0]
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _row(s: Any, shape: int) -> int:
     """The shape's row in the tables; -1: not known."""
     ident = _hash_id(shape)
     if ident >= s.slots_n:
         return -1
-    return carray(pointer(s.slots_at), (s.slots_n,), np.int32)[ident]
+    return array_at(s.slots_at, (s.slots_n,), np.int32)[ident]
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _motion(s: Any, body: int) -> Motion:
     p = _floats(body + s.body_position, 2)
     v = _floats(body + s.body_velocity, 2)
@@ -96,13 +97,13 @@ def _motion(s: Any, body: int) -> Motion:
     )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _pose(s: Any, body: int) -> Pose:
     t = _floats(body + s.body_transform, 6)
     return Pose(t[4], t[5], t[0], t[1])
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def surface_velocity(
     ax: float, ay: float, bx: float, by: float, nx: float, ny: float, given_x: float, given_y: float
 ) -> tuple[float, float]:
@@ -119,14 +120,14 @@ def surface_velocity(
     return x, y
 
 
-@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True)
+@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True, _nrt=False)
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair of one step, in machine code. See the module's docstring."""
     at = _user_data(space)
     if at == 0:
         return
-    s = carray(pointer(at), (1,), STATE)[0]
-    if carray(pointer(arbiter + s.arbiter_process), (1,), np.uint8)[0] == 0:
+    s = array_at(at, (1,), STATE)[0]
+    if array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] == 0:
         return
     shape_a = _address(arbiter + s.arbiter_shape_a)
     shape_b = _address(arbiter + s.arbiter_shape_a + 8)
@@ -143,7 +144,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     b = _motion(s, body_b)
     if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
         return
-    count = carray(pointer(arbiter + s.arbiter_count), (1,), np.int32)
+    count = array_at(arbiter + s.arbiter_count, (1,), np.int32)
     count[0] = 0
 
     sa = _row(s, shape_a)
@@ -155,7 +156,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         sb = _row(s, shape_b)
         if sa < 0 or sb < 0:
             return  # Python keeps the error and raises it after the step
-    memory = carray(pointer(arbiter + s.arbiter_data), (1,), np.uint64)
+    memory = array_at(arbiter + s.arbiter_data, (1,), np.uint64)
     if memory[0] >> _HALF != s.epoch:
         if s.restoring or load_tables(s).counters[FREE_PAIRS] == 0:
             s.request = NEW_PAIR
@@ -211,14 +212,14 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         _floats(body_b + s.body_torque, 1)[0] += pull.moment_b
 
 
-@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True)
+@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True, _nrt=False)
 def separate(arbiter: int, space: int, data: int) -> None:
     """Two shapes have separated, or one was removed: forget what their contact remembered."""
     at = _user_data(space)
     if at == 0:
         return
-    s = carray(pointer(at), (1,), STATE)[0]
-    memory = carray(pointer(arbiter + s.arbiter_data), (1,), np.uint64)
+    s = array_at(at, (1,), STATE)[0]
+    memory = array_at(arbiter + s.arbiter_data, (1,), np.uint64)
     if memory[0] >> _HALF == s.epoch:
         end_pair(load_tables(s), np.int64(memory[0] & _LOWER))
     memory[0] = 0

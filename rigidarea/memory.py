@@ -1,18 +1,67 @@
-"""Memory seen by address: how machine code reads Chipmunk's structs and the tables of an attached space."""
+"""Memory without reference counts: by address (Chipmunk's structs, a space's tables), and a few floats of scratch."""
 
 from __future__ import annotations
 
 from typing import Any
 
-from numba import types
+import numpy as np
+from numba import config, types
+from numba.core import cgutils
 from numba.extending import intrinsic
+from numba.np import arrayobj
 
 
 @intrinsic
-def pointer(typingctx: Any, address: Any) -> Any:
-    """The integer `address` as a void pointer, for `numba.carray`."""
+def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
+    """array_at(address, shape, dtype): the memory there as a C-contiguous array that nobody counts or frees."""
+    array = types.Array(dtype.dtype, len(shape), "C")
+    signature = array(types.uintp, types.UniTuple(types.intp, len(shape)), dtype)
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
-        return builder.inttoptr(args[0], context.get_value_type(types.voidptr))
+        item = context.get_data_type(array.dtype)
+        size = context.get_constant(types.intp, context.get_abi_sizeof(item))
+        extents = cgutils.unpack_tuple(builder, args[1])
+        strides = [size]
+        for extent in reversed(extents[1:]):
+            strides.insert(0, builder.mul(strides[0], extent))
+        view = context.make_array(array)(context, builder)
+        arrayobj.populate_array(
+            view,
+            data=builder.inttoptr(args[0], item.as_pointer()),
+            shape=extents,
+            strides=strides,
+            itemsize=size,
+            meminfo=None,
+        )
+        return view._getvalue()
 
-    return types.voidptr(types.uintp), codegen
+    return signature, codegen
+
+
+@intrinsic
+def _twelve_floats(typingctx: Any) -> Any:
+    array = types.Array(types.float64, 1, "C")
+
+    def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        item = context.get_data_type(types.float64)
+        size = context.get_constant(types.intp, 8)
+        view = context.make_array(array)(context, builder)
+        arrayobj.populate_array(
+            view,
+            data=cgutils.alloca_once(builder, item, size=12),
+            shape=[context.get_constant(types.intp, 12)],
+            strides=[size],
+            itemsize=size,
+            meminfo=None,
+        )
+        return view._getvalue()
+
+    return array(), codegen
+
+
+def _empty() -> np.ndarray:
+    return np.empty(12)
+
+
+#: Twelve floats of scratch on the stack, valid until the calling kernel returns.
+twelve_floats: Any = _empty if config.DISABLE_JIT else _twelve_floats

@@ -33,8 +33,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-
+from .jit import kernel
 from .pool import LEAF, Pool
 from .predicates import side
 
@@ -115,7 +114,7 @@ def enlarged(work: Work, points: int, rings: int) -> Work:
     return new_work(points, 2 * len(work.cross), rings)
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def relative(
     ax: float, ay: float, ac: float, as_: float, bx: float, by: float, bc: float, bs: float,
     amx: float, amy: float, bmx: float, bmy: float,
@@ -130,7 +129,7 @@ def relative(
     )
 
 
-@njit(cache=True)
+@kernel
 def _measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: int, stop: int) -> int:
     """Area, centroid and chord of the polygon p[start:stop] as loop n; the number of loops there are then."""
     ox = p[start, 0]
@@ -177,7 +176,7 @@ def _measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start:
     return n + 1
 
 
-@njit(cache=True)
+@kernel
 def _clip(
     qa: np.ndarray, a0: int, na: int, qb: np.ndarray, b0: int, nb: int, rel: Relative,
     p: np.ndarray, label: np.ndarray, loops: np.ndarray,
@@ -239,7 +238,7 @@ def _clip(
     return _measure(p, label, loops, 0, src, src + n)
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
     """Separating axes of two hierarchy boxes: the two of A's frame and the two of B's."""
     ac = abs(rel.c)
@@ -260,7 +259,7 @@ def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative,
     )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def _placed(q: np.ndarray, i: int, rel: Relative) -> tuple[float, float]:
     """Point i of B in A's frame: always the same bits for the same point."""
     x = q[i, 0]
@@ -268,7 +267,7 @@ def _placed(q: np.ndarray, i: int, rel: Relative) -> tuple[float, float]:
     return rel.c * x - rel.s * y + rel.tx, rel.s * x + rel.c * y + rel.ty
 
 
-@njit(cache=True)
+@kernel
 def _cross_leaves(
     qa: np.ndarray, next_a: np.ndarray, a0: int, a1: int, qb: np.ndarray, next_b: np.ndarray, b0: int, b1: int,
     rel: Relative, cross: np.ndarray, param: np.ndarray, spot: np.ndarray, n: int,
@@ -328,7 +327,7 @@ def _cross_leaves(
     return n
 
 
-@njit(cache=True)
+@kernel
 def _crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """All crossings of the two boundaries, by a walk down both hierarchies at once."""
     ha = pa.heads[ia]
@@ -375,7 +374,7 @@ def _crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) 
     return n
 
 
-@njit(cache=True)
+@kernel
 def _before(
     q: np.ndarray, other: np.ndarray, following: np.ndarray, rel: Relative, edge: int, end: int,
     k: int, m: int, cross: np.ndarray, param: np.ndarray, along: int,
@@ -409,7 +408,7 @@ def _before(
     return ((side(vx, vy, ux, uy, wx, wy, True) > 0.0) == left) == first
 
 
-@njit(cache=True)
+@kernel
 def _link(
     q: np.ndarray, following: np.ndarray, ring_of: np.ndarray, other: np.ndarray, other_following: np.ndarray,
     rel: Relative, n: int, cross: np.ndarray, param: np.ndarray, order: np.ndarray, along: int,
@@ -449,7 +448,7 @@ def _link(
     return True
 
 
-@njit(cache=True)
+@kernel
 def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> tuple[int, int]:
     """Append the boundary along A (0) or B (1) from crossing k to the next, left out: (that crossing, vertices)."""
     work.polygon[v, 0] = work.spot[k, 0]
@@ -477,7 +476,7 @@ def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> t
     return m, v
 
 
-@njit(cache=True)
+@kernel
 def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool, work: Work) -> bool:
     """Whether the point (x, y) of A's frame lies inside outline i: crossings of the ray to +x, by the hierarchy.
 
@@ -526,7 +525,7 @@ def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool
     return inside
 
 
-@njit(cache=True)
+@kernel
 def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
     """Whether (x, y) lies inside loop n (even-odd)."""
     inside = False
@@ -544,7 +543,7 @@ def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
     return inside
 
 
-@njit(cache=True)
+@kernel
 def _gather(work: Work, n: int) -> int:
     """Give each hole loop to its region, put the regions first; their number."""
     loops = work.loops
@@ -598,7 +597,7 @@ def _gather(work: Work, n: int) -> int:
     return m
 
 
-@njit(cache=True)
+@kernel
 def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a = loops[i]
     b = loops[j]
@@ -613,7 +612,7 @@ def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a.region, b.region = b.region, a.region
 
 
-@njit(cache=True)
+@kernel
 def _whole_rings(
     pool: Pool, i: int, other: Pool, o: int, rel: Relative, along: int, work: Work, n: int, v: int
 ) -> tuple[int, int]:
@@ -649,7 +648,7 @@ def _whole_rings(
     return n, v
 
 
-@njit(cache=True)
+@kernel
 def _general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Any two outlines: crossings, loops, whole rings, holes."""
     ha = pa.heads[ia]
@@ -692,7 +691,7 @@ def _general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) ->
     return _gather(work, n)
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Regions of A and B placed by `rel`: their number, work.loops[:number]; or OVERFLOW, or TANGLED.
 

@@ -11,8 +11,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
-
+from .jit import kernel
 from .force import (
     CHORD,
     LAW_ENERGY,
@@ -86,7 +85,7 @@ class Surface(NamedTuple):
 NO_PULL = Pull(0.0, 0.0, 0.0, 0.0)
 
 
-@njit(cache=True)
+@kernel
 def new_pair(tables: Tables, shape_a: int, shape_b: int) -> int:
     """Take a pair from the free list; -1: there is none."""
     counters = tables.counters
@@ -104,7 +103,7 @@ def new_pair(tables: Tables, shape_a: int, shape_b: int) -> int:
     return p
 
 
-@njit(cache=True)
+@kernel
 def _free_regions(regions: np.ndarray, counters: np.ndarray, r: int) -> None:
     """Put the list that starts at region r onto the free list."""
     while r >= 0:
@@ -116,7 +115,7 @@ def _free_regions(regions: np.ndarray, counters: np.ndarray, r: int) -> None:
         r = after
 
 
-@njit(cache=True)
+@kernel
 def end_pair(tables: Tables, p: int) -> None:
     """The two shapes have separated: forget the pair and its regions."""
     pair = tables.pairs[p]
@@ -129,7 +128,7 @@ def end_pair(tables: Tables, p: int) -> None:
     tables.counters[FREE_PAIRS] += 1
 
 
-@njit(cache=True)
+@kernel
 def _placed(head: np.ndarray, pose: Pose, other: np.ndarray, other_pose: Pose) -> Relative:
     return relative(
         pose.x, pose.y, pose.c, pose.s, other_pose.x, other_pose.y, other_pose.c, other_pose.s,
@@ -137,7 +136,7 @@ def _placed(head: np.ndarray, pose: Pose, other: np.ndarray, other_pose: Pose) -
     )  # fmt: skip
 
 
-@njit(cache=True)
+@kernel(inline="always")
 def _regions_of(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> int:
     """Overlap of two placed outlines; a tangle is undone by shifts of 1e-13 of the size (a tangle is rounding)."""
     rel = _placed(pool.heads[ia], a, pool.heads[ib], b)
@@ -153,7 +152,7 @@ def _regions_of(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> i
     return n
 
 
-@njit(cache=True)
+@kernel
 def _push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
     """Direction A to B of the shortest way apart over the edge normals of both outer rings, in A's frame.
 
@@ -195,7 +194,7 @@ def _push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float
     return best_x, best_y
 
 
-@njit(cache=True)
+@kernel
 def _length_on_first_edge(pool: Pool, i: int, rel: Relative, mine: int, work: Work, n: int) -> float:
     """Length of region n's boundary that lies on edge 0 of outline i (A, or B placed by rel)."""
     p = pool.heads[i].point
@@ -221,7 +220,7 @@ def _length_on_first_edge(pool: Pool, i: int, rel: Relative, mine: int, work: Wo
     return total
 
 
-@njit(cache=True)
+@kernel
 def _came_from(
     pool: Pool, i: int, mirror: int, pose: Pose, me: Motion, other: int, other_pose: Pose, it: Motion, dt: float,
     work: Work,
@@ -264,7 +263,7 @@ def _came_from(
     return 1 if height >= 0.0 else -1
 
 
-@njit(cache=True)
+@kernel
 def _sides(
     pool: Pool, tables: Tables, work: Work, pair: np.ndarray, sa: int, sb: int, pose_a: Pose, pose_b: Pose,
     a: Motion, b: Motion, dt: float,
@@ -287,7 +286,7 @@ def _sides(
     return ia, ib
 
 
-@njit(cache=True)
+@kernel
 def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> int:
     """The region of the list nearest to (x, y) that is not yet taken in this step; -1: none."""
     best = -1
@@ -303,7 +302,7 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
     return best
 
 
-@njit(cache=True)
+@kernel
 def overlap_of_pair(
     pool: Pool, tables: Tables, work: Work, pair: np.ndarray, sa: int, sb: int, a: Pose, b: Pose
 ) -> tuple[int, int]:
@@ -313,7 +312,7 @@ def overlap_of_pair(
     return _regions_of(pool, ia, a, ib, b, work), ia
 
 
-@njit(cache=True)
+@kernel(inline="always")
 def pair_pull(
     pool: Pool, tables: Tables, work: Work, law: Law, p: int, sa: int, sb: int, pose_a: Pose, pose_b: Pose,
     a: Motion, b: Motion, surface: Surface, dt: float, stamp: int,

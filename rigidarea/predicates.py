@@ -15,7 +15,9 @@ vertex on vertex, shared edges, and it leaves area and centroid as they are, bec
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
+
+from .jit import kernel
+from .memory import twelve_floats
 
 #: Relative error bound of the filter, (3 + 16 u) u with u = 2^-53 (Shewchuk's ccwerrboundA).
 FILTER = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
@@ -25,7 +27,7 @@ TINY = 1e-290
 _SPLITTER = 134217729.0  # 2^27 + 1, Dekker's split
 
 
-@njit(cache=True)
+@kernel
 def _two_product(a: float, b: float) -> tuple[float, float]:
     """a b = high + low, exactly (barring overflow)."""
     high = a * b
@@ -38,7 +40,7 @@ def _two_product(a: float, b: float) -> tuple[float, float]:
     return high, a2 * b2 - (((high - a1 * b1) - a2 * b1) - a1 * b2)
 
 
-@njit(cache=True)
+@kernel
 def _grow(e: np.ndarray, n: int, b: float) -> int:
     """Add b to the non-overlapping expansion e[:n], exactly; returns its new length."""
     q = b
@@ -51,10 +53,10 @@ def _grow(e: np.ndarray, n: int, b: float) -> int:
     return n + 1
 
 
-@njit(cache=True)
+@kernel
 def side_exact(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
     """Sign (-1, 0, 1) of side(a, b, p), exactly."""
-    e = np.empty(12)
+    e = twelve_floats()
     n = 0
     for u, v in ((ax, by), (-ay, bx), (bx, py), (-by, px), (px, ay), (-py, ax)):
         high, low = _two_product(u, v)
@@ -66,7 +68,7 @@ def side_exact(ax: float, ay: float, bx: float, by: float, px: float, py: float)
     return 0.0
 
 
-@njit(cache=True)
+@kernel
 def _undecided(ax: float, ay: float, bx: float, by: float, px: float, py: float, point_of_b: bool) -> float:
     sign = side_exact(ax, ay, bx, by, px, py)
     if sign == 0.0:  # B shifted by (d, d^2): d side / dp = (ay - by, bx - ax); an edge of B moves the other way
@@ -75,7 +77,7 @@ def _undecided(ax: float, ay: float, bx: float, by: float, px: float, py: float,
     return sign * TINY
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def side(ax: float, ay: float, bx: float, by: float, px: float, py: float, point_of_b: bool) -> float:
     """Twice the signed area of a, b, p, with an exact and never zero sign (length^2).
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import carray, njit
 
 from .force import REGION, Law
-from .memory import pointer
+from .jit import kernel
+from .memory import array_at
 from .overlap import LOOP, Work, enlarged, fits, new_work
 from .pair import COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
 from .pool import HEAD, HasRings, Pool, pack
@@ -50,48 +50,48 @@ STATE = np.dtype(
 )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def load_pool(s: Any) -> Pool:
     """The outlines of the space whose state record is s."""
     return Pool(
-        carray(pointer(s.points_at), (s.points_n, 2), np.float64),
-        carray(pointer(s.following_at), (s.following_n,), np.int32),
-        carray(pointer(s.ring_of_at), (s.ring_of_n,), np.int32),
-        carray(pointer(s.rings_at), (s.rings_n, 2), np.int32),
-        carray(pointer(s.boxes_at), (s.boxes_n, 4), np.float64),
-        carray(pointer(s.heads_at), (s.heads_n,), HEAD),
+        array_at(s.points_at, (s.points_n, 2), np.float64),
+        array_at(s.following_at, (s.following_n,), np.int32),
+        array_at(s.ring_of_at, (s.ring_of_n,), np.int32),
+        array_at(s.rings_at, (s.rings_n, 2), np.int32),
+        array_at(s.boxes_at, (s.boxes_n, 4), np.float64),
+        array_at(s.heads_at, (s.heads_n,), HEAD),
     )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def load_work(s: Any) -> Work:
     """The scratch of the space whose state record is s."""
     return Work(
-        carray(pointer(s.stack_at), (s.stack_n, 2), np.int32),
-        carray(pointer(s.cross_at), (s.cross_n, 3), np.int32),
-        carray(pointer(s.param_at), (s.param_n, 2), np.float64),
-        carray(pointer(s.spot_at), (s.spot_n, 2), np.float64),
-        carray(pointer(s.order_at), (s.order_n, s.cross_n), np.int32),
-        carray(pointer(s.done_at), (s.done_n,), np.uint8),
-        carray(pointer(s.hit_at), (s.hit_n,), np.uint8),
-        carray(pointer(s.polygon_at), (s.polygon_n, 2), np.float64),
-        carray(pointer(s.label_at), (s.label_n,), np.uint8),
-        carray(pointer(s.loops_at), (s.loops_n,), LOOP),
+        array_at(s.stack_at, (s.stack_n, 2), np.int32),
+        array_at(s.cross_at, (s.cross_n, 3), np.int32),
+        array_at(s.param_at, (s.param_n, 2), np.float64),
+        array_at(s.spot_at, (s.spot_n, 2), np.float64),
+        array_at(s.order_at, (s.order_n, s.cross_n), np.int32),
+        array_at(s.done_at, (s.done_n,), np.uint8),
+        array_at(s.hit_at, (s.hit_n,), np.uint8),
+        array_at(s.polygon_at, (s.polygon_n, 2), np.float64),
+        array_at(s.label_at, (s.label_n,), np.uint8),
+        array_at(s.loops_at, (s.loops_n,), LOOP),
     )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def load_tables(s: Any) -> Tables:
     """The shapes, pairs and regions of the space whose state record is s."""
     return Tables(
-        carray(pointer(s.shapes_at), (s.shapes_n,), SHAPE),
-        carray(pointer(s.pairs_at), (s.pairs_n,), PAIR),
-        carray(pointer(s.regions_at), (s.regions_n,), REGION),
-        carray(pointer(s.counters_at), (s.counters_n,), np.int64),
+        array_at(s.shapes_at, (s.shapes_n,), SHAPE),
+        array_at(s.pairs_at, (s.pairs_n,), PAIR),
+        array_at(s.regions_at, (s.regions_n,), REGION),
+        array_at(s.counters_at, (s.counters_n,), np.int64),
     )
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def load_law(s: Any) -> Law:
     """The force law of the space whose state record is s."""
     return Law(s.stiffness, s.law, s.length, s.direction, s.exponent, s.rest_speed)
