@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Parameters (n,) -> points (n, 2)."""
 
-_FINE = 512  # steps at first in which curvature is measured; never fewer than 8 a chord
+_FINE = 512  # steps in which curvature is measured
 _WITHIN = np.arange(1, 8) / 8  # where, between a chord's ends, its distance from the curve is measured
 
 
@@ -25,13 +25,8 @@ def sample_curve(
     with density sqrt(κ/(8·tolerance)) along the curve; the count is then raised until the sagittas,
     measured, obey.
     """
-    steps = _FINE
-    while True:
-        fine = np.linspace(first, last, steps + 1)
-        count = _ideal_count(curve(fine), tolerance, spacing)
-        if steps >= 8 * count[-1]:
-            break
-        steps = math.ceil(8.1 * count[-1])
+    fine = np.linspace(first, last, _FINE + 1)
+    count = _ideal_count(curve(fine), tolerance, spacing)
     chords = max(1, math.ceil(count[-1]))
     while True:
         chosen = np.interp(np.linspace(0, count[-1], chords + 1), count, fine)
@@ -41,7 +36,7 @@ def sample_curve(
             spacing is None or np.hypot(*np.diff(points, axis=0).T).max() <= spacing
         ):
             return points
-        chords += 1
+        chords += 1 + chords // 100
 
 
 def _ideal_count(points: NDArray[np.float64], tolerance: float, spacing: float | None) -> NDArray[np.float64]:

@@ -110,9 +110,8 @@ def involute_gear(
     tip = sample_curve(partial(_arc, tip_radius), -tip_angle, tip_angle, tolerance_length, spacing)
     rising = np.concatenate((fillet, flank[1:]))
     parts = [rising, tip[1:-1], rising[::-1] * (1, -1)]
-    root_angle = math.pi / teeth + math.atan2(
-        fillet[0, 1], fillet[0, 0]
-    )  # half the space's, at the root circle
+    # half the space's, at the root circle
+    root_angle = math.pi / teeth + math.atan2(fillet[0, 1], fillet[0, 0])
     if root_angle > 1e-9:
         pitch = 2 * math.pi / teeth
         parts.append(

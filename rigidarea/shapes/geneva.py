@@ -119,9 +119,8 @@ def geneva(
             f"locking_radius must lie between {lowest:.6g} (to reach into the wheel) and {highest:.6g} "
             f"(to leave its slots whole), got {locking_radius:.6g}"
         )
-    relief = (
-        c - wheel_radius - locking_clearance
-    )  # no part of the wheel ever comes nearer to the driver's axis
+    # no part of the wheel ever comes nearer to the driver's axis
+    relief = c - wheel_radius - locking_clearance
     if relief <= 0:
         raise ValueError(
             f"the wheel, of radius {wheel_radius:.6g}, must leave the driver's axis free at {c:.6g}"
@@ -129,9 +128,8 @@ def geneva(
 
     # the wheel: slot, rim, locking arc, rim, and so on
     arc_radius = locking_radius + locking_clearance
-    gamma = _meeting_angle(
-        wheel_radius, c, arc_radius
-    )  # of the arc's ends from its middle, seen from the wheel
+    # of the arc's ends from its middle, seen from the wheel
+    gamma = _meeting_angle(wheel_radius, c, arc_radius)
     delta = _meeting_angle(arc_radius, c, wheel_radius)  # the same, seen from the driver
     mouth_angle = math.asin(half_width / wheel_radius)
     parts = []
