@@ -64,20 +64,19 @@ def _angles(points: Array, triangles: NDArray[np.int64]) -> Array:
     return out
 
 
-def resample(ring: Array, size: float) -> Array:
+def resample(ring: Array, size: float, refine: int = 1) -> Array:
     """Nodes on a closed ring about ``size`` apart, (k, 2): corners kept, arcs between them divided evenly.
 
-    ring: (n, 2), sampled finer than ``size``. Raises ValueError where ``size`` is larger than a feature, that is
-    where an arc between two corners is shorter than size/2, or the ring would keep fewer than 3 nodes.
+    ring: (n, 2), sampled finer than ``size``. refine: points an edge, (k · refine, 2): the nodes and, between
+    them, points of the ring itself: a profile finer than the mesh. Raises ValueError where ``size`` is larger than a
+    feature, that is where an arc between two corners is shorter than size/2, or the ring would keep fewer than 3 nodes.
     """
     ring = np.asarray(ring, float)
     step = np.roll(ring, -1, 0) - ring
     length = np.hypot(step[:, 0], step[:, 1])
     before = np.roll(step, 1, 0)
-    turn = np.abs(
-        np.arctan2(before[:, 0] * step[:, 1] - before[:, 1] * step[:, 0], np.einsum("ij,ij->i", before, step))
-    )
-    corner = np.flatnonzero(turn > CORNER)
+    cross, dot = before[:, 0] * step[:, 1] - before[:, 1] * step[:, 0], np.einsum("ij,ij->i", before, step)
+    corner = np.flatnonzero(np.abs(np.arctan2(cross, dot)) > CORNER)
     if len(corner) == 0:
         corner = np.array([0])
     total = np.concatenate([[0.0], np.cumsum(length)])
@@ -85,15 +84,17 @@ def resample(ring: Array, size: float) -> Array:
     marks = []
     for a, b in itertools.pairwise(at):
         if b - a < 0.5 * size:
+            where = ring[np.searchsorted(total, a % total[-1]) % len(ring)]
             raise ValueError(
-                f"mesh size must not exceed a feature: expected at most {2 * (b - a):.4g} (twice the shortest"
-                f" arc between corners, at {ring[np.searchsorted(total, a % total[-1]) % len(ring)]}), got {size:.4g}"
+                f"mesh size must not exceed a feature: expected at most {2 * (b - a):.4g} (twice the shortest arc"
+                f" between corners, at {where}), got {size:.4g}"
             )
-        marks.append(a + (b - a) * np.arange(n := max(1, round((b - a) / size))) / n)
+        n = max(1, round((b - a) / size)) * refine
+        marks.append(a + (b - a) * np.arange(n) / n)
     s = np.concatenate(marks) % total[-1]
-    if len(s) < 3:
+    if len(s) < 3 * refine:
         raise ValueError(
-            f"mesh size {size:.4g} leaves {len(s)} nodes on a ring of length {total[-1]:.4g}, expected 3"
+            f"mesh size {size:.4g} leaves {len(s) // refine} nodes on a ring of length {total[-1]:.4g}, expected 3"
         )
     closed = np.vstack([ring, ring[:1]])
     return np.column_stack([np.interp(s, total, closed[:, 0]), np.interp(s, total, closed[:, 1])])

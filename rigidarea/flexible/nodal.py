@@ -219,7 +219,7 @@ class Scratch(NamedTuple):
 def scratch(points: int) -> Scratch:
     """Arrays for boundaries of up to ``points`` points."""
     return Scratch(
-        np.zeros((256, 2), np.int64), np.zeros((4096, 2), np.int64), np.zeros(256, CROSSING), np.zeros(64, REGION),
+        np.zeros((256, 2), np.int64), np.zeros((16384, 2), np.int64), np.zeros(512, CROSSING), np.zeros(1024, REGION),
         np.zeros((2, points + 3)), np.zeros((2, points + 3)), np.zeros((2, points + 3), np.int64),
         np.zeros((2, points + 3, 2)),
     )  # fmt: skip

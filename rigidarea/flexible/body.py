@@ -1,0 +1,73 @@
+"""From an outline to a body of ``integrate``: mesh, reduce, and carry a fine contact profile on the mesh's edges."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.flexible.boundary import build
+from rigidarea.flexible.element import Material
+from rigidarea.flexible.integrate import Body
+from rigidarea.flexible.mesh import Mesh, resample, triangulate
+from rigidarea.flexible.modes import reduce
+
+Array = NDArray[np.float64]
+
+LEVELS = ("rigid", "compliant", "modal")
+
+
+def elastic_body(
+    rings: Sequence[Array],
+    size: float,
+    material: Material,
+    level: str = "compliant",
+    *,
+    contact_rings: Sequence[int] = (0,),
+    hub: int | None = None,
+    clamped: int | None = None,
+    modes: int = 40,
+    refine: int = 1,
+    growth: float = 0.2,
+    cache: Path | str | None = None,
+    **keys: Any,
+) -> tuple[Body, Mesh]:
+    """A body from finely sampled ``rings`` ([0] outer, counter-clockwise; then holes, clockwise), and its mesh.
+
+    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
+    free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine: contact points a mesh
+    edge, on the rings themselves. growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the
+    rings' coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
+    ``triangulate`` and ``reduce``.
+    """
+    if level not in LEVELS:
+        raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
+    if refine < 1:
+        raise ValueError(f"refine must be at least 1, got {refine}")
+    mesh = triangulate([resample(r, size) for r in rings], growth)
+    body = reduce(
+        mesh, material, contact_rings, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
+    )
+    profile, low, high, share, first = [], [], [], [], 0
+    for k in contact_rings:
+        fine = resample(rings[k], size, refine)
+        node = np.arange(len(fine)) // refine
+        profile.append(fine - body.centre)
+        low.append(first + node)
+        high.append(first + (node + 1) % (len(fine) // refine))
+        share.append((np.arange(len(fine)) % refine) / refine)
+        first += len(fine) // refine
+    carriers = (np.concatenate(low), np.concatenate(high), np.concatenate(share))
+    boundary = build(profile, carriers, body.modes, body.flexibility)
+    angle = keys.pop("angle", 0.0)
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = keys.pop("position", (0.0, 0.0))
+    position = (x + c * body.centre[0] - s * body.centre[1], y + s * body.centre[0] + c * body.centre[1])
+    middle = mesh.points[mesh.rings[hub]].mean(0) - body.centre if hub is not None else np.zeros(2)
+    return Body(
+        boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
+        fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])), **keys,
+    ), mesh  # fmt: skip
