@@ -275,26 +275,29 @@ class Outline:
         unknown = sorted(set(shape_attrs) - set(known))
         if unknown:
             raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")
-        shape = self._stand_in(body)
+        kind, form = self._stand_in
+        shape = kind(body, *form)
         for name, value in shape_attrs.items():
             setattr(shape, name, value)
         shape.outline = self
         return shape
 
-    def _stand_in(self, body: pymunk.Body) -> pymunk.Shape:
+    @cached_property
+    def _stand_in(self) -> tuple[Callable[..., pymunk.Shape], tuple[Any, ...]]:
+        """The stand-in's class and its arguments after the body; the same for every body the outline is put
+        on."""
         if self.mirror is not None:
-            a, b = self.rings[0][1], self.rings[0][0]
-            return pymunk.Segment(body, tuple(a.tolist()), tuple(b.tolist()), 0)
+            b, a = self.rings[0][:2].tolist()
+            return pymunk.Segment, (a, b, 0)
         hull = shapely.get_coordinates(shapely.convex_hull(self.polygon))[:-1]
         if len(hull) <= MAX_STAND_IN_VERTICES:
-            return pymunk.Poly(body, hull.tolist())
+            return pymunk.Poly, (hull.tolist(),)
         octagon = _bounding_octagon(hull)
-        circle = shapely.minimum_bounding_circle(self.polygon)
-        centre = shapely.get_coordinates(circle.centroid)[0]
-        radius = float(np.hypot(*(hull - centre).T).max())
-        if _area_and_first_moment(octagon - centre)[0] > 0.9 * math.pi * radius**2:
-            return pymunk.Circle(body, radius, tuple(centre.tolist()))
-        return pymunk.Poly(body, octagon.tolist())
+        center = shapely.get_coordinates(shapely.minimum_bounding_circle(self.polygon).centroid)[0]
+        radius = float(np.hypot(*(hull - center).T).max())
+        if _area_and_first_moment(octagon - center)[0] > 0.9 * math.pi * radius**2:
+            return pymunk.Circle, (radius, center.tolist())
+        return pymunk.Poly, (octagon.tolist(),)
 
     def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
         """A dynamic pymunk body with this outline's mass, moment and centre of gravity (no shape on it yet).
