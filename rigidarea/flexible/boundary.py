@@ -57,6 +57,7 @@ class Work(NamedTuple):
     touched: Ints  # (n + 1,) contact points that carry load; [-1] their number
     node_load: Array  # (f, 2) force on an FE boundary node, body frame
     node_flag: NDArray[np.bool_]  # (f,) listed in ``loaded``
+    leaf_stamp: Ints  # (t,)
     hub_load: Array  # (3,) force and moment on the hub, body frame
     loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
 
@@ -136,51 +137,70 @@ def workspace(b: Boundary) -> Work:
     n, f = len(b.points), (len(b.modes) - 3) // 2
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
-        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3), np.zeros(f + 1, np.int64),
+        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.full(len(b.left), -1), np.zeros(3),
+        np.zeros(f + 1, np.int64),
     )  # fmt: skip
 
 
 @njit(cache=True)
-def node_displacement(b: Boundary, w: Work, modal: Array, node: int, stamp: int) -> None:
-    """u = Φ q + C f of one FE boundary node, body frame; f are the node loads of the evaluation before."""
-    if w.displacement_stamp[node] == stamp:
-        return
-    ux = uy = 0.0
-    for k in range(b.modes.shape[1]):
-        ux += b.modes[2 * node, k] * modal[k]
-        uy += b.modes[2 * node + 1, k] * modal[k]
-    if b.flexibility.shape[0] > 0:
-        for k in range(w.loaded[-1]):
-            j = w.loaded[k]
-            fx, fy = w.node_load[j, 0], w.node_load[j, 1]
-            ux += b.flexibility[2 * node, 2 * j] * fx + b.flexibility[2 * node, 2 * j + 1] * fy
-            uy += b.flexibility[2 * node + 1, 2 * j] * fx + b.flexibility[2 * node + 1, 2 * j + 1] * fy
-        for k in range(3):
-            ux += b.flexibility[2 * node, k - 3] * w.hub_load[k]
-            uy += b.flexibility[2 * node + 1, k - 3] * w.hub_load[k]
-    w.displacement[node, 0] = ux
-    w.displacement[node, 1] = uy
-    w.displacement_stamp[node] = stamp
+def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: int, stamp: int) -> None:
+    """World positions of ``count`` contact points from ``start`` on along the perimeter, each once an evaluation.
+
+    pose is (x, y, cos θ, sin θ). Displacements are u = Φ q + C f of the carrying edge's two FE nodes; f are the node
+    loads of the evaluation before. One call places a run of points: handing over the tuples costs more than a point.
+    """
+    points, following, low, high, share, modes, flex = b.points, b.next, b.low, b.high, b.share, b.modes, b.flexibility
+    position, position_stamp = w.position, w.position_stamp
+    u, u_stamp, load, loaded, hub = w.displacement, w.displacement_stamp, w.node_load, w.loaded, w.hub_load
+    n_modes, static = modes.shape[1], flex.shape[0] > 0
+    px, py, c, s = pose[0], pose[1], pose[2], pose[3]
+    i = start
+    for _ in range(count):
+        if position_stamp[i] != stamp:
+            position_stamp[i] = stamp
+            x, y = points[i, 0], points[i, 1]
+            if n_modes > 0 or static:
+                for end in range(2):
+                    weight = share[i] if end == 1 else 1.0 - share[i]
+                    if weight == 0.0:
+                        continue
+                    node = high[i] if end == 1 else low[i]
+                    if u_stamp[node] != stamp:
+                        u_stamp[node] = stamp
+                        ux = uy = 0.0
+                        for k in range(n_modes):
+                            ux += modes[2 * node, k] * modal[k]
+                            uy += modes[2 * node + 1, k] * modal[k]
+                        if static:
+                            for k in range(loaded[-1]):
+                                j = loaded[k]
+                                fx, fy = load[j, 0], load[j, 1]
+                                ux += flex[2 * node, 2 * j] * fx + flex[2 * node, 2 * j + 1] * fy
+                                uy += flex[2 * node + 1, 2 * j] * fx + flex[2 * node + 1, 2 * j + 1] * fy
+                            last = flex.shape[0] - 3
+                            for k in range(3):
+                                ux += flex[2 * node, last + k] * hub[k]
+                                uy += flex[2 * node + 1, last + k] * hub[k]
+                        u[node, 0] = ux
+                        u[node, 1] = uy
+                    x += weight * u[node, 0]
+                    y += weight * u[node, 1]
+            position[i, 0] = px + c * x - s * y
+            position[i, 1] = py + s * x + c * y
+        i = following[i]
 
 
 @njit(cache=True)
-def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
-    """World position of contact point i at ``pose`` = (x, y, cos θ, sin θ), once an evaluation."""
-    if w.position_stamp[i] == stamp:
-        return
-    w.position_stamp[i] = stamp
-    x, y = b.points[i, 0], b.points[i, 1]
-    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
-        low, high, s = b.low[i], b.high[i], b.share[i]
-        node_displacement(b, w, modal, low, stamp)
-        x += (1.0 - s) * w.displacement[low, 0]
-        y += (1.0 - s) * w.displacement[low, 1]
-        if s > 0.0:
-            node_displacement(b, w, modal, high, stamp)
-            x += s * w.displacement[high, 0]
-            y += s * w.displacement[high, 1]
-    w.position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
-    w.position[i, 1] = pose[1] + pose[3] * x + pose[2] * y
+def place_leaves(
+    b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
+) -> None:
+    """Places the points of all candidate leaves of one body (``side`` 0: A, 1: B)."""
+    first, size, done = b.right, b.left, w.leaf_stamp
+    for k in range(n_pairs):
+        leaf = pairs[k, side]
+        if done[leaf] != stamp:
+            done[leaf] = stamp
+            place(b, w, pose, modal, first[leaf], 1 - size[leaf], stamp)
 
 
 @njit(cache=True)

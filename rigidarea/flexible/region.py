@@ -20,7 +20,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, place
+from rigidarea.flexible.boundary import Boundary, Work, place, place_leaves
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -52,35 +52,41 @@ def _crossings(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     pairs: Ints, n_pairs: int, stamp: int, out: NDArray[np.void],
 ) -> int:  # fmt: skip
+    # arrays out of the tuples once: inside the loops every access would count references
+    next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
+    next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
+    place_leaves(a, wa, pose_a, qa, pairs, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, pairs, n_pairs, 1, stamp)
     count = 0
     for k in range(n_pairs):
         leaf_a, leaf_b = pairs[k, 0], pairs[k, 1]
-        first_b, last_b = b.right[leaf_b], b.right[leaf_b] - b.left[leaf_b]
-        for j in range(first_b, last_b):
-            place(b, wb, pose_b, qb, j, stamp)
-        place(b, wb, pose_b, qb, b.next[last_b - 1], stamp)
-        for i in range(a.right[leaf_a], a.right[leaf_a] - a.left[leaf_a]):
-            ia = a.next[i]
-            place(a, wa, pose_a, qa, i, stamp)
-            place(a, wa, pose_a, qa, ia, stamp)
-            px, py = wa.position[i, 0], wa.position[i, 1]
-            dx, dy = wa.position[ia, 0] - px, wa.position[ia, 1] - py
-            for j in range(first_b, last_b):
-                jb = b.next[j]
-                rx, ry = wb.position[j, 0] - px, wb.position[j, 1] - py
-                sx, sy = wb.position[jb, 0] - px, wb.position[jb, 1] - py
-                o_r = (
-                    dx * ry - dy * rx
-                )  # Eq. 1-3 as orientation tests: no division before a crossing is certain
-                o_s = dx * sy - dy * sx
+        low_a, high_a = first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]
+        low_b, high_b = first_b[leaf_b], first_b[leaf_b] - size_b[leaf_b]
+        x0 = y0 = np.inf
+        x1 = y1 = -np.inf
+        for j in range(low_b, high_b + 1):
+            j = j if j < high_b else next_b[high_b - 1]
+            x0, x1 = min(x0, at_b[j, 0]), max(x1, at_b[j, 0])
+            y0, y1 = min(y0, at_b[j, 1]), max(y1, at_b[j, 1])
+        for i in range(low_a, high_a):
+            ia = next_a[i]
+            px, py = at_a[i, 0], at_a[i, 1]
+            qx, qy = at_a[ia, 0], at_a[ia, 1]
+            if max(px, qx) < x0 or min(px, qx) > x1 or max(py, qy) < y0 or min(py, qy) > y1:
+                continue
+            dx, dy = qx - px, qy - py
+            for j in range(low_b, high_b):
+                jb = next_b[j]
+                jx, jy = at_b[j, 0], at_b[j, 1]
+                # Eq. 1-3 as orientation tests: no division before a crossing is certain. One formula for both ends
+                # of an edge, so that edges that share a vertex agree on its side to the last bit.
+                o_r = dx * (jy - py) - dy * (jx - px)
+                o_s = dx * (at_b[jb, 1] - py) - dy * (at_b[jb, 0] - px)
                 if (o_r >= 0.0) == (o_s >= 0.0):
                     continue
-                ex, ey = wb.position[jb, 0] - wb.position[j, 0], wb.position[jb, 1] - wb.position[j, 1]
-                # one formula for both ends, so that edges that share a vertex agree on its side to the last bit
-                o_p = ex * (py - wb.position[j, 1]) - ey * (px - wb.position[j, 0])
-                o_q = ex * (wa.position[ia, 1] - wb.position[j, 1]) - ey * (
-                    wa.position[ia, 0] - wb.position[j, 0]
-                )
+                ex, ey = at_b[jb, 0] - jx, at_b[jb, 1] - jy
+                o_p = ex * (py - jy) - ey * (px - jx)
+                o_q = ex * (qy - jy) - ey * (qx - jx)
                 if (o_p >= 0.0) == (o_q >= 0.0):
                     continue
                 if count == len(out):
@@ -189,7 +195,8 @@ def arcs(
         i, t0, n_a = a.next[i], 0.0, n_a + 1
         if n_a >= limit:
             return MANY, MANY
-        place(a, wa, pose_a, qa, i, stamp)
+        if wa.position_stamp[i] != stamp:
+            place(a, wa, pose_a, qa, i, 1, stamp)
         px, py = wa.position[i, 0] - r.enter_x, wa.position[i, 1] - r.enter_y
         x[0, n_a], y[0, n_a] = ux * px + uy * py, -uy * px + ux * py
     edge[0, n_a] = i
@@ -201,7 +208,8 @@ def arcs(
     while j != r.leave_b or (n_b == 0 and r.leave_b_t > t0):
         edge[1, n_b] = j
         t[1, n_b, 0], t[1, n_b, 1] = t0, 0.0
-        place(b, wb, pose_b, qb, j, stamp)
+        if wb.position_stamp[j] != stamp:
+            place(b, wb, pose_b, qb, j, 1, stamp)
         px, py = wb.position[j, 0] - r.enter_x, wb.position[j, 1] - r.enter_y
         j, t0, n_b = b.previous[j], 1.0, n_b + 1
         if n_b >= limit:

@@ -14,7 +14,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, add_load, place
+from rigidarea.flexible.boundary import Boundary, Work, add_load, place_leaves
 from rigidarea.flexible.nodal import Scratch
 from rigidarea.flexible.region import MANY
 
@@ -33,18 +33,24 @@ def contact(
     k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
     Returns the number of resultants, or MANY.
     """
+    # arrays out of the tuples once: inside the loops every access would count references
+    next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
+    next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
+    place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
+    pairs, regions = s.pairs, s.regions
     count = 0
     last = -1
     fx = fy = moment = stiff = 0.0
     for m in range(n_pairs + 1):
-        leaf_a = s.pairs[m, 0] if m < n_pairs else -2
+        leaf_a = pairs[m, 0] if m < n_pairs else -2
         if (
             leaf_a != last
         ):  # pairs come grouped by the slave's leaf or not: a group is whatever is consecutive
             if stiff > 0.0:
-                if count == len(s.regions):
+                if count == len(regions):
                     return MANY
-                r = s.regions[count]
+                r = regions[count]
                 f = np.hypot(fx, fy)
                 r.force, r.nx, r.ny = f, fx / f, fy / f
                 # the point of the line of action nearest to A's origin: the moment about that origin is kept
@@ -55,22 +61,18 @@ def contact(
             last = leaf_a
         if m == n_pairs:
             break
-        leaf_b = s.pairs[m, 1]
-        for i in range(a.right[leaf_a], a.right[leaf_a] - a.left[leaf_a]):
-            i1 = a.next[i]
-            place(a, wa, pose_a, qa, i, stamp)
-            place(a, wa, pose_a, qa, i1, stamp)
-            px, py = wa.position[i, 0], wa.position[i, 1]
-            tx, ty = wa.position[i1, 0] - px, wa.position[i1, 1] - py
+        leaf_b = pairs[m, 1]
+        for i in range(first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]):
+            i1 = next_a[i]
+            px, py = at_a[i, 0], at_a[i, 1]
+            tx, ty = at_a[i1, 0] - px, at_a[i1, 1] - py
             length = np.hypot(tx, ty)
             tx, ty = tx / length, ty / length
             nx, ny = ty, -tx  # outward
-            for j in range(b.right[leaf_b], b.right[leaf_b] - b.left[leaf_b]):
-                j1 = b.next[j]
-                place(b, wb, pose_b, qb, j, stamp)
-                place(b, wb, pose_b, qb, j1, stamp)
-                rx, ry = wb.position[j, 0] - px, wb.position[j, 1] - py
-                sx, sy = wb.position[j1, 0] - px, wb.position[j1, 1] - py
+            for j in range(first_b[leaf_b], first_b[leaf_b] - size_b[leaf_b]):
+                j1 = next_b[j]
+                rx, ry = at_b[j, 0] - px, at_b[j, 1] - py
+                sx, sy = at_b[j1, 0] - px, at_b[j1, 1] - py
                 x_r, x_s = rx * tx + ry * ty, sx * tx + sy * ty
                 if x_s >= x_r:  # facing the same way: no contact
                     continue
