@@ -6,16 +6,16 @@ import math
 
 import numpy as np
 import pymunk
-from numba import njit
 
 from .force import LAW_AREA, Law
+from .jit import njit
 from .overlap import Work
 from .pair import Pose, Tables, overlap_of_pair
 from .pool import Pool
 from .store import Store, load_law
 
 
-@njit(cache=True)
+@njit
 def bed_energy(polygon: np.ndarray, start: int, stop: int, nx: float, ny: float) -> float:
     """Half the integral of thickness^2 across the polygon, thickness measured along n (length^3).
 
@@ -50,7 +50,7 @@ def bed_energy(polygon: np.ndarray, start: int, stop: int, nx: float, ny: float)
     return total
 
 
-@njit(cache=True)
+@njit
 def _stored(
     pool: Pool, tables: Tables, work: Work, law: Law, pairs: np.ndarray, rows: np.ndarray, poses: np.ndarray
 ) -> float:

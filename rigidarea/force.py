@@ -267,6 +267,14 @@ def region_force(
         couple = min(most, max(-most, couple))
     else:
         force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse))
+        # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
+        # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
+        depth = r.area / r.chord
+        leaving = dt * (dt * force * inverse - speed)
+        if born and depth < dt * speed:
+            force *= 0.5 * (1.0 + depth / (dt * speed))
+        elif depth < leaving:
+            force *= 0.5 * (1.0 + depth / leaving)
 
     tangential = 0.0
     if friction > 0.0:

@@ -20,14 +20,13 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING, Any
 
-import numba
 import numpy as np
 import pymunk
 from numba import types
 
 from .chipmunk import register_symbols
 from .force import Motion
-from .jit import kernel
+from .jit import callback, kernel
 from .memory import array_at
 from .pair import (
     DONE,
@@ -120,7 +119,7 @@ def surface_velocity(
     return x, y
 
 
-@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True, _nrt=False)
+@callback(types.void(types.uintp, types.uintp, types.uintp))
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair of one step, in machine code. See the module's docstring."""
     at = _user_data(space)
@@ -212,7 +211,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         _floats(body_b + s.body_torque, 1)[0] += pull.moment_b
 
 
-@numba.cfunc(types.void(types.uintp, types.uintp, types.uintp), cache=True, _nrt=False)
+@callback(types.void(types.uintp, types.uintp, types.uintp))
 def separate(arbiter: int, space: int, data: int) -> None:
     """Two shapes have separated, or one was removed: forget what their contact remembered."""
     at = _user_data(space)

@@ -12,16 +12,16 @@ import math
 
 import numpy as np
 import pymunk
-from numba import njit
 
 from .force import LAW_AREA, Law
+from .jit import njit
 from .pair import Tables
 from .pool import Pool
 
 #: Largest phase w h of the stiffest contact within a step. Symplectic Euler is stable below 2; the frequency is
-#: already that of a body between two others in a stack (twice a single contact's), so that this is 1/4 of what a
+#: already that of a body between two others in a stack (twice a single contact's), so that this is 1/9 of what a
 #: single contact could bear: the rest is accuracy (restitution within 0.002).
-PHASE = 0.5
+PHASE = 0.45
 #: Penetration that `attach` allows a body at rest, as a fraction of its size, when it chooses the stiffness. A tower
 #: of about (0.65 / this)^(1/3) boxes stands: 14.
 PENETRATION = 2e-4
@@ -31,7 +31,7 @@ IMPACT_PENETRATION = 0.05
 REST_SPEEDS = 2.0
 
 
-@njit(cache=True)
+@njit
 def highest_frequency(pool: Pool, tables: Tables, shapes: int, law: Law, stamp: int) -> float:
     """Largest angular frequency (1/time) that a contact of these shapes can have, or had in step `stamp`.
 
