@@ -25,8 +25,9 @@ REPEATS, QUICK_REPEATS = 5, 3
 def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
     """Run one setting and measure its error (null if the run failed): the task of the sweep."""
     described = get_scene(scene)
-    error = described.measure(record(get_peer(peer).build(described, settings), described))
-    return {"error": error if math.isfinite(error) else None}
+    run = get_peer(peer).build(described, settings)
+    error = described.measure(record(run, described))
+    return {"error": error if math.isfinite(error) else None, "steps_per_frame": run.steps}
 
 
 def jobs(names: Sequence[str], peer_names: Sequence[str], quick: bool) -> list[Task]:
@@ -126,7 +127,7 @@ def chart(
     rows = []
     for task, result, cost in zip(tasks, results, seconds, strict=True):
         scene = get_scene(task["scene"])
-        rows.append({**task, "error": result["error"], "error_name": scene.error_name, "cost_s_per_s": cost})
+        rows.append({**task, **result, "error_name": scene.error_name, "cost_s_per_s": cost})
     return report(
         "chart",
         {"quick": quick, "repeats": rounds, "scenes": names, "peers": chosen},

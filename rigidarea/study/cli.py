@@ -29,12 +29,41 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
 
 def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
+    bench = subparsers.add_parser("bench", help="speed and memory, beside shapely, pymunk's solver and Box2D")
+    bench.add_argument("what", choices=("frames", "kernels", "memory"))
+    bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
+    _common(bench, "bench")
+    bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
+    bench.add_argument("--bodies", type=int, action="append", metavar="N", help="this many (repeatable)")
+    bench.add_argument(
+        "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
+    )
+    bench.set_defaults(run=_bench)
     chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
     _common(chart, "chart")
     _sweep(chart)
     chart.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this (repeatable)")
     chart.add_argument("--repeats", type=int, metavar="N", help="rounds of timing (default 5, quick 3)")
     chart.set_defaults(run=_chart)
+
+
+def _bench(arguments: argparse.Namespace) -> int:
+    from . import bench, draw
+    from .records import write_csv, write_json
+
+    if arguments.what == "frames":
+        sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
+        report = bench.frames(arguments.scene, sizes, arguments.peer)
+        draw.frame_times(report, arguments.out)
+    elif arguments.what == "kernels":
+        report = bench.kernels(arguments.scene)
+        draw.kernel_times(report, arguments.out)
+    else:
+        report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
+    write_json(arguments.out / f"bench-{arguments.what}.json", report)
+    write_csv(arguments.out / f"bench-{arguments.what}.csv", report["results"])
+    write_json(arguments.json, report)
+    return 0
 
 
 def _chart(arguments: argparse.Namespace) -> int:

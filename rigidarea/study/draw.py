@@ -170,6 +170,58 @@ def _mean_log(summary: Sequence[Row], scene: str) -> float:
     return sum(logs) / len(logs)
 
 
+def frame_times(report: Row, out: Path) -> list[Path]:
+    """Median frame time (a line to the 99th percentile) over the number of bodies, one panel a scene."""
+    plt = _pyplot()
+    rows = report["results"]
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    figure, axes = plt.subplots(
+        1, len(scenes), figsize=(10, 4.2), sharey=True, squeeze=False, layout="constrained"
+    )
+    for ax, scene in zip(axes.flat, scenes, strict=True):
+        groups: dict[tuple[str, int], list[Row]] = {}
+        for row in rows:
+            if row["scene"] == scene:
+                groups.setdefault(
+                    (row["peer"], row["steps_per_frame"] if row["peer"] == "pymunk" else 0), []
+                ).append(row)
+        for (peer, steps), group in groups.items():
+            x = [row["bodies"] for row in group]
+            y = [row["frame_ms_median"] for row in group]
+            label = f"{peer}, {steps} step{'s' * (steps > 1)} a frame" if steps else peer
+            style = "--" if steps == 1 else "-"
+            ax.plot(x, y, style, color=colour(peer), marker=marker(peer), ms=5, lw=1.6, label=label)
+            ax.vlines(x, y, [row["frame_ms_p99"] for row in group], color=colour(peer), lw=1)
+        ax.axhline(1e3 / 60, color="#666666", lw=1, ls=":")
+        ax.text(0.02, 1e3 / 60 * 1.1, "60 frames a second", transform=ax.get_yaxis_transform(), fontsize=7.5)
+        ax.set(xscale="log", yscale="log", xlabel="bodies", title=scene)
+    axes[0, 0].set_ylabel("frame time (ms): median, bar to 99th percentile")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    return save(figure, out, "bench-frames")
+
+
+def kernel_times(report: Row, out: Path) -> list[Path]:
+    """One overlap query beside shapely's intersection, for every pair of outlines."""
+    plt = _pyplot()
+    rows = report["results"]
+    figure, ax = plt.subplots(figsize=(10, 1.4 + 0.42 * len(rows)), layout="constrained")
+    for y, row in enumerate(reversed(rows)):
+        ax.plot([row["query_us"], row["shapely_us"]], [y, y], color="#bbbbbb", lw=1.5, zorder=1)
+        ax.plot(row["query_us"], y, marker="o", color=colour("rigidarea"), ms=8)
+        ax.plot(row["shapely_us"], y, marker="s", color="#E69F00", ms=8)
+        ratio = row["shapely_us"] / row["query_us"]
+        ax.text(row["shapely_us"] * 1.15, y, f"{ratio:.0f} ×", va="center", fontsize=8.5, color="#444444")
+    names = [f"{row['pair']} ({row['points_a']} and {row['points_b']} points)" for row in reversed(rows)]
+    ax.set_yticks(range(len(rows)), names)
+    ax.set(xscale="log", xlabel="one query: area, centroid (µs)")
+    handles = [
+        plt.Line2D([], [], ls="", marker="o", color=colour("rigidarea"), label="rigidarea"),
+        plt.Line2D([], [], ls="", marker="s", color="#E69F00", label="shapely"),
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    return save(figure, out, "bench-kernels")
+
+
 def our_name(rows: Sequence[Row]) -> list[str]:
     """Names of our own peers in rows."""
     return [name for name in dict.fromkeys(row["peer"] for row in rows) if get_peer(name).ours]

@@ -57,6 +57,14 @@ def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pym
     return space, list(made.values()), contact
 
 
+class StepRun(SpaceRun):
+    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
+
+    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
+        super().__init__(scene, space, bodies, contact.steps(scene.frame))
+        self.contact = contact
+
+
 class FrameRun(SpaceRun):
     """Frames as a user asks for them: `contact.step(1/60)` from Python."""
 
@@ -71,14 +79,6 @@ class FrameRun(SpaceRun):
         except rigidarea.SimulationError:
             for body in self.bodies:
                 body.position = (math.nan, math.nan)
-
-
-class StepRun(SpaceRun):
-    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
-
-    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
-        super().__init__(scene, space, bodies, contact.steps(scene.frame))
-        self.contact = contact
 
 
 def _curved(scene: Scene) -> bool:
@@ -107,9 +107,11 @@ class Area:
         ]
 
     def _samplings(self, scene: Scene, quick: bool) -> list[dict[str, float]]:
+        if "gears" in scene.tags:  # clearances are finer than what convex pieces can follow
+            return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
         known = samplings(scene, quick)
         if known == [{}] and _curved(scene):
-            return [{"sampling": 1e-4}] if quick else [{"sampling": value} for value in (1e-3, 1e-4, 1e-5)]
+            return [{"sampling": value} for value in ((1e-4, 1e-5) if quick else (1e-3, 1e-4, 1e-5))]
         return known
 
     def build(self, scene: Scene, settings: Settings) -> Run:
@@ -125,9 +127,12 @@ class AreaFrames(Area):
     name = "rigidarea-frame"
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
-        """Allowed penetration × sampling."""
-        allowed = (2e-4,) if quick else (1e-2, 1e-3, 2e-4, 1e-5)
-        return [{"penetration": p, **sampling} for p in allowed for sampling in self._samplings(scene, quick)]
+        """Allowed penetration × sampling; stiffness × sampling where there is no gravity to choose it by."""
+        values = (2e-4,) if quick else (1e-2, 1e-3, 2e-4, 1e-5)
+        knobs: list[dict[str, float]] = [{"penetration": value} for value in values]
+        if scene.gravity == (0.0, 0.0):
+            knobs = [{"stiffness": value} for value in ((1e2, 1e4) if quick else (1e1, 1e2, 1e3, 1e4, 1e5))]
+        return [{**knob, **sampling} for knob in knobs for sampling in self._samplings(scene, quick)]
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by frames."""

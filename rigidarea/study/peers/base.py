@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Mapping
-from itertools import repeat
+from itertools import repeat, starmap
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,6 +22,9 @@ Settings = Mapping[str, Any]
 
 class Run(Protocol):
     """A scene built by a peer, somewhere in its motion."""
+
+    steps: int
+    """Steps a frame (of an engine that chooses them itself: at the start)."""
 
     def advance(self, frames: int) -> None:
         """Simulate `frames` more frames. Timed: no Python of ours per step."""
@@ -51,13 +54,15 @@ class Peer(Protocol):
 
 def drive(step: Callable[..., object], count: int, *arguments: object) -> None:
     """Call `step(*arguments)` `count` times without a Python-level loop (the calls run inside C)."""
-    deque(map(step, *(repeat(argument, count) for argument in arguments)), maxlen=0)
+    deque(starmap(step, repeat(arguments, count)), maxlen=0)
 
 
-def record(run: Run, scene: Scene) -> Trace:
-    """Run a scene frame by frame and keep every state. Stops early once a state is not finite."""
+def record(run: Run, scene: Scene, frames: int | None = None) -> Trace:
+    """Run a scene, or its first `frames`, frame by frame and keep every state; stops at one that is not
+    finite.
+    """
     states = [run.state()]
-    for _ in range(scene.frames):
+    for _ in range(scene.frames if frames is None else frames):
         run.advance(1)
         states.append(run.state())
         if not np.all(np.isfinite(states[-1])):

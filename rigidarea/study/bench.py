@@ -1,0 +1,325 @@
+"""Speed: frame times beside the peers, kernels beside shapely, memory."""
+
+from __future__ import annotations
+
+import math
+import os
+import time
+import tracemalloc
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from .crowds import CROWDS
+from .peers import drive, get_peer, record
+from .records import Progress, Row, report
+from .scene import Scene
+from .timing import one_core
+
+SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
+
+USUAL: dict[str, tuple[dict[str, Any], ...]] = {
+    "rigidarea-frame": ({},),
+    "rigidarea": ({"stiffness": 1e3, "phase": 1.0},),
+    "pymunk": ({"steps": 1, "iterations": 10, "slop": 1e-2}, {"steps": 4, "iterations": 10, "slop": 1e-2}),
+    "box2d": ({"steps": 1, "substeps": 4, "stiff": False, "length": 1},),
+}
+"""How each engine is usually run; pymunk's users take one step a frame, or a few."""
+
+WARM, BUDGET_S = 10, 20.0
+"""Frames before timing; wall time after which the frames of one run are cut short."""
+
+
+def frames(names: Sequence[str] = (), sizes: Sequence[int] = SIZES, peer_names: Sequence[str] = ()) -> Row:
+    """Frame times (ms) of crowds: median, 99th percentile and worst, with the error that goes with them.
+
+    Rows: scene, bodies, peer, settings, steps_per_frame, frame_ms_median, frame_ms_p99, frame_ms_worst,
+    frames, error, error_name. `growth`: exponent of the median's growth with the number of bodies.
+    """
+    chosen = list(names) or list(CROWDS)
+    wanted = [name for name in USUAL if not peer_names or name in peer_names]
+    for name in chosen:
+        if name not in CROWDS:
+            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(CROWDS)}")
+    rows: list[Row] = []
+    progress = Progress("frames", len(chosen) * len(sizes) * len(wanted))
+    for name in chosen:
+        for size in sizes:
+            scene = CROWDS[name](size)
+            for peer in wanted:
+                progress.step(f"{name} {size} {peer}")
+                if not get_peer(peer).refuses(scene):
+                    rows += [frame_row(scene, peer, settings) for settings in USUAL[peer]]
+    settings = {"scenes": chosen, "sizes": list(sizes), "peers": wanted}
+    return report("bench frames", settings, rows, growth=growth(rows), **call_overhead())
+
+
+def frame_row(scene: Scene, peer: str, settings: dict[str, Any]) -> Row:
+    """Time every frame of a run by itself; then measure the error of another run of as many frames."""
+    run = get_peer(peer).build(scene, settings)
+    moving = sum(body.kind == "dynamic" for body in scene.bodies)
+    times: list[float] = []
+    with one_core():
+        run.advance(WARM)
+        started = time.perf_counter()
+        while len(times) < scene.frames - WARM and (
+            time.perf_counter() - started < BUDGET_S or len(times) < 20
+        ):
+            before = time.perf_counter()
+            run.advance(1)
+            times.append(1e3 * (time.perf_counter() - before))
+    done = WARM + len(times)
+    again = get_peer(peer).build(scene, settings)
+    trace = record(again, scene, min(done, scene.frames))
+    return {
+        "scene": scene.name,
+        "bodies": moving,
+        "peer": peer,
+        "settings": settings,
+        "steps_per_frame": again.steps,
+        "frame_ms_median": float(np.median(times)),
+        "frame_ms_p99": float(np.percentile(times, 99)),
+        "frame_ms_worst": max(times),
+        "frames": len(times),
+        "error": scene.measure(trace),
+        "error_name": scene.error_name,
+    }
+
+
+def growth(rows: Sequence[Row]) -> list[Row]:
+    """Slope of log(median frame time) over log(bodies), for every scene, peer and setting with two sizes or
+    more.
+    """
+    groups: dict[tuple[str, str, str], list[Row]] = {}
+    for row in rows:
+        groups.setdefault((row["scene"], row["peer"], str(row["settings"])), []).append(row)
+    found = []
+    for (scene, peer, _), group in groups.items():
+        if len(group) > 1:
+            logs = np.log([(row["bodies"], row["frame_ms_median"]) for row in group])
+            slope = float(np.polyfit(logs[:, 0], logs[:, 1], 1)[0])
+            found.append({"scene": scene, "peer": peer, "settings": group[0]["settings"], "exponent": slope})
+    return found
+
+
+def call_overhead(count: int = 20000) -> Row:
+    """What a step of an empty world costs in each engine (µs): the foreign call and the engine's own least
+    work.
+    """
+    import pymunk
+    from pymunk._chipmunk_cffi import lib
+
+    space = pymunk.Space()
+    found = {
+        "pymunk": _us(lib.cpSpaceStep, count, space._space, 1e-3),
+        "pymunk_python": _us(space.step, count, 1e-3),
+    }
+    try:
+        import pyb2d3
+
+        found["box2d"] = _us(pyb2d3.World(gravity=(0, -10)).step, count, 1e-3, 1)
+    except ImportError:
+        pass
+    return {"call_overhead_us": found}
+
+
+def _us(step: Any, count: int, *arguments: object) -> float:
+    drive(step, count // 10, *arguments)
+    before = time.perf_counter()
+    drive(step, count, *arguments)
+    return 1e6 * (time.perf_counter() - before) / count
+
+
+# Kernels
+# ---------------------------------------------------------------------------------------------------------
+
+
+def kernel_pairs() -> dict[str, tuple[Any, Any, tuple[float, float, float]]]:
+    """Pairs of outlines and the pose (x, y, angle) of the second: boxes, discs, gears in mesh, a Geneva
+    drive.
+    """
+    from ..outline import Outline
+    from ..shapes import box, circle, involute_gear, ring
+    from .scenes import geneva
+
+    small, large = (involute_gear(0.05, teeth) for teeth in (20, 30))
+    parts = geneva.drive()
+    crank = 0.3
+    driver = Outline(parts.pin.rotated(crank).rings[0])
+    return {
+        "boxes": (box(1, 1), box(1, 1), (0.3, 0.98, 0.1)),
+        "box, slab": (box(1, 1), box(100, 1), (0.3, -0.99, 0.0)),
+        "16-gons": (_gon(16), _gon(16), (1.9, 0.1, 0.2)),
+        "discs": (circle(0.5), circle(0.5), (0.99, 0.05, 0.0)),
+        "disc in ring": (circle(0.45, tolerance=1e-5), ring(0.5, 0.6, tolerance=1e-5), (0.0, 0.0505, 0.0)),
+        "gears": (small, large, (1.247, 0.0, math.pi + math.pi / 30)),
+        "geneva": (driver, parts.wheel, (0.05, 0.0, parts.wheel_angle(crank) + 5e-3)),
+        "1000-gons": (_gon(1000), _gon(1000), (1.99, 0.0, 0.0)),
+    }
+
+
+def _gon(n: int) -> Any:
+    from ..outline import Outline
+
+    angles = 2 * math.pi * np.arange(n) / n
+    return Outline(np.column_stack((np.cos(angles), np.sin(angles))))
+
+
+def kernels(names: Sequence[str] = (), repeats: int = 5) -> Row:
+    """One overlap query (µs) in a compiled loop, beside shapely's intersection with area and centroid.
+
+    Rows: pair, points_a, points_b, regions, query_us, shapely_us, area_error (relative, against shapely).
+    """
+    import shapely
+    from shapely.affinity import affine_transform
+
+    rows = []
+    pairs = kernel_pairs()
+    for name in names:
+        if name not in pairs:
+            raise ValueError(f"unknown pair {name!r}; expected one of {', '.join(pairs)}")
+    progress = Progress("kernels", len(names or pairs))
+    for name in names or pairs:
+        a, b, (x, y, angle) = pairs[name]
+        query = Query(a, b, (x, y, angle))
+        c, s = math.cos(angle), math.sin(angle)
+        placed = affine_transform(b.polygon, (c, -s, s, c, x, y))
+
+        def theirs(one: Any = a.polygon, other: Any = placed) -> tuple[float, float, float]:
+            both = shapely.intersection(one, other)
+            return both.area, *both.centroid.coords[0]
+
+        area = theirs()[0]
+        with one_core():
+            ours_us = min(query.time_us() for _ in range(repeats))
+            shapely_us = min(_us(theirs, 200) for _ in range(repeats))
+        rows.append(
+            {
+                "pair": name,
+                "points_a": sum(map(len, a.rings)),
+                "points_b": sum(map(len, b.rings)),
+                "regions": query.regions,
+                "query_us": ours_us,
+                "shapely_us": shapely_us,
+                "area_error": abs(query.area / area - 1),
+            }
+        )
+        progress.step(name)
+    return report("bench kernels", {"pairs": list(names or pairs), "repeats": repeats}, rows)
+
+
+class Query:
+    """One overlap, asked again and again in a compiled loop with the second outline moved by rounding
+    errors.
+    """
+
+    def __init__(self, a: Any, b: Any, pose: tuple[float, float, float]) -> None:
+        from ..overlap import enlarged, fits, new_work
+        from ..pool import pack
+
+        self.pool, self.pose = pack([a, b]), pose
+        points, rings = sum(len(r) for r in (*a.rings, *b.rings)), len(a.rings) + len(b.rings)
+        self.work = new_work()
+        self.regions = -1 if not fits(self.work, points, rings) else _loop(self.pool, *pose, self.work, 1)
+        while self.regions < 0 and len(self.work.cross) < 10**6:
+            self.work = enlarged(self.work, points, rings)
+            self.regions = _loop(self.pool, *pose, self.work, 1)
+        self.area = float(sum(self.work.loops["area"][: self.regions]))
+        self.count = 1
+        while self._seconds() < 0.02:
+            self.count *= 2
+
+    def _seconds(self) -> float:
+        before = time.perf_counter()
+        _loop(self.pool, *self.pose, self.work, self.count)
+        return time.perf_counter() - before
+
+    def time_us(self) -> float:
+        """Mean time of a query (µs)."""
+        return 1e6 * self._seconds() / self.count
+
+
+def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) -> int:
+    """Compiled on first use: `count` queries, the loops found by the last."""
+    global _compiled
+    if _compiled is None:
+        import numba
+
+        from ..overlap import overlap_kernel, relative
+
+        @numba.njit
+        def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
+            found = 0
+            for i in range(count):
+                a, b = pool.heads[0], pool.heads[1]
+                c, s = math.cos(angle), math.sin(angle)
+                bx = x + 1e-13 * (i % 7)
+                rel = relative(0.0, 0.0, 1.0, 0.0, bx, y, c, s, a["x"], a["y"], b["x"], b["y"])
+                found = overlap_kernel(pool, 0, pool, 1, rel, work)
+            return found
+
+        _compiled = loop
+    return int(_compiled(pool, x, y, angle, work, count))
+
+
+_compiled: Any = None
+
+
+# Memory
+# ----------------------------------------------------------------------------------------------------------
+
+
+def memory(names: Sequence[str] = (), size: int = 1000, peer_names: Sequence[str] = ()) -> Row:
+    """Resident memory that a crowd takes once it is built and has run a few frames, per body.
+
+    Each run is built in a fresh process, so that nothing is reused. Rows: scene, bodies, peer,
+    bytes_per_body, python_bytes_per_body (of that, what Python's allocator holds).
+    """
+    from concurrent.futures import ProcessPoolExecutor
+    from multiprocessing import get_context
+
+    chosen = list(names) or list(CROWDS)
+    wanted = [name for name in USUAL if not peer_names or name in peer_names]
+    rows = []
+    progress = Progress("memory", len(chosen) * len(wanted))
+    for name in chosen:
+        for peer in wanted:
+            with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
+                rows.append(pool.submit(memory_row, name, size, peer).result())
+            progress.step(f"{name} {peer}")
+    return report("bench memory", {"scenes": chosen, "size": size, "peers": wanted}, rows)
+
+
+def memory_row(name: str, size: int, peer: str) -> Row:
+    """Growth of this process's resident memory while a crowd is built and run ten frames."""
+    small, scene = CROWDS[name](10), CROWDS[name](size)
+    engine, settings = get_peer(peer), USUAL[peer][0]
+    engine.build(small, settings).advance(2)  # what is loaded and compiled once does not count
+    tracemalloc.start()
+    before = resident()
+    run = engine.build(scene, settings)
+    run.advance(10)
+    grown = resident() - before
+    python = tracemalloc.get_traced_memory()[0]
+    tracemalloc.stop()
+    bodies = sum(body.kind == "dynamic" for body in scene.bodies)
+    return {
+        "scene": name,
+        "bodies": bodies,
+        "peer": peer,
+        "settings": settings,
+        "bytes_per_body": grown / bodies,
+        "python_bytes_per_body": python / bodies,
+    }
+
+
+def resident() -> int:
+    """Resident memory of this process (bytes); elsewhere than on Linux its peak."""
+    try:
+        with open("/proc/self/statm") as file:
+            return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE")
+    except OSError:
+        import resource
+
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

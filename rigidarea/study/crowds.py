@@ -1,0 +1,107 @@
+"""Scenes of any number of bodies with a known answer: towers that stand, a pyramid, a gas that keeps its
+energy.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+
+import numpy as np
+
+from .scene import OMEGA, VX, VY, Body, Scene, Trace, block, box, disc, floor, rest_error
+
+TOWER = 5
+"""Boxes in a tower."""
+SEED = 20
+
+
+def towers(bodies: int) -> Scene:
+    """Towers of five unit boxes side by side on one floor; exact: nothing moves."""
+    count = max(bodies // TOWER, 1)
+    ground = floor(2.0 * count + 20.0)
+    boxes = tuple(
+        block(f"box{i}_{j}", 1.0, 1.0, (2.0 * i - count, j + 0.5)) for i in range(count) for j in range(TOWER)
+    )
+    return _standing("towers", ground, boxes)
+
+
+def pyramid(bodies: int) -> Scene:
+    """Unit boxes in a pyramid, each on two; exact: nothing moves."""
+    base = max(round((math.sqrt(8 * bodies + 1) - 1) / 2), 1)
+    ground = floor(2.0 * base + 20.0)
+    boxes = tuple(
+        block(f"box{i}_{j}", 1.0, 1.0, (1.05 * (j - (base - 1 - i) / 2), i + 0.5))
+        for i in range(base)
+        for j in range(base - i)
+    )
+    return _standing("pyramid", ground, boxes)
+
+
+def _standing(name: str, ground: Body, boxes: tuple[Body, ...]) -> Scene:
+    names = [body.name for body in boxes]
+    return Scene(
+        name=name,
+        title=name,
+        bodies=(ground, *boxes),
+        friction=0.5,
+        duration=3.0,
+        error_name="displacement / side",
+        error=lambda trace: rest_error(trace, names, 1.0, last=0.0),
+        source="statics",
+        tags=frozenset({"rest", "flat", "stack"}),
+    )
+
+
+def gas(bodies: int) -> Scene:
+    """Equal elastic discs in a box without gravity, two fifths of it filled; exact: the energy stays."""
+    radius, pitch = 0.5, 1.4
+    columns = math.ceil(math.sqrt(bodies))
+    side = columns * pitch / 2
+    generator = np.random.default_rng(SEED)
+    velocities = generator.normal(0.0, 2.0, (bodies, 2))
+    places = [
+        ((i % columns + 0.5) * pitch - side, (i // columns + 0.5) * pitch - side) for i in range(bodies)
+    ]
+    discs = tuple(
+        disc(f"disc{i}", radius, place, velocity=(float(v[0]), float(v[1])))
+        for i, (place, v) in enumerate(zip(places, velocities, strict=True))
+    )
+    wall = side + 1.0
+    walls = tuple(
+        Body(f"wall{i}", (box(*size),), place, kind="static")
+        for i, (size, place) in enumerate(
+            (
+                ((2 * wall + 2, 2.0), (0.0, -wall)),
+                ((2 * wall + 2, 2.0), (0.0, wall)),
+                ((2.0, 2 * wall + 2), (-wall, 0.0)),
+                ((2.0, 2 * wall + 2), (wall, 0.0)),
+            )
+        )
+    )
+
+    def error(trace: Trace) -> float:
+        """Relative change of kinetic energy at the end, contacts under way left out by the median of ten
+        frames.
+        """
+        moving = trace.states[:, len(walls) :]
+        energy = np.sum(moving[:, :, VX] ** 2 + moving[:, :, VY] ** 2, axis=1)
+        energy += np.sum(moving[:, :, OMEGA] ** 2, axis=1) * radius**2 / 2
+        return float(abs(np.median(energy[-10:]) / energy[0] - 1))
+
+    return Scene(
+        name="gas",
+        title="gas of elastic discs",
+        bodies=(*walls, *discs),
+        gravity=(0.0, 0.0),
+        elasticity=1.0,
+        duration=3.0,
+        error_name="relative change of energy",
+        error=error,
+        source="conservation of energy",
+        pressure=8.0,
+        tags=frozenset({"impact"}),
+    )
+
+
+CROWDS: dict[str, Callable[[int], Scene]] = {"towers": towers, "pyramid": pyramid, "gas": gas}
