@@ -142,7 +142,7 @@ def workspace(b: Boundary) -> Work:
     )  # fmt: skip
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: int, stamp: int) -> None:
     """World positions of ``count`` contact points from ``start`` on along the perimeter, each once an evaluation.
 
@@ -190,7 +190,7 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: in
         i = following[i]
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
@@ -245,7 +245,7 @@ def candidates(
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def add_load(w: Work, i: int, fx: float, fy: float) -> None:
     """Adds a force to contact point i and remembers that it is loaded."""
     if not w.point_flag[i]:
@@ -283,7 +283,7 @@ def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
             _add_node(w, b.high[i], s * fx, s * fy)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def _add_node(w: Work, node: int, fx: float, fy: float) -> None:
     if not w.node_flag[node]:
         w.node_flag[node] = True

@@ -81,7 +81,7 @@ def _moments(x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float) -> tup
     return s0, s1, s2
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, x: Array, y: Array, edge: Ints, t: Array,
     n_a: int, n_b: int, force: float, area: float, xc: float, chord: float, q: float,
@@ -93,7 +93,8 @@ def distribute(
     # Both arcs, not "or": each must be straightened.
     bent_a = _straighten(x, 0, n_a, chord)
     bent_b = _straighten(x, 1, n_b, chord)
-    if q == 1.0 and not (bent_a or bent_b):
+    linear = q == 1.0 and not (bent_a or bent_b)
+    if linear:
         alpha, beta = force / area, 0.0
     else:
         s0, s1, s2 = _moments(x, y, n_a, n_b, q, xc)
@@ -107,7 +108,7 @@ def distribute(
             alpha, beta = force / s0, 0.0
     i = j = 0
     lo = 0.0
-    ia, ja = a.next[edge[0, 0]], b.next[edge[1, 0]]
+    next_a, next_b = a.next, b.next
     a_low = a_high = b_low = b_high = 0.0
     while i < n_a and j < n_b:
         hi = min(x[0, i + 1], x[1, j + 1])
@@ -120,21 +121,35 @@ def distribute(
             slope = gb - ga
             sa = (t[0, i, 1] - t[0, i, 0]) * width_a
             sb = (t[1, j, 1] - t[1, j, 0]) * width_b
-            for g in range(3):
-                e = GAUSS_X[g] * (hi - lo)
-                z = lo + e
-                d = max(d0 + slope * e, 0.0)
-                p = (alpha + beta * (z - xc)) * (d if q == 1.0 else d**q) * GAUSS_W[g] * (hi - lo)
-                ta = t[0, i, 0] + sa * (z - x[0, i])
-                tb = t[1, j, 0] + sb * (z - x[1, j])
-                a_low += p * (1.0 - ta)
-                a_high += p * ta
-                b_low += p * (1.0 - tb)
-                b_high += p * tb
-            lo = hi
+            if linear:  # p and the shape functions are linear: their product in closed form
+                w = (hi - lo) / 6.0
+                p0, p1 = alpha * d0 * w, alpha * (d0 + slope * (hi - lo)) * w
+                total = 3.0 * (p0 + p1)
+                t0, t1 = t[0, i, 0] + sa * (lo - x[0, i]), t[0, i, 0] + sa * (hi - x[0, i])
+                f = p0 * (2.0 * t0 + t1) + p1 * (t0 + 2.0 * t1)
+                a_high += f
+                a_low += total - f
+                t0, t1 = t[1, j, 0] + sb * (lo - x[1, j]), t[1, j, 0] + sb * (hi - x[1, j])
+                f = p0 * (2.0 * t0 + t1) + p1 * (t0 + 2.0 * t1)
+                b_high += f
+                b_low += total - f
+                lo = hi
+            else:
+                for g in range(3):
+                    e = GAUSS_X[g] * (hi - lo)
+                    z = lo + e
+                    d = max(d0 + slope * e, 0.0)
+                    p = (alpha + beta * (z - xc)) * (d if q == 1.0 else d**q) * GAUSS_W[g] * (hi - lo)
+                    ta = t[0, i, 0] + sa * (z - x[0, i])
+                    tb = t[1, j, 0] + sb * (z - x[1, j])
+                    a_low += p * (1.0 - ta)
+                    a_high += p * ta
+                    b_low += p * (1.0 - tb)
+                    b_high += p * tb
+                lo = hi
         if x[0, i + 1] <= lo:
             add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
-            add_load(wa, a.next[edge[0, i]], -a_high * nx, -a_high * ny)
+            add_load(wa, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
             a_low = a_high = 0.0
             i += 1
             if i < n_a:  # the vertex between two pieces is a node inside: its pressure, Eq. 12
@@ -142,7 +157,7 @@ def distribute(
                 wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
         else:
             add_load(wb, edge[1, j], b_low * nx, b_low * ny)
-            add_load(wb, b.next[edge[1, j]], b_high * nx, b_high * ny)
+            add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
             b_low = b_high = 0.0
             j += 1
             if j < n_b:
@@ -150,10 +165,10 @@ def distribute(
                 wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
     if i < n_a:
         add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
-        add_load(wa, a.next[edge[0, i]], -a_high * nx, -a_high * ny)
+        add_load(wa, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
     if j < n_b:
         add_load(wb, edge[1, j], b_low * nx, b_low * ny)
-        add_load(wb, b.next[edge[1, j]], b_high * nx, b_high * ny)
+        add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
 
 
 @njit(cache=True)

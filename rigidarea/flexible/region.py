@@ -49,31 +49,40 @@ SLICED = -3  # a region with more than one arc a body (a bar through a bar)
 
 @njit(cache=True)
 def _crossings(
-    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
-    pairs: Ints, n_pairs: int, stamp: int, out: NDArray[np.void],
+    next_a: Ints, first_a: Ints, size_a: Ints, at_a: Array, next_b: Ints, first_b: Ints, size_b: Ints, at_b: Array,
+    pairs: Ints, n_pairs: int, out: NDArray[np.void],
 ) -> int:  # fmt: skip
-    # arrays out of the tuples once: inside the loops every access would count references
-    next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
-    next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
-    place_leaves(a, wa, pose_a, qa, pairs, n_pairs, 0, stamp)
-    place_leaves(b, wb, pose_b, qb, pairs, n_pairs, 1, stamp)
     count = 0
+    last = -1
+    ox = oy = ux = uy = above = below = 0.0
     for k in range(n_pairs):
         leaf_a, leaf_b = pairs[k, 0], pairs[k, 1]
         low_a, high_a = first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]
         low_b, high_b = first_b[leaf_b], first_b[leaf_b] - size_b[leaf_b]
-        x0 = y0 = np.inf
-        x1 = y1 = -np.inf
-        for j in range(low_b, high_b + 1):
-            j = j if j < high_b else next_b[high_b - 1]
-            x0, x1 = min(x0, at_b[j, 0]), max(x1, at_b[j, 0])
-            y0, y1 = min(y0, at_b[j, 1]), max(y1, at_b[j, 1])
+        if leaf_a != last:
+            # A's leaf lies in a strip along its chord; a leaf of B wholly to one side of the strip cannot cross it
+            last = leaf_a
+            end = next_a[high_a - 1]
+            ox, oy = at_a[low_a, 0], at_a[low_a, 1]
+            ux, uy = at_a[end, 0] - ox, at_a[end, 1] - oy
+            above = below = 0.0
+            for i in range(low_a + 1, high_a):
+                o = ux * (at_a[i, 1] - oy) - uy * (at_a[i, 0] - ox)
+                above, below = max(above, o), min(below, o)
+            slack = 1e-9 * (ux * ux + uy * uy)  # rounding: the strip decides only what is clear
+            above, below = above + slack, below - slack
+        j = next_b[high_b - 1]
+        o = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
+        lowest = highest = o
+        for j in range(low_b, high_b):
+            o = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
+            lowest, highest = min(lowest, o), max(highest, o)
+        if lowest > above or highest < below:
+            continue
         for i in range(low_a, high_a):
             ia = next_a[i]
             px, py = at_a[i, 0], at_a[i, 1]
             qx, qy = at_a[ia, 0], at_a[ia, 1]
-            if max(px, qx) < x0 or min(px, qx) > x1 or max(py, qy) < y0 or min(py, qy) > y1:
-                continue
             dx, dy = qx - px, qy - py
             for j in range(low_b, high_b):
                 jb = next_b[j]
@@ -102,14 +111,14 @@ def _crossings(
 
 
 @njit(cache=True)
-def _link(a: Boundary, b: Boundary, c: NDArray[np.void], n: int) -> None:
+def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
     """next_a, next_b: the crossing that follows on the same ring of A, of B."""
     for i in range(n):
         best, wrap = -1, -1
         best_key = wrap_key = np.inf
         key = c[i].a + c[i].ta
         for j in range(n):
-            if j != i and a.ring[c[j].a] == a.ring[c[i].a]:
+            if j != i and ring_a[c[j].a] == ring_a[c[i].a]:
                 other = c[j].a + c[j].ta
                 if other >= key and other < best_key and not (other == key and j < i):
                     best, best_key = j, other
@@ -120,7 +129,7 @@ def _link(a: Boundary, b: Boundary, c: NDArray[np.void], n: int) -> None:
         best_key = wrap_key = np.inf
         key = c[i].b + c[i].tb
         for j in range(n):
-            if j != i and b.ring[c[j].b] == b.ring[c[i].b]:
+            if j != i and ring_b[c[j].b] == ring_b[c[i].b]:
                 other = c[j].b + c[j].tb
                 if other >= key and other < best_key and not (other == key and j < i):
                     best, best_key = j, other
@@ -129,7 +138,7 @@ def _link(a: Boundary, b: Boundary, c: NDArray[np.void], n: int) -> None:
         c[i].next_b = best if best >= 0 else wrap
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def find_regions(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     pairs: Ints, n_pairs: int, stamp: int, crossings: NDArray[np.void], regions: NDArray[np.void],
@@ -138,12 +147,16 @@ def find_regions(
 
     Poses are (x, y, cos θ, sin θ), qa and qb the modal coordinates, ``pairs`` the candidate leaves.
     """
-    n = _crossings(a, wa, pose_a, qa, b, wb, pose_b, qb, pairs, n_pairs, stamp, crossings)
+    place_leaves(a, wa, pose_a, qa, pairs, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, pairs, n_pairs, 1, stamp)
+    n = _crossings(
+        a.next, a.right, a.left, wa.position, b.next, b.right, b.left, wb.position, pairs, n_pairs, crossings
+    )
     if n <= 0:
         return n
     if n % 2 == 1:
         return TORN
-    _link(a, b, crossings, n)
+    _link(a.ring, b.ring, crossings, n)
     count = 0
     for i in range(n):
         c = crossings[i]
@@ -172,7 +185,7 @@ def find_regions(
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def arcs(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     r: NDArray[np.void], stamp: int, x: Array, y: Array, edge: Ints, t: Array,
@@ -184,6 +197,8 @@ def arcs(
     of pieces, or (MANY, MANY).
     """
     ux, uy = -r.ny, r.nx  # along the chord
+    following, at_a, stamp_a = a.next, wa.position, wa.position_stamp
+    preceding, at_b, stamp_b = b.previous, wb.position, wb.position_stamp
     limit = x.shape[1] - 2
     for side in range(2):
         x[side, 0] = y[side, 0] = 0.0
@@ -192,12 +207,12 @@ def arcs(
     while i != r.leave_a or (n_a == 0 and r.leave_a_t < t0):
         edge[0, n_a] = i
         t[0, n_a, 0], t[0, n_a, 1] = t0, 1.0
-        i, t0, n_a = a.next[i], 0.0, n_a + 1
+        i, t0, n_a = following[i], 0.0, n_a + 1
         if n_a >= limit:
             return MANY, MANY
-        if wa.position_stamp[i] != stamp:
+        if stamp_a[i] != stamp:
             place(a, wa, pose_a, qa, i, 1, stamp)
-        px, py = wa.position[i, 0] - r.enter_x, wa.position[i, 1] - r.enter_y
+        px, py = at_a[i, 0] - r.enter_x, at_a[i, 1] - r.enter_y
         x[0, n_a], y[0, n_a] = ux * px + uy * py, -uy * px + ux * py
     edge[0, n_a] = i
     t[0, n_a, 0], t[0, n_a, 1] = t0, r.leave_a_t
@@ -208,10 +223,10 @@ def arcs(
     while j != r.leave_b or (n_b == 0 and r.leave_b_t > t0):
         edge[1, n_b] = j
         t[1, n_b, 0], t[1, n_b, 1] = t0, 0.0
-        if wb.position_stamp[j] != stamp:
+        if stamp_b[j] != stamp:
             place(b, wb, pose_b, qb, j, 1, stamp)
-        px, py = wb.position[j, 0] - r.enter_x, wb.position[j, 1] - r.enter_y
-        j, t0, n_b = b.previous[j], 1.0, n_b + 1
+        px, py = at_b[j, 0] - r.enter_x, at_b[j, 1] - r.enter_y
+        j, t0, n_b = preceding[j], 1.0, n_b + 1
         if n_b >= limit:
             return MANY, MANY
         x[1, n_b], y[1, n_b] = ux * px + uy * py, -uy * px + ux * py
@@ -222,7 +237,7 @@ def arcs(
     return n_a, n_b
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def area_and_centroid(x: Array, y: Array, n_a: int, n_b: int) -> tuple[float, float, float]:
     """Area and centroid (Eq. 4 and 7) of the region between the arcs, in its chord frame.
 

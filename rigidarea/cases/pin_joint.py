@@ -1,0 +1,269 @@
+"""A pin bouncing in a circular support (the paper's section 3.2, Fig. 7–10, Table 2).
+
+Left open by the paper and chosen here: the support's outer radius (45 mm, its rim clamped), the time step (10 µs: 130
+steps a contact), ρ∞ = 1 (no constraints, so no reason to dissipate), STS details (see ``flexible.segment``; the pin is the
+slave). E is 207×10⁸ Pa as its Table 1 prints. k = 5×10⁷ N/m² without the thickness: F = k A.
+
+Level "rigid" runs through the pymunk hook; its exact answers (lens area, quadrature) are recomputed here. The other
+levels, and STS at every level, run through ``flexible``. The comparison of costs times both methods at the paper's
+three meshes, compliant, in one run.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.cases import report
+from rigidarea.flexible.body import elastic_body
+from rigidarea.flexible.element import Material
+from rigidarea.flexible.integrate import Simulation
+
+Array = NDArray[np.float64]
+
+PIN, JOURNAL, RIM, THICKNESS, DENSITY, K, GRAVITY = 0.020, 0.035, 0.045, 0.005, 7800.0, 5e7, 9.81
+STEEL = Material(207e8, 0.29, DENSITY, THICKNESS)
+STEP = 1e-5
+TOLERANCE = 1e-8  # sagitta of the rigid level's outlines: 4e-5 of the penetration
+PAPER = {"table_2_s": {"0.7": [21.61, 11.57], "1.0": [19.05, 9.29], "1.3": [16.57, 8.99]},
+         "ratio": {"0.7": 0.535, "1.0": 0.488, "1.3": 0.543}, "first_contact_s": 0.05}  # fmt: skip
+
+
+def circle(radius: float, clockwise: bool = False, n: int = 7200) -> Array:
+    """A finely sampled circle that starts at the bottom, where the contact will be."""
+    t = 2 * np.pi * np.arange(n) / n * (-1 if clockwise else 1) - 0.5 * np.pi
+    return radius * np.column_stack([np.cos(t), np.sin(t)])
+
+
+def exact() -> dict[str, float]:
+    """δ_max, F_max, contact time and period of the rigid bodies with F = k A, by the lens area and quadrature."""
+    from scipy.integrate import quad
+    from scipy.optimize import brentq
+
+    mass = DENSITY * THICKNESS * np.pi * PIN**2
+    play = JOURNAL - PIN
+
+    def area(depth: float) -> float:
+        """Pin minus journal, centres play + depth apart: the pin's disc less the lens it shares with the bore."""
+        d = play + depth
+        if depth <= 0:
+            return 0.0
+        x = (d * d + PIN**2 - JOURNAL**2) / (2 * d)
+        half_p, half_j = np.arccos(x / PIN), np.arccos((d - x) / JOURNAL)
+        lens = PIN**2 * (half_p - np.sin(2 * half_p) / 2) + JOURNAL**2 * (half_j - np.sin(2 * half_j) / 2)
+        return float(np.pi * PIN**2 - lens)
+
+    def energy(depth: float) -> float:
+        """Twice the kinetic energy over the mass at a depth, after a fall from the centre."""
+        stored = quad(area, 0, depth, epsabs=1e-18, epsrel=1e-10)[0]  # of 1.5e-10 m³
+        return 2 * GRAVITY * (play + depth) - 2 * K / mass * stored
+
+    deepest = brentq(energy, 1e-5, 1e-3, xtol=1e-16)
+    # substitution depth = deepest (1 − s²) takes the root's singularity away
+    touch = 2 * quad(lambda s: 2 * s * deepest / np.sqrt(max(energy(deepest * (1 - s * s)), 1e-300)), 0, 1)[0]
+    return {"penetration_max_mm": 1e3 * deepest, "force_max_n": K * area(deepest), "contact_ms": 1e3 * touch,
+            "period_ms": 1e3 * (touch + 2 * np.sqrt(2 * play / GRAVITY))}  # fmt: skip
+
+
+def simulation(mesh_mm: float, level: str, contact: str, refine: int = 1, cache: Path | None = None) -> Simulation:
+    """Pin and support in the flexible stepper."""
+    size = 1e-3 * mesh_mm
+    pin, _ = elastic_body([circle(PIN)], size, STEEL, level, refine=refine, cache=cache)
+    support, _ = elastic_body(
+        [circle(RIM), circle(JOURNAL, True)], size, STEEL, level, contact_rings=(1,), clamped=0, refine=refine, cache=cache
+    )
+    return Simulation(
+        [pin, support], k=K, contact=contact, reach=5e-4, margin=2e-4, rho=1.0, gravity=(0.0, -GRAVITY)
+    )  # fmt: skip
+
+
+def run_hook(duration: float) -> tuple[Array, Array, Array, Array]:
+    """The rigid level through the pymunk hook: time, height of the pin, upward force on it, energy as a height."""
+    import pymunk
+
+    import rigidarea
+    from rigidarea.shapes import circle as disc
+    from rigidarea.shapes import ring
+
+    space = pymunk.Space()
+    space.gravity = (0, -GRAVITY)
+    pin_outline = disc(PIN, tolerance=TOLERANCE)
+    pin = pin_outline.body(density=DENSITY * THICKNESS)
+    for outline, body in ((pin_outline, pin), (ring(JOURNAL, RIM, tolerance=TOLERANCE), space.static_body)):
+        shape = outline.add_to(body)
+        shape.elasticity = 1.0
+        shape.friction = 0.0
+        space.add(shape) if body is space.static_body else space.add(body, shape)
+    contact = rigidarea.attach(space, stiffness=K)
+    steps = round(duration / STEP)
+    y, v, level = np.empty(steps), np.empty(steps + 1), np.empty(steps)
+    v[0] = 0.0
+    for i in range(steps):
+        space.step(STEP)
+        y[i], v[i + 1], level[i] = pin.position.y, pin.velocity.y, 0.5 * pin.velocity.length**2 / GRAVITY
+    contact.detach()
+    return STEP * np.arange(1, steps + 1), y, pin.mass * (np.diff(v) / STEP + GRAVITY), level + y
+
+
+def measure(t: Array, y: Array, force: Array, level: Array) -> dict[str, float]:
+    """First contact: deepest point, largest force, duration; period; drift of the rebound height over all bounces.
+
+    Between samples: parabolas through extremes, straight lines through the crossing of the touching height. ``level``
+    is the height that the pin's mechanical energy reaches, y + v²/2g: a pin dropped from the centre of a
+    bowl is on an unstable orbit (it gathers sideways motion from any asymmetry), which is no loss.
+    """
+
+    def peak(values: Array, i: int) -> tuple[float, float]:
+        a, b, c = values[i - 1], values[i], values[i + 1]
+        s = 0.5 * (a - c) / (a - 2 * b + c)
+        return b - 0.25 * (a - c) * s, t[i] + s * (t[1] - t[0])
+
+    play = JOURNAL - PIN
+    below = np.flatnonzero((y[:-1] >= -play) & (y[1:] < -play))
+    above = np.flatnonzero((y[:-1] < -play) & (y[1:] >= -play))
+
+    def when(i: int) -> float:
+        return float(t[i] + (t[i + 1] - t[i]) * (-play - y[i]) / (y[i + 1] - y[i]))
+
+    first = slice(below[0], above[0] + 2)
+    low = below[0] + int(np.argmin(y[first]))
+    strong = below[0] + int(np.argmax(force[first]))
+    top = above[0] + int(np.argmax(y[above[0] : below[1]]))
+    heights = []
+    for a, b in zip(above, [*below[1:], len(y)], strict=False):
+        if b - a > 10:
+            heights.append(float(np.median(level[a + 2 : b - 1])) + play)  # in flight it is constant
+    return {
+        "penetration_max_mm": 1e3 * (-peak(y, low)[0] - play),
+        "force_max_n": peak(force, strong)[0],
+        "contact_ms": 1e3 * (when(above[0]) - when(below[0])),
+        "period_ms": 1e3 * peak(y, top)[1],
+        "rebound_drift_percent": 100 * float(np.abs(np.array(heights) / play - 1).max()),
+        "bounces": len(heights),
+    }
+
+
+def compare(mesh_mm: float, level: str, cache: Path | None) -> dict[str, Any]:
+    """Area and STS on one mesh: whole run of 0.3 s, one contact evaluation, and how far the force curves differ."""
+    row: dict[str, Any] = {"mesh_mm": mesh_mm}
+    curves = {}
+    for contact in ("area", "sts"):
+        sim = simulation(mesh_mm, level, contact, cache=cache)
+        sim.run(1e-4, STEP)  # compiles, or loads from the cache
+        sim = simulation(mesh_mm, level, contact, cache=cache)
+        start = time.perf_counter()
+        r = sim.run(0.3, STEP)
+        row[f"{contact}_run_s"] = time.perf_counter() - start
+        touching = np.flatnonzero(r.force[:, 1] != 0)
+        row[f"{contact}_eval_us"] = 1e6 * sim.contact_seconds(r.x[touching], 20)
+        phase = []
+        for _ in range(5):  # the contact alone, where the evaluation counts
+            sim = simulation(mesh_mm, level, contact, cache=cache)
+            sim.run(0.0552, STEP)
+            start = time.perf_counter()
+            sim.run(0.0014, STEP)
+            phase.append(time.perf_counter() - start)
+        row[f"{contact}_contact_phase_s"] = min(phase)
+        row[f"{contact}_iterations_mean"] = float(r.iterations.mean())
+        curves[contact] = r
+    a, s = curves["area"], curves["sts"]
+    first = slice(5400, 5800)  # the first contact, at 0.055 s
+    row["force_rms_percent"] = 100 * float(
+        np.sqrt(np.mean((a.force[first, 1] - s.force[first, 1]) ** 2)) / np.abs(s.force[first, 1]).max()
+    )
+    row["run_ratio"] = row["area_run_s"] / row["sts_run_s"]
+    row["contact_phase_ratio"] = row["area_contact_phase_s"] / row["sts_contact_phase_s"]
+    row["eval_ratio"] = row["area_eval_us"] / row["sts_eval_us"]
+    row["curves"] = curves
+    return row
+
+
+def run(
+    mode: str = "rigid", mesh_mm: float = 1.0, contact: str = "area", out: Path | None = None, cache: Path | None = None,
+    duration: float = 1.2,
+) -> dict[str, Any]:  # fmt: skip
+    """Ten bounces at one level, beside the exact rigid answers; then area and STS on the paper's three meshes."""
+    clock = report.Clock()
+    reference = exact()
+    if mode == "rigid" and contact == "area":
+        clock.setup()
+        t, y, force, level = run_hook(duration)
+    else:
+        sim = simulation(mesh_mm, mode, contact, refine=4, cache=cache)
+        clock.setup()
+        r = sim.run(duration, STEP)
+        t, y, force = r.t, r.x[:, 0, 1], -r.force[:, 1]
+        level = y + 0.5 * (r.v[:, 0, :2] ** 2).sum(1) / GRAVITY
+    measured = measure(t, y, force, level)
+    report.say("pin-joint: area and STS at 0.7, 1.0, 1.3 mm")
+    rows = [compare(m, "compliant" if mode == "rigid" else mode, cache) for m in (0.7, 1.0, 1.3)]
+    middle = rows[1]
+    results = {
+        **measured,
+        "contact_eval_s": 1e-6 * middle["area_eval_us"],
+        "exact_rigid": reference,
+        "error_percent": {k: 100 * (measured[k] / v - 1) for k, v in reference.items()},
+        "comparison": [{k: v for k, v in row.items() if k != "curves"} for row in rows],
+    }
+    if out is not None:
+        _figures(out, rows, mode, cache)
+    settings = {"mode": mode, "mesh_mm": mesh_mm, "contact": contact, "step_s": STEP, "duration_s": duration, "k": K,
+                "young_pa": STEEL.young, "rim_radius_mm": 1e3 * RIM}  # fmt: skip
+    return report.result("pin-joint", settings, results, PAPER, clock, duration)
+
+
+def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | None) -> None:
+    level = "compliant" if mode == "rigid" else mode
+    fig, axes = report.figure(11, 9, 3, 2, sharex=True, sharey=True)
+    for pair, row in zip(axes, rows, strict=True):
+        for ax, contact in zip(pair, ("sts", "area"), strict=True):
+            r = row["curves"][contact]
+            deepest = int(np.argmin(r.x[:6000, 0, 1]))
+            sim = simulation(row["mesh_mm"], level, contact, cache=cache)
+            sim.run((deepest + 1) * STEP, STEP)
+            for i, colour, name in ((0, report.RED, "pin"), (1, report.BLUE, "support")):
+                w, b = sim.works[i], sim.boundaries[i]
+                p = w.touched[: w.touched[-1]]
+                near = np.flatnonzero(w.position_stamp >= sim._buffers.count[1] - 1)
+                near = near[np.argsort(w.position[near, 0])]
+                near = near[(np.abs(w.position[near, 0]) < 0.009) & (w.position[near, 1] < -0.025)]
+                ax.plot(1e3 * w.position[near, 0], 1e3 * w.position[near, 1], ".-", ms=3, lw=0.8, color=colour)
+                ax.quiver(1e3 * w.position[p, 0], 1e3 * w.position[p, 1], w.point_load[p, 0], w.point_load[p, 1],
+                          color=colour, scale=90, width=0.003, label=f"{name}: Σ = {np.hypot(*w.point_load[p].sum(0)):.2f} N")  # fmt: skip
+            ax.set(title=f"{'STS' if contact == 'sts' else 'area'}, {row['mesh_mm']} mm", xlim=(-8, 8), ylim=(-38, -32))
+            ax.legend(loc="upper center", ncol=2, fontsize=8)
+    for ax in axes[-1]:
+        ax.set_xlabel("x (mm)")
+    for ax in axes[:, 0]:
+        ax.set_ylabel("y (mm)")
+    fig.suptitle("Nodal forces at the deepest penetration (arrows to one scale)")
+    report.save(fig, out, "pin_joint_fig7_8")
+    area, sts = (rows[1]["curves"][c] for c in ("area", "sts"))
+    fig, ax = report.figure()
+    first = slice(5500, 5700)
+    ax.plot(1e3 * area.t[first], -area.force[first, 1], color=report.BLUE, lw=2, label="area")
+    ax.plot(1e3 * sts.t[first], -sts.force[first, 1], "--", color=report.ORANGE, label="STS")
+    ax.set(xlabel="time (ms)", ylabel="contact force (N)", title=f"{level}, 1.0 mm")
+    ax.legend()
+    report.save(fig, out, "pin_joint_fig9")
+    fig, ax = report.figure()
+    ax.plot(area.t, 1e3 * area.x[:, 0, 1], color=report.BLUE, lw=2, label="area")
+    ax.plot(sts.t, 1e3 * sts.x[:, 0, 1], "--", color=report.ORANGE, label="STS")
+    ax.set(xlabel="time (s)", ylabel="height of the pin (mm)")
+    ax.legend()
+    report.save(fig, out, "pin_joint_fig10")
+    fig, ax = report.figure()
+    x = np.arange(3)
+    for k, (name, colour) in enumerate((("sts", report.ORANGE), ("area", report.BLUE))):
+        ax.bar(x + 0.35 * (k - 0.5), [row[f"{name}_run_s"] for row in rows], 0.33, color=colour, label=name)
+    for i, row in enumerate(rows):
+        ax.text(i, max(row["area_run_s"], row["sts_run_s"]) * 1.02, f"ratio {row['run_ratio']:.2f}\npaper"
+                f" {PAPER['ratio'][str(row['mesh_mm'])]:.2f}", ha="center", fontsize=8)  # fmt: skip
+    ax.set(xticks=x, xticklabels=[f"{r['mesh_mm']} mm" for r in rows], ylabel="whole run of 0.3 s (s)", xlabel="mesh")
+    ax.margins(y=0.2)
+    ax.legend()
+    report.save(fig, out, "pin_joint_table2")
