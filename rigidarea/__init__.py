@@ -1,16 +1,19 @@
 """Rigid-body contact by overlap area for pymunk.
 
-    import pymunk, rigidarea as ra
-    contact = ra.attach(space)
-    contact.step(1 / 60)
+import pymunk, rigidarea as ra
+contact = ra.attach(space)
+contact.step(1 / 60)
 """
 
+from . import shapes
 from .contact import REGIONS, AreaContact, SimulationError, StepLimitWarning, attach, attached
 from .outline import Outline
+from .overlap import OVERLAP, overlap
 
 __version__ = "0.1.0"
 
 __all__ = [
+    "OVERLAP",
     "REGIONS",
     "AreaContact",
     "Outline",
@@ -18,4 +21,6 @@ __all__ = [
     "StepLimitWarning",
     "attach",
     "attached",
+    "overlap",
+    "shapes",
 ]

@@ -48,7 +48,9 @@ def address_of(cdata: object) -> int:
 
 def _find(memory: np.ndarray, what: str, values: list[float]) -> int:
     n = len(values)
-    hits = [i for i in range(len(memory) - n + 1) if np.allclose(memory[i : i + n], values, rtol=1e-15, atol=0)]
+    hits = [
+        i for i in range(len(memory) - n + 1) if np.allclose(memory[i : i + n], values, rtol=1e-15, atol=0)
+    ]
     if len(hits) != 1:
         raise LayoutError(f"{what}: expected one place in Chipmunk's struct, found {len(hits)}")
     return 8 * hits[0]

@@ -14,15 +14,13 @@ import pymunk.batch
 from numba import config
 from pymunk._chipmunk_cffi import ffi, lib
 
-from . import hook as machine
-from . import stepping
+from . import hook, stepping
 from .chipmunk import LayoutError, address_of, layout
 from .energy import stored_energy
-from .force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
-from .hook import pair_of_shapes
+from .kernel.force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
+from .kernel.pair import FREE_PAIRS, end_pair, new_pair
 from .outline import Outline, positive
-from .pair import FREE_PAIRS, end_pair, new_pair
-from .store import OFFSETS, Store, load_law
+from .store import Store, load_law
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
@@ -99,14 +97,18 @@ class AreaContact:
         state["restoring"] = bool(self._memory)
         self.compiled = self._choose_hook(settings["hook"])
         self._register_shapes()
-        hook = Hook(self)
-        handler_key = (None, None)
-        space.on_collision(pre_solve=hook, separate=hook.separate)
-        self._hook = hook
-        self._handler = space._handlers[handler_key]
+        self._hook = Hook(self)
+        space.on_collision(pre_solve=self._hook, separate=self._hook.separate)
+        self._handler = space._handlers[None, None]
         if self.compiled:
-            self._handler._handler.preSolveFunc = ffi.cast("cpCollisionPreSolveFunc", machine.pre_solve.address)
-            self._handler._handler.separateFunc = ffi.cast("cpCollisionSeparateFunc", machine.separate.address)
+            from . import machine
+
+            self._handler._handler.preSolveFunc = ffi.cast(
+                "cpCollisionPreSolveFunc", machine.pre_solve.address
+            )
+            self._handler._handler.separateFunc = ffi.cast(
+                "cpCollisionSeparateFunc", machine.separate.address
+            )
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Chipmunk calls separate once more for what touches when the space goes: not into freed tables.
         self._end = _finalize(space)
@@ -197,7 +199,7 @@ class AreaContact:
             body = shape.body
             if body is None or body.body_type != pymunk.Body.DYNAMIC or shape.sensor or shape.space is None:
                 continue
-            flat = float(pool.heads[tables.shapes[self._store.slots[ident]]["outline"]]["flat"])
+            flat = float(pool.heads[tables.shapes[self._store.slots[ident]]["outline"]]["face"])
             sizes[body] = max(sizes.get(body, 0.0), flat)
         return sizes
 
@@ -317,6 +319,7 @@ class AreaContact:
         tables = self._store.tables
         live = tables.regions[tables.regions["stamp"] == stamp]
         out = np.zeros(len(live), REGIONS)
+        row: Any
         for row, region, pair in zip(out, live, tables.pairs[live["pair"]]):
             a = self._shapes[int(pair["shape_a"])]
             b = self._shapes[int(pair["shape_b"])]
@@ -334,7 +337,9 @@ class AreaContact:
         for body in space.bodies:
             if body.body_type == pymunk.Body.DYNAMIC:
                 center = body.local_to_world(body.center_of_gravity)
-                total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(center)
+                total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(
+                    center
+                )
                 if math.isfinite(body.moment):
                     total += 0.5 * body.moment * body.angular_velocity**2
         return total + stored_energy(self._store, self._shapes, lib.cpSpaceGetTimestamp(space._space))
@@ -342,21 +347,21 @@ class AreaContact:
     # --- what machine code asks for ---
 
     def _serve(self, request: int, arbiter: pymunk.Arbiter) -> None:
-        if request == machine.NEW_SHAPE:
-            for shape in pair_of_shapes(arbiter):
+        if request == hook.NEW_SHAPE:
+            for shape in hook.pair_of_shapes(arbiter):
                 if shape._hashid not in self._shapes:
                     self._register(shape)
             self._store.sync()
             self._choose()
-        elif request == machine.NEW_PAIR:
+        elif request == hook.NEW_PAIR:
             if self._store.tables.counters[FREE_PAIRS] == 0:
                 self._store.grow_pairs()
             self._recall(arbiter)
-        elif request == machine.MORE_WORK:
+        elif request == hook.MORE_WORK:
             self._store.grow_work()
-        elif request == machine.MORE_REGIONS:
+        elif request == hook.MORE_REGIONS:
             self._store.grow_regions()
-        elif request == machine.BAD_STATE:
+        elif request == hook.BAD_STATE:
             space = self.space
             known = list(space.bodies)
             where = [
@@ -378,7 +383,7 @@ class AreaContact:
             self._recall(arbiter)
             memory = address_of(arbiter._arbiter.data)
         if memory >> 32 != epoch:
-            a, b = pair_of_shapes(arbiter)
+            a, b = hook.pair_of_shapes(arbiter)
             pair = int(new_pair(self._store.tables, a._hashid, b._hashid))
             memory = (epoch << 32) | pair
             arbiter._arbiter.data = ffi.cast("void *", memory)
@@ -414,7 +419,7 @@ class AreaContact:
             self._state["restoring"] = 0
             return
         shapes = list(self.space.shapes)
-        a, b = pair_of_shapes(arbiter)
+        a, b = hook.pair_of_shapes(arbiter)
         found = self._memory.pop((shapes.index(a), shapes.index(b)), None)
         if found is None:
             return
@@ -466,11 +471,11 @@ class Hook:
             if contact._space is not space:  # a copy, stepped for the first time
                 contact._adopt(space)
             request = int(contact._state["request"])
-            if contact.compiled and request != machine.NOTHING:
+            if contact.compiled and request != hook.NOTHING:
                 contact._serve(request, arbiter)
-                contact._state["request"] = machine.NOTHING
+                contact._state["request"] = hook.NOTHING
             else:
-                machine.python_pre_solve(arbiter, space, contact._store, contact._pair_of, contact._serve)
+                hook.pre_solve(arbiter, space, contact._store, contact._pair_of, contact._serve)
         except Exception as error:  # cffi would print it and go on: keep it, raise it after the step
             if contact._error is None:
                 contact._error = error

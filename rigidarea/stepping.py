@@ -2,7 +2,7 @@
 
 The stiffness of a contact is k L, L its chord. What decides is not the chord of now but the longest one that can
 come: a box that hits with a corner lands on its face. So every shape brings the chord with which it would lie flat
-(`pool.HEAD.flat`), and the step is planned for the stiffest such contact, in a stack; chords longer than that, which
+(`pool.HEAD.face`), and the step is planned for the stiffest such contact, in a stack; chords longer than that, which
 only conforming concave outlines have, are taken from the last step as they are met.
 """
 
@@ -13,10 +13,10 @@ import math
 import numpy as np
 import pymunk
 
-from .force import LAW_AREA, Law
-from .jit import njit
-from .pair import Tables
-from .pool import Pool
+from .kernel.force import LAW_AREA, Law
+from .kernel.jit import njit
+from .kernel.pair import Tables
+from .kernel.pool import Pool
 
 #: Largest phase w h of the stiffest contact within a step. Symplectic Euler is stable below 2; the frequency is
 #: already that of a body between two others in a stack (twice a single contact's), so that this is 1/9 of what a
@@ -41,9 +41,9 @@ def highest_frequency(pool: Pool, tables: Tables, shapes: int, law: Law, stamp: 
     for i in range(shapes):
         shape = tables.shapes[i]
         head = pool.heads[shape.outline]
-        length = head.flat
+        length = head.face
         stiffness = length if law.law == LAW_AREA else length * length / law.length
-        most = max(most, stiffness * (shape.inverse_mass + head.flat_arm**2 * shape.inverse_moment))
+        most = max(most, stiffness * (shape.inverse_mass + head.face_arm**2 * shape.inverse_moment))
     stiffest = law.stiffness * most
     for i in range(tables.regions.size):
         if tables.regions[i].stamp == stamp:

@@ -12,12 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from .force import REGION, Law
-from .jit import kernel
-from .memory import array_at
-from .overlap import LOOP, Work, enlarged, fits, new_work
-from .pair import COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
-from .pool import HEAD, HasRings, Pool, pack
+from .kernel.force import REGION, Law
+from .kernel.jit import kernel
+from .kernel.memory import array_at, record
+from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
+from .kernel.pair import COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
+from .kernel.pool import HEAD, HasRings, Pool, pack
 
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "heads"),
@@ -31,7 +31,7 @@ OFFSETS = [
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_data", "arbiter_shape_a"),
     *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process"),
 ]
-STATE = np.dtype(
+STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
     + [(f"{name}_n", "i8") for name in _ARRAYS]
     + [(name, "i8") for name in OFFSETS]
@@ -44,9 +44,11 @@ STATE = np.dtype(
         ("direction", "i8"),
         ("request", "i8"),  # what machine code asks Python for
         ("restoring", "i8"),  # pairs are to be looked up in a copied space's memory
-        ("epoch", "u8"),  # upper half of what is kept in arbiters: tells this attachment's pairs from another's
+        (
+            "epoch",
+            "u8",
+        ),  # upper half of what is kept in arbiters: tells this attachment's pairs from another's
     ],
-    align=True,
 )
 
 
@@ -203,7 +205,12 @@ class Store:
         return h
 
     def shape(
-        self, ident: int, outline: HasRings, mirror: HasRings | None, inverse_mass: float, inverse_moment: float
+        self,
+        ident: int,
+        outline: HasRings,
+        mirror: HasRings | None,
+        inverse_mass: float,
+        inverse_moment: float,
     ) -> None:
         """Tell the tables which outline Chipmunk's shape `ident` has. Call `sync` after the last."""
         number = self.outline(outline)

@@ -15,10 +15,12 @@ Laws (design 2.3), L the chord of the region, A its area:
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
+
 from .jit import kernel
+from .memory import record
 from .overlap import A_EDGE, B_EDGE
 
 LAW_AREA, LAW_ENERGY = 0, 1
@@ -35,7 +37,7 @@ REST_PHASE = 50.0
 NO_CHORD = 1e-6
 
 #: One region, remembered while it lives. Also the record of what it did in the last step.
-REGION = np.dtype(
+REGION = record(
     [
         ("stamp", "i8"),  # space step in which it was last there
         ("pair", "i4"),
@@ -60,7 +62,6 @@ REGION = np.dtype(
         ("rate2", "f8"),  # its natural frequency squared, on these two bodies alone (1/time^2)
         ("slip", "f8"),  # tangential speed of A relative to B (length/time)
     ],
-    align=True,
 )
 
 
@@ -128,7 +129,9 @@ def damping_ratio(e: float) -> float:
 
 
 @kernel
-def _ray(polygon: np.ndarray, label: np.ndarray, start: int, stop: int, i: int, nx: float, ny: float) -> float:
+def _ray(
+    polygon: np.ndarray, label: np.ndarray, start: int, stop: int, i: int, nx: float, ny: float
+) -> float:
     """Distance from vertex i along n to the nearest edge of the other outline in the region (Eq. 9); 0 if none."""
     px = polygon[i, 0]
     py = polygon[i, 1]
@@ -174,7 +177,9 @@ def nodal_direction(
                 dy = polygon[after, 1] - polygon[before, 1]
                 length = math.sqrt(dx * dx + dy * dy)
                 if length > 0.0:
-                    nx = -dy / length  # Eq. 8; counter-clockwise: into the region, towards the other's boundary
+                    nx = (
+                        -dy / length
+                    )  # Eq. 8; counter-clockwise: into the region, towards the other's boundary
                     ny = dx / length
                     depth = _ray(polygon, label, start, stop, i, nx, ny)  # Eq. 9
                     tributary = 0.5 * (
@@ -210,7 +215,7 @@ def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float,
 
 @kernel
 def region_force(
-    r: np.ndarray, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
+    r: Any, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
     surface_x: float, surface_y: float, dt: float, born: bool,
 ) -> Pull:  # fmt: skip
     """Force of region r (one REGION record: area, x, y, nx, ny, chord set; its memory is brought up to date).
@@ -266,7 +271,9 @@ def region_force(
         most = force * r.chord / 6.0  # more would need the pressure to pull at one end
         couple = min(most, max(-most, couple))
     else:
-        force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse))
+        force = max(
+            0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse)
+        )
         # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
         # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
         depth = r.area / r.chord

@@ -17,7 +17,7 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .memory import twelve_floats
+from .memory import floats
 
 #: Relative error bound of the filter, (3 + 16 u) u with u = 2^-53 (Shewchuk's ccwerrboundA).
 FILTER = (3.0 + 16.0 * 2.0**-53) * 2.0**-53
@@ -54,14 +54,18 @@ def _grow(e: np.ndarray, n: int, b: float) -> int:
 
 
 @kernel
-def side_exact(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
-    """Sign (-1, 0, 1) of side(a, b, p), exactly."""
-    e = twelve_floats()
+def _side_expansion(ax: float, ay: float, bx: float, by: float, px: float, py: float, e: np.ndarray) -> int:
+    """side(a, b, p) as an exact expansion in e (12 floats); its length."""
     n = 0
     for u, v in ((ax, by), (-ay, bx), (bx, py), (-by, px), (px, ay), (-py, ax)):
         high, low = _two_product(u, v)
         n = _grow(e, n, low)
         n = _grow(e, n, high)
+    return n
+
+
+@kernel
+def _sign(e: np.ndarray, n: int) -> float:
     for i in range(n - 1, -1, -1):
         if e[i] != 0.0:
             return 1.0 if e[i] > 0.0 else -1.0
@@ -69,9 +73,52 @@ def side_exact(ax: float, ay: float, bx: float, by: float, px: float, py: float)
 
 
 @kernel
+def side_exact(ax: float, ay: float, bx: float, by: float, px: float, py: float) -> float:
+    """Sign (-1, 0, 1) of side(a, b, p), exactly."""
+    e = floats(12)
+    return _sign(e, _side_expansion(ax, ay, bx, by, px, py, e))
+
+
+@kernel
+def order_exact(
+    ax: float, ay: float, bx: float, by: float,
+    cx: float, cy: float, dx: float, dy: float, ex: float, ey: float, fx: float, fy: float,
+) -> float:  # fmt: skip
+    """Which of two edges c -> d, e -> f crosses the edge a -> b first: -1 c -> d, 1 e -> f, 0 both in one point.
+
+    Exactly; both must cross. The crossing lies at 1 / (1 - side(b) / side(a)) of a -> b, sides of the crossing edge:
+    c -> d is first if side_cd(b) side_ef(a) and side_ef(b) side_cd(a) compare so, for like signs of side(a).
+    """
+    first_a = floats(12)
+    first_b = floats(12)
+    second_a = floats(12)
+    second_b = floats(12)
+    total = floats(640)  # 4 products of 12 x 12 terms would be 576
+    n = 0
+    fa = _side_expansion(cx, cy, dx, dy, ax, ay, first_a)
+    fb = _side_expansion(cx, cy, dx, dy, bx, by, first_b)
+    sa = _side_expansion(ex, ey, fx, fy, ax, ay, second_a)
+    sb = _side_expansion(ex, ey, fx, fy, bx, by, second_b)
+    for i in range(fb):
+        for j in range(sa):
+            high, low = _two_product(first_b[i], second_a[j])
+            n = _grow(total, n, low)
+            n = _grow(total, n, high)
+    for i in range(sb):
+        for j in range(fa):
+            high, low = _two_product(-second_b[i], first_a[j])
+            n = _grow(total, n, low)
+            n = _grow(total, n, high)
+    like = 1.0 if (_sign(first_b, fb) > 0.0) == (_sign(second_b, sb) > 0.0) else -1.0
+    return like * _sign(total, n)
+
+
+@kernel
 def _undecided(ax: float, ay: float, bx: float, by: float, px: float, py: float, point_of_b: bool) -> float:
     sign = side_exact(ax, ay, bx, by, px, py)
-    if sign == 0.0:  # B shifted by (d, d^2): d side / dp = (ay - by, bx - ax); an edge of B moves the other way
+    if (
+        sign == 0.0
+    ):  # B shifted by (d, d^2): d side / dp = (ay - by, bx - ax); an edge of B moves the other way
         slope = ay - by if ay != by else bx - ax
         sign = 1.0 if (slope > 0.0) == point_of_b else -1.0
     return sign * TINY

@@ -1,8 +1,8 @@
 """How this package compiles: cached on disk by the content of its sources; kernels without reference counts.
 
 numba's cache notices when the file of a function changes, not when a file that it calls into does. So the cache
-lives in a folder named after a hash of all our sources that compile anything: a new version never runs an old version's machine code, and
-an install that cannot be written to needs no writing.
+lives in a folder named after a hash of all our sources that compile anything: a new version never runs an old
+version's machine code, and an install that cannot be written to needs no writing.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ import numba
 def cache_folder() -> str:
     """Where the machine code is kept: under NUMBA_CACHE_DIR, the user's cache folder, or the temporary one."""
     digest = hashlib.sha256(numba.__version__.encode())
-    root = Path(__file__).parent
+    root = Path(__file__).parent.parent
     for source in sorted(root.rglob("*.py")):
         text = source.read_bytes()
         if b"jit import" in text:  # the others hold no machine code

@@ -8,14 +8,13 @@ of the step before; it keeps its friction spring, its restitution and its direct
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from .jit import kernel
+
 from .force import (
     CHORD,
     LAW_ENERGY,
-    REGION,
     Law,
     Motion,
     Pull,
@@ -23,20 +22,21 @@ from .force import (
     nodal_direction,
     region_force,
 )
+from .jit import kernel
+from .memory import record
 from .overlap import A_EDGE, OVERFLOW, TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
 
-SHAPE = np.dtype(
+SHAPE = record(
     [
         ("outline", "i4"),  # number in the pool
         ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
         ("inverse_mass", "f8"),  # of its body, as last seen
         ("inverse_moment", "f8"),
     ],
-    align=True,
 )
 
-PAIR = np.dtype(
+PAIR = record(
     [
         ("shape_a", "i8"),  # Chipmunk's shape ids, for finding the Python objects again
         ("shape_b", "i8"),
@@ -45,7 +45,6 @@ PAIR = np.dtype(
         ("side_b", "i4"),
         ("next", "i4"),  # in the free list
     ],
-    align=True,
 )
 
 #: Counters: free regions' list head, how many are free, free pairs' list head, how many; queries, tangled queries.
@@ -129,7 +128,7 @@ def end_pair(tables: Tables, p: int) -> None:
 
 
 @kernel
-def _placed(head: np.ndarray, pose: Pose, other: np.ndarray, other_pose: Pose) -> Relative:
+def _placed(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
     return relative(
         pose.x, pose.y, pose.c, pose.s, other_pose.x, other_pose.y, other_pose.c, other_pose.s,
         head.x, head.y, other.x, other.y,
@@ -137,8 +136,11 @@ def _placed(head: np.ndarray, pose: Pose, other: np.ndarray, other_pose: Pose) -
 
 
 @kernel(inline="always")
-def _regions_of(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> int:
-    """Overlap of two placed outlines; a tangle is undone by shifts of 1e-13 of the size (a tangle is rounding)."""
+def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
+    """(number of regions, in `work`; B relative to A) of two placed outlines.
+
+    A tangle is undone by shifts of 1e-13 of the size: a tangle is rounding.
+    """
     rel = _placed(pool.heads[ia], a, pool.heads[ib], b)
     n = overlap_kernel(pool, ia, pool, ib, rel, work)
     if n == TANGLED:
@@ -149,11 +151,11 @@ def _regions_of(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> i
             if n != TANGLED:
                 break
         n = max(n, OVERFLOW)
-    return n
+    return n, rel
 
 
 @kernel
-def _push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
+def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
     """Direction A to B of the shortest way apart over the edge normals of both outer rings, in A's frame.
 
     Exact for convex outlines (separating axes); for concave ones a sensible guess. Only for regions that are born
@@ -231,8 +233,7 @@ def _came_from(
     positive to the left, is h = (area in the mirror - area in i) / length; a step earlier it was
     2 dt (its speed to the left) less. Where it was then is where it came from: the solid is on the far side.
     """
-    rel = _placed(pool.heads[i], pose, pool.heads[other], other_pose)
-    n = _regions_of(pool, i, pose, other, other_pose, work)
+    n, rel = overlap_of_outlines(pool, i, pose, other, other_pose, work)
     right = 0.0
     length = 0.0
     x = 0.0
@@ -240,7 +241,7 @@ def _came_from(
     for k in range(n):
         right += work.loops[k].area
         length += _length_on_first_edge(pool, i, rel, A_EDGE, work, k)
-    n = _regions_of(pool, mirror, pose, other, other_pose, work)
+    n, _ = overlap_of_outlines(pool, mirror, pose, other, other_pose, work)
     left = 0.0
     for k in range(n):
         left += work.loops[k].area
@@ -265,7 +266,7 @@ def _came_from(
 
 @kernel
 def _sides(
-    pool: Pool, tables: Tables, work: Work, pair: np.ndarray, sa: int, sb: int, pose_a: Pose, pose_b: Pose,
+    pool: Pool, tables: Tables, work: Work, pair: Any, sa: int, sb: int, pose_a: Pose, pose_b: Pose,
     a: Motion, b: Motion, dt: float,
 ) -> tuple[int, int]:  # fmt: skip
     """The outlines that shape sa and shape sb show each other in this contact."""
@@ -304,12 +305,12 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
 
 @kernel
 def overlap_of_pair(
-    pool: Pool, tables: Tables, work: Work, pair: np.ndarray, sa: int, sb: int, a: Pose, b: Pose
+    pool: Pool, tables: Tables, work: Work, pair: Any, sa: int, sb: int, a: Pose, b: Pose
 ) -> tuple[int, int]:
     """(number of regions, outline of A) of a pair as its contact sees it; the regions are in `work`."""
     ia = tables.shapes[sa].outline if pair.side_a >= 0 else tables.shapes[sa].mirror
     ib = tables.shapes[sb].outline if pair.side_b >= 0 else tables.shapes[sb].mirror
-    return _regions_of(pool, ia, a, ib, b, work), ia
+    return overlap_of_outlines(pool, ia, a, ib, b, work)[0], ia
 
 
 @kernel(inline="always")
@@ -327,7 +328,7 @@ def pair_pull(
     mirror_b = tables.shapes[sb].mirror
     if mirror_a >= 0 or mirror_b >= 0:
         ia, ib = _sides(pool, tables, work, pair, sa, sb, pose_a, pose_b, a, b, dt)
-    n = _regions_of(pool, ia, pose_a, ib, pose_b, work)
+    n, rel = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
     if n == OVERFLOW:
         return GROW_WORK, NO_PULL
     if n > counters[FREE_REGIONS]:
@@ -336,7 +337,6 @@ def pair_pull(
 
     loops = work.loops
     head_a = pool.heads[ia]
-    rel = _placed(head_a, pose_a, pool.heads[ib], pose_b)
     old = pair.head
     kept = -1
     fx = 0.0
@@ -390,7 +390,7 @@ def pair_pull(
         if blind:
             chord = math.sqrt(area)
             if born:
-                nx, ny = _push_out(pool, ia, ib, rel)
+                nx, ny = push_out(pool, ia, ib, rel)
         wx = pose_a.c * nx - pose_a.s * ny
         wy = pose_a.s * nx + pose_a.c * ny
         if not born and (blind or wx * region.nx + wy * region.ny < 0.0):

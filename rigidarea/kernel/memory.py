@@ -11,6 +11,11 @@ from numba.extending import intrinsic
 from numba.np import arrayobj
 
 
+def record(fields: Any) -> np.dtype:
+    """An aligned record type whose fields are attributes, in machine code and in Python."""
+    return np.dtype((np.record, np.dtype(fields, align=True)))
+
+
 @intrinsic
 def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
     """array_at(address, shape, dtype): the memory there as a C-contiguous array that nobody counts or frees."""
@@ -38,8 +43,8 @@ def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
     return signature, codegen
 
 
-@intrinsic
-def _twelve_floats(typingctx: Any) -> Any:
+@intrinsic(prefer_literal=True)
+def _stack_floats(typingctx: Any, n: Any) -> Any:
     array = types.Array(types.float64, 1, "C")
 
     def codegen(context: Any, builder: Any, signature: Any, args: Any) -> Any:
@@ -48,20 +53,16 @@ def _twelve_floats(typingctx: Any) -> Any:
         view = context.make_array(array)(context, builder)
         arrayobj.populate_array(
             view,
-            data=cgutils.alloca_once(builder, item, size=12),
-            shape=[context.get_constant(types.intp, 12)],
+            data=cgutils.alloca_once(builder, item, size=n.literal_value),
+            shape=[context.get_constant(types.intp, n.literal_value)],
             strides=[size],
             itemsize=size,
             meminfo=None,
         )
         return view._getvalue()
 
-    return array(), codegen
+    return array(n), codegen
 
 
-def _empty() -> np.ndarray:
-    return np.empty(12)
-
-
-#: Twelve floats of scratch on the stack, valid until the calling kernel returns.
-twelve_floats: Any = _empty if config.DISABLE_JIT else _twelve_floats
+#: floats(n): n floats of scratch on the stack (n a literal), valid until the calling kernel returns.
+floats: Any = np.empty if config.DISABLE_JIT else _stack_floats

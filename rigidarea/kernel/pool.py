@@ -16,11 +16,13 @@ from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from .memory import record
+
 #: Edges to a leaf. More: fewer boxes tested, more edge pairs; 4 was fastest on gears and on 64-gons.
 LEAF = 4
 
 #: One outline in a pool: where its points, rings and boxes lie, and the few numbers that steps need of it.
-HEAD = np.dtype(
+HEAD = record(
     [
         ("point", "i4"),  # first point
         ("count", "i4"),  # number of points (= edges)
@@ -33,10 +35,9 @@ HEAD = np.dtype(
         ("y", "f8"),
         ("radius", "f8"),  # about that middle (length)
         ("area", "f8"),  # (length^2)
-        ("flat", "f8"),  # longest chord that a straight edge cuts off at a shallow depth (length)
-        ("flat_arm", "f8"),  # its distance from the centroid, along itself (length)
+        ("face", "f8"),  # longest chord that a straight edge cuts off at a shallow depth (length)
+        ("face_arm", "f8"),  # its distance from the centroid, along itself (length)
     ],
-    align=True,
 )
 
 
@@ -64,8 +65,8 @@ class HasRings(Protocol):
     def convex(self) -> bool: ...
 
 
-#: Depth at which `flat` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
-FLAT_DEPTH = 0.02
+#: Depth at which `face` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
+FACE_DEPTH = 0.02
 
 
 def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
@@ -94,10 +95,10 @@ def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
     return boxes, leaves
 
 
-def _flat(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[float, float]:
-    """(chord, arm) for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FLAT_DEPTH (design 2.3).
+def _face(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[float, float]:
+    """(chord, arm) for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (design 2.3).
 
-    A straight edge pressed `FLAT_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
+    A straight edge pressed `FACE_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
     stiffness is k chord, its leverage on a free body the arm of its middle about the centroid.
     """
     step = max(1, len(points) // 64)
@@ -108,7 +109,7 @@ def _flat(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[floa
     normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
     height = points @ normal.T  # (points, directions)
     along = points @ tangent.T
-    cut = height.max(axis=0) - FLAT_DEPTH * extent
+    cut = height.max(axis=0) - FACE_DEPTH * extent
     following = np.roll(np.arange(len(points)), -1)
     h0, h1 = height - cut, height[following] - cut
     crossing = (h0 > 0) != (h1 > 0)
@@ -143,14 +144,14 @@ def pack(outlines: Sequence[HasRings]) -> Pool:
         nxt = np.arange(1, len(local) + 1)
         nxt[start[1:] - 1] = start[:-1]
         box, leaves = _boxes(local, nxt)
-        flat, arm = _flat(outer - middle, np.asarray(outline.centroid) - middle, float((high - low).max()))
+        face, arm = _face(outer - middle, np.asarray(outline.centroid) - middle, float((high - low).max()))
         head["point"], head["count"] = n_points, len(local)
         head["ring"], head["rings"] = n_rings, len(sizes)
         head["box"], head["leaves"] = n_boxes, leaves
         head["convex"] = outline.convex
         head["x"], head["y"] = middle
         head["radius"] = np.hypot(local[:, 0], local[:, 1]).max()
-        head["area"], head["flat"], head["flat_arm"] = outline.area, flat, arm
+        head["area"], head["face"], head["face_arm"] = outline.area, face, arm
         points.append(local)
         following.append(nxt + n_points)
         ring_of.append(np.repeat(np.arange(len(sizes)) + n_rings, sizes))

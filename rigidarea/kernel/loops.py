@@ -1,0 +1,257 @@
+"""The overlap of any two outlines: loops through the crossings, whole rings, holes."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .crossings import crossings, link
+from .jit import kernel
+from .pool import LEAF, Pool
+from .predicates import side
+from .work import A_EDGE, B_EDGE, Relative, Work, measure, placed
+
+#: The crossings do not alternate: an outline crosses itself within rounding. Shift it a little and call again.
+TANGLED = -2
+
+
+@kernel
+def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> tuple[int, int]:
+    """Append the boundary along A (0) or B (1) from crossing k to the next, left out: (that crossing, vertices)."""
+    work.polygon[v, 0] = work.spot[k, 0]
+    work.polygon[v, 1] = work.spot[k, 1]
+    work.label[v] = along
+    v += 1
+    m = work.order[2 + along, k]
+    wraps = m < 0
+    if wraps:
+        m = ~m
+    edge = work.cross[k, along]
+    last = work.cross[m, along]
+    if edge != last or wraps:
+        while True:
+            edge = pool.following[edge]
+            if along == A_EDGE:
+                work.polygon[v, 0] = pool.points[edge, 0]
+                work.polygon[v, 1] = pool.points[edge, 1]
+            else:
+                work.polygon[v, 0], work.polygon[v, 1] = placed(pool.points, edge, rel)
+            work.label[v] = along
+            v += 1
+            if edge == last:
+                break
+    return m, v
+
+
+@kernel
+def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool, work: Work) -> bool:
+    """Whether the point (x, y) of A's frame lies inside outline i: crossings of the ray to +x, by the hierarchy.
+
+    `point_of_b`: the outline is A and the point is B's; False: the outline is B, placed by `rel`.
+    """
+    h = p.heads[i]
+    c = 1.0 if point_of_b else rel.c
+    s = 0.0 if point_of_b else rel.s
+    tx = 0.0 if point_of_b else rel.tx
+    ty = 0.0 if point_of_b else rel.ty
+    place = Relative(c, s, tx, ty)
+    pad = 8.0 * 2.0**-52 * (h.radius + abs(x) + abs(y) + abs(tx) + abs(ty))
+    work.stack[0, 0] = 1
+    depth = 1
+    inside = False
+    while depth > 0:
+        depth -= 1
+        node = work.stack[depth, 0]
+        mx = p.boxes[h.box + node, 0]
+        my = p.boxes[h.box + node, 1]
+        hx = p.boxes[h.box + node, 2] + pad
+        hy = p.boxes[h.box + node, 3] + pad
+        if abs(s * mx + c * my + ty - y) > abs(s) * hx + abs(c) * hy:
+            continue
+        if c * mx - s * my + tx + abs(c) * hx + abs(s) * hy < x:
+            continue
+        if node < h.leaves:
+            work.stack[depth, 0] = 2 * node
+            work.stack[depth + 1, 0] = 2 * node + 1
+            depth += 2
+            continue
+        first = (node - h.leaves) * LEAF
+        for e in range(h.point + first, h.point + min(first + LEAF, h.count)):
+            if point_of_b:
+                ux, uy = p.points[e, 0], p.points[e, 1]
+                vx, vy = p.points[p.following[e], 0], p.points[p.following[e], 1]
+                up = uy > y  # the point is B's, shifted up by d^2: a vertex at its height is below it
+                vp = vy > y
+            else:
+                ux, uy = placed(p.points, e, place)
+                vx, vy = placed(p.points, p.following[e], place)
+                up = uy >= y  # the edge is B's, shifted up
+                vp = vy >= y
+            if up != vp and (side(ux, uy, vx, vy, x, y, point_of_b) > 0.0) == vp:
+                inside = not inside
+    return inside
+
+
+@kernel
+def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
+    """Whether (x, y) lies inside loop n (even-odd)."""
+    inside = False
+    start = work.loops[n].start
+    stop = work.loops[n].stop
+    ux = work.polygon[stop - 1, 0]
+    uy = work.polygon[stop - 1, 1]
+    for i in range(start, stop):
+        vx = work.polygon[i, 0]
+        vy = work.polygon[i, 1]
+        if (uy > y) != (vy > y) and x < ux + (y - uy) * (vx - ux) / (vy - uy):
+            inside = not inside
+        ux = vx
+        uy = vy
+    return inside
+
+
+@kernel
+def _gather(work: Work, n: int) -> int:
+    """Give each hole loop to its region, put the regions first; their number."""
+    loops = work.loops
+    holes = 0
+    for i in range(n):
+        if loops[i].area < 0.0:
+            holes += 1
+    if holes == 0:
+        return n
+    for i in range(n):
+        hole = loops[i]
+        if hole.area > 0.0:
+            continue
+        x = work.polygon[hole.start, 0]
+        y = work.polygon[hole.start, 1]
+        best = -1
+        for j in range(n):
+            if loops[j].area > -hole.area and (holes == n - 1 or _in_loop(work, j, x, y)):
+                if best < 0 or loops[j].area < loops[best].area:
+                    best = j
+        hole.region = best
+    for i in range(n):
+        hole = loops[i]
+        if hole.area > 0.0 or hole.region < 0:
+            continue
+        region = loops[hole.region]
+        area = region.area + hole.area
+        x = (region.x * region.area + hole.x * hole.area) / area
+        y = (region.y * region.area + hole.y * hole.area) / area
+        region.lever += (
+            hole.lever
+            + (region.x - x) * region.chord_x + (region.y - y) * region.chord_y
+            + (hole.x - x) * hole.chord_x + (hole.y - y) * hole.chord_y
+        )  # fmt: skip
+        region.x = x
+        region.y = y
+        region.area = area
+        region.chord_x += hole.chord_x
+        region.chord_y += hole.chord_y
+    # regions to the front, by exchange; the holes keep pointing at theirs
+    m = 0
+    for i in range(n):
+        if loops[i].area > 0.0:
+            if i != m:
+                for j in range(n):
+                    if loops[j].area < 0.0 and loops[j].region == i:
+                        loops[j].region = m
+                _exchange(loops, i, m)
+            loops[m].region = m
+            m += 1
+    return m
+
+
+@kernel
+def _exchange(loops: np.ndarray, i: int, j: int) -> None:
+    a = loops[i]
+    b = loops[j]
+    a.start, b.start = b.start, a.start
+    a.stop, b.stop = b.stop, a.stop
+    a.area, b.area = b.area, a.area
+    a.x, b.x = b.x, a.x
+    a.y, b.y = b.y, a.y
+    a.chord_x, b.chord_x = b.chord_x, a.chord_x
+    a.chord_y, b.chord_y = b.chord_y, a.chord_y
+    a.lever, b.lever = b.lever, a.lever
+    a.region, b.region = b.region, a.region
+
+
+@kernel
+def _whole_rings(
+    pool: Pool, i: int, other: Pool, o: int, rel: Relative, along: int, work: Work, n: int, v: int
+) -> tuple[int, int]:
+    """Loops of the rings of outline i without a crossing that lie inside the other outline."""
+    h = pool.heads[i]
+    g = other.heads[o]
+    first = 0 if along == A_EDGE else work.hit.size // 2
+    for r in range(h.rings):
+        if work.hit[first + r]:
+            continue
+        begin = pool.rings[h.ring + r, 0]
+        end = pool.rings[h.ring + r, 1]
+        if along == A_EDGE:
+            x, y = pool.points[begin, 0], pool.points[begin, 1]
+            near = np.hypot(x - rel.tx, y - rel.ty)
+        else:
+            x, y = placed(pool.points, begin, rel)
+            near = np.hypot(x, y)
+        if near > g.radius * (1.0 + 1e-12):
+            continue
+        if not _inside(other, o, rel, x, y, along == B_EDGE, work):
+            continue
+        start = v
+        for k in range(begin, end):
+            if along == A_EDGE:
+                work.polygon[v, 0] = pool.points[k, 0]
+                work.polygon[v, 1] = pool.points[k, 1]
+            else:
+                work.polygon[v, 0], work.polygon[v, 1] = placed(pool.points, k, rel)
+            work.label[v] = along
+            v += 1
+        n = measure(work.polygon, work.label, work.loops, n, start, v)
+    return n, v
+
+
+@kernel
+def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
+    """Any two outlines: crossings, loops, whole rings, holes."""
+    ha = pa.heads[ia]
+    hb = pb.heads[ib]
+    half = work.hit.size // 2
+    work.hit[: ha.rings] = 0
+    work.hit[half : half + hb.rings] = 0
+    k = crossings(pa, ia, pb, ib, rel, work)
+    if k < 0:
+        return k
+    n = 0
+    v = 0
+    if k > 0:
+        if not link(
+            pa.points, pa.following, pa.ring_of, pb.points, pb.following, rel, k,
+            work.cross, work.param, work.spot, work.order, 0,
+        ) or not link(
+            pb.points, pb.following, pb.ring_of, pa.points, pa.following, rel, k,
+            work.cross, work.param, work.spot, work.order, 1,
+        ):  # fmt: skip
+            return TANGLED
+        for i in range(k):
+            work.done[i] = 0
+            work.hit[pa.ring_of[work.cross[i, 0]] - ha.ring] = 1
+            work.hit[half + pb.ring_of[work.cross[i, 1]] - hb.ring] = 1
+        for first in range(k):
+            if work.done[first] or work.cross[first, 2] < 0:
+                continue
+            start = v
+            i = first
+            while True:
+                work.done[i] = 1
+                i, v = _arc(pa, rel, work, i, A_EDGE, v)
+                i, v = _arc(pb, rel, work, i, B_EDGE, v)
+                if i == first:
+                    break
+            n = measure(work.polygon, work.label, work.loops, n, start, v)
+    n, v = _whole_rings(pa, ia, pb, ib, rel, 0, work, n, v)
+    n, v = _whole_rings(pb, ib, pa, ia, rel, 1, work, n, v)
+    return _gather(work, n)

@@ -1,0 +1,180 @@
+"""The pre-solve hook in machine code: what `hook.pre_solve` does, without Python.
+
+Importing this module compiles it (or loads it from the cache). Memory is read and written by address: Chipmunk's
+structs at the offsets of `chipmunk.layout`, our tables through the `store.STATE` record that is the space's user
+data. What machine code cannot do (meet a new shape, enlarge a table, report an error) it asks Python for, through
+pymunk's own trampoline, and then goes on.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from .chipmunk import register_symbols
+from .hook import BAD_STATE, MORE_REGIONS, MORE_WORK, NEW_PAIR, NEW_SHAPE, NOTHING, surface_velocity
+from .kernel.force import Motion
+from .kernel.jit import callback, kernel
+from .kernel.memory import array_at
+from .kernel.pair import DONE, FREE_PAIRS, GROW_WORK, NOT_FINITE, Pose, Surface, end_pair, new_pair, pair_pull
+from .store import STATE, load_law, load_pool, load_tables, load_work
+
+_HALF = np.uint64(32)
+_LOWER = np.uint64(0xFFFFFFFF)
+
+register_symbols()
+_user_data = types.ExternalFunction("rigidarea_cpSpaceGetUserData", types.uintp(types.uintp))
+_timestamp = types.ExternalFunction("rigidarea_cpSpaceGetTimestamp", types.uint32(types.uintp))
+_time_step = types.ExternalFunction("rigidarea_cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
+_hash_id = types.ExternalFunction("rigidarea_cpShapeGetHashID", types.uintp(types.uintp))
+_sensor = types.ExternalFunction("rigidarea_cpShapeGetSensor", types.uint8(types.uintp))
+_ask_python = types.ExternalFunction(
+    "rigidarea_ext_cpCollisionPreSolveFunc", types.void(types.uintp, types.uintp, types.uintp)
+)
+
+
+@kernel(inline="always")
+def _floats(address: int, n: int) -> np.ndarray:
+    return array_at(address, (n,), np.float64)
+
+
+@kernel(inline="always")
+def _address(address: int) -> int:
+    return array_at(address, (1,), np.uint64)[0]
+
+
+@kernel(inline="always")
+def _row(s: Any, shape: int) -> int:
+    """The shape's row in the tables; -1: not known."""
+    ident = _hash_id(shape)
+    if ident >= s.slots_n:
+        return -1
+    return array_at(s.slots_at, (s.slots_n,), np.int32)[ident]
+
+
+@kernel(inline="always")
+def _motion(s: Any, body: int) -> Motion:
+    p = _floats(body + s.body_position, 2)
+    v = _floats(body + s.body_velocity, 2)
+    return Motion(
+        p[0],
+        p[1],
+        v[0],
+        v[1],
+        _floats(body + s.body_spin, 1)[0],
+        _floats(body + s.body_inverse_mass, 1)[0],
+        _floats(body + s.body_inverse_moment, 1)[0],
+    )
+
+
+@kernel(inline="always")
+def _pose(s: Any, body: int) -> Pose:
+    t = _floats(body + s.body_transform, 6)
+    return Pose(t[4], t[5], t[0], t[1])
+
+
+@callback(types.void(types.uintp, types.uintp, types.uintp))
+def pre_solve(arbiter: int, space: int, data: int) -> None:
+    """One touching pair of one step, in machine code. See the module's docstring."""
+    at = _user_data(space)
+    if at == 0:
+        return
+    s = array_at(at, (1,), STATE)[0]
+    if array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] == 0:
+        return
+    shape_a = _address(arbiter + s.arbiter_shape_a)
+    shape_b = _address(arbiter + s.arbiter_shape_a + 8)
+    body_a = _address(arbiter + s.arbiter_body_a)
+    body_b = _address(arbiter + s.arbiter_body_a + 8)
+    sign = 1.0
+    if _hash_id(shape_a) > _hash_id(shape_b):  # Chipmunk may exchange the two from step to step
+        shape_a, shape_b = shape_b, shape_a
+        body_a, body_b = body_b, body_a
+        sign = -1.0
+    if _sensor(shape_a) or _sensor(shape_b):
+        return
+    a = _motion(s, body_a)
+    b = _motion(s, body_b)
+    if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+        return
+    count = array_at(arbiter + s.arbiter_count, (1,), np.int32)
+    count[0] = 0
+
+    sa = _row(s, shape_a)
+    sb = _row(s, shape_b)
+    if sa < 0 or sb < 0:
+        s.request = NEW_SHAPE
+        _ask_python(arbiter, space, data)
+        sa = _row(s, shape_a)
+        sb = _row(s, shape_b)
+        if sa < 0 or sb < 0:
+            return  # Python keeps the error and raises it after the step
+    memory = array_at(arbiter + s.arbiter_data, (1,), np.uint64)
+    if memory[0] >> _HALF != s.epoch:
+        if s.restoring or load_tables(s).counters[FREE_PAIRS] == 0:
+            s.request = NEW_PAIR
+            _ask_python(arbiter, space, data)
+        if memory[0] >> _HALF != s.epoch:
+            p = new_pair(load_tables(s), np.int64(_hash_id(shape_a)), np.int64(_hash_id(shape_b)))
+            if p < 0:
+                return
+            memory[0] = (s.epoch << _HALF) | np.uint64(p)
+    p = np.int64(memory[0] & _LOWER)
+
+    normal = _floats(arbiter + s.arbiter_normal, 2)
+    given = _floats(arbiter + s.arbiter_surface, 2)
+    va = _floats(shape_a + s.shape_surface_velocity, 2)
+    vb = _floats(shape_b + s.shape_surface_velocity, 2)
+    vx, vy = surface_velocity(
+        va[0], va[1], vb[0], vb[1], normal[0], normal[1], sign * given[0], sign * given[1]
+    )
+    surface = Surface(
+        _floats(arbiter + s.arbiter_friction, 1)[0], _floats(arbiter + s.arbiter_elasticity, 1)[0], vx, vy
+    )
+    dt = _time_step(space)
+    stamp = np.int64(_timestamp(space))
+    while True:
+        tables = load_tables(s)
+        tables.shapes[sa].inverse_mass = a.inverse_mass
+        tables.shapes[sa].inverse_moment = a.inverse_moment
+        tables.shapes[sb].inverse_mass = b.inverse_mass
+        tables.shapes[sb].inverse_moment = b.inverse_moment
+        status, pull = pair_pull(
+            load_pool(s), tables, load_work(s), load_law(s), p, sa, sb, _pose(s, body_a), _pose(s, body_b),
+            a, b, surface, dt, stamp,
+        )  # fmt: skip
+        if status == DONE:
+            break
+        if status == NOT_FINITE:
+            s.request = BAD_STATE
+            _ask_python(arbiter, space, data)
+            return
+        s.request = MORE_WORK if status == GROW_WORK else MORE_REGIONS
+        _ask_python(arbiter, space, data)
+        if s.request != NOTHING:
+            return  # Python could not: it keeps the error
+    if a.inverse_mass > 0.0:
+        f = _floats(body_a + s.body_force, 2)
+        f[0] -= pull.fx
+        f[1] -= pull.fy
+        _floats(body_a + s.body_torque, 1)[0] += pull.moment_a
+    if b.inverse_mass > 0.0:
+        f = _floats(body_b + s.body_force, 2)
+        f[0] += pull.fx
+        f[1] += pull.fy
+        _floats(body_b + s.body_torque, 1)[0] += pull.moment_b
+
+
+@callback(types.void(types.uintp, types.uintp, types.uintp))
+def separate(arbiter: int, space: int, data: int) -> None:
+    """Two shapes have separated, or one was removed: forget what their contact remembered."""
+    at = _user_data(space)
+    if at == 0:
+        return
+    s = array_at(at, (1,), STATE)[0]
+    memory = array_at(arbiter + s.arbiter_data, (1,), np.uint64)
+    if memory[0] >> _HALF == s.epoch:
+        end_pair(load_tables(s), np.int64(memory[0] & _LOWER))
+    memory[0] = 0
