@@ -152,7 +152,8 @@ def distribute(
             add_load(wa, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
             a_low = a_high = 0.0
             i += 1
-            if i < n_a:  # the vertex between two pieces is a node inside: its pressure, Eq. 12
+            # the vertex between two pieces is a node inside: its pressure, Eq. 12 (none on a wall along the force)
+            if i < n_a and x[0, i + 1] > x[0, i - 1]:
                 v = _height(x, y, 1, j, x[0, i]) - y[0, i]
                 wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
         else:
@@ -160,7 +161,7 @@ def distribute(
             add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
             b_low = b_high = 0.0
             j += 1
-            if j < n_b:
+            if j < n_b and x[1, j + 1] > x[1, j - 1]:
                 v = y[1, j] - _height(x, y, 0, i, x[1, j])
                 wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
     if i < n_a:
@@ -277,7 +278,8 @@ def literal(arc: Array, other: Array, q: float) -> tuple[Array, Array, Array, Ar
     """Eq. 8–11 for one body: the nodes of ``arc`` inside the other body, its two end points the crossings.
 
     arc (n + 2, 2): crossing, nodes inside, crossing, in the order of the body's perimeter; other (m, 2): the other
-    body's arc between the same crossings. Returns normals (n, 2) towards the other perimeter, distances (n,),
+    body's arc between the same crossings. A node whose normal misses that arc (one on a side wall; the paper leaves
+    this case open) gets distance 0, so no force. Returns normals (n, 2) towards the other perimeter, distances (n,),
     tributary lengths (n,), and the weights A_trib d^q (n,) of Eq. 13.
     """
     tangent = arc[2:] - arc[:-2]
@@ -294,8 +296,7 @@ def literal(arc: Array, other: Array, q: float) -> tuple[Array, Array, Array, Ar
     along = np.where((on >= -1e-12) & (on <= 1 + 1e-12), along, np.inf)
     pick = np.abs(along).argmin(1)
     distance = along[np.arange(len(p)), pick]  # Eq. 9; its sign turns the normal to the other perimeter
-    if not np.isfinite(distance).all():
-        raise ValueError("the normal of a contact node misses the other body's perimeter (Eq. 9)")
+    distance = np.where(np.isfinite(distance), distance, 0.0)
     normal = normal * np.where(distance < 0, -1.0, 1.0)[:, None]
     distance = np.abs(distance)
     return normal, distance, tributary, tributary * distance**q
