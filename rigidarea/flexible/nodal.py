@@ -153,7 +153,7 @@ def distribute(
             a_low = a_high = 0.0
             i += 1
             # the vertex between two pieces is a node inside: its pressure, Eq. 12 (none on a wall along the force)
-            if i < n_a and x[0, i + 1] > x[0, i - 1]:
+            if i < n_a and x[0, i + 1] - x[0, i - 1] > 1e-9 * chord:
                 v = _height(x, y, 1, j, x[0, i]) - y[0, i]
                 wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
         else:
@@ -161,7 +161,7 @@ def distribute(
             add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
             b_low = b_high = 0.0
             j += 1
-            if j < n_b and x[1, j + 1] > x[1, j - 1]:
+            if j < n_b and x[1, j + 1] - x[1, j - 1] > 1e-9 * chord:
                 v = y[1, j] - _height(x, y, 0, i, x[1, j])
                 wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
     if i < n_a:
