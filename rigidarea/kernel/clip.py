@@ -67,4 +67,6 @@ def clip(
             src, dst = dst, src
         ex = fx
         ey = fy
-    return measure(p, label, loops, 0, src, src + n)
+    if measure(p, label, loops, 0, src, src + n) == 0 or loops[0].area < 0.0:  # negative: rounding
+        return 0
+    return 1

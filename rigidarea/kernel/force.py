@@ -56,6 +56,13 @@ REGION = record(
         ("spring", "f8"),  # tangential force of the friction spring (force)
         ("tangent_stiffness", "f8"),  # its stiffness when last loaded (force/length)
         ("damping", "f8"),  # a of F = k A (1 + a speed) (time/length)
+        ("elastic", "f8"),  # what of the force is elastic (force)
+        ("excess", "f8"),  # what is damping (force)
+        ("work", "f8"),  # done on the spring while closing (force length)
+        ("loss", "f8"),  # energy lost to damping while closing (force length)
+        ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
+        ("tilt", "f8"),  # area times the chord's middle seen from the centroid, along t (length^3)
+        ("turning", "f8"),  # angular speed of A's face against B's, from the change of tilt (1/time)
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
         ("speed", "f8"),  # closing speed (length/time)
@@ -220,6 +227,14 @@ def region_force(
 ) -> Pull:  # fmt: skip
     """Force of region r (one REGION record: area, x, y, nx, ny, chord set; its memory is brought up to date).
 
+    Impacts. While closing, F = f (1 + a speed) with the a that in free flight returns `elasticity` exactly, whatever
+    f (design 2.4). While opening, F = f (1 - b), b such that the loss of the whole impact becomes (1 - e^2) of the
+    kinetic energy at first touch: the same restitution again, but also where gravity, or anything else, acts during
+    the impact (the plain law then returns up to 0.25 less, the softer the contact).
+
+    Rest. A bed of springs with dashpots beside them: a resultant along n, and a moment against the turning of one
+    face on the other. A disc that rolls does not turn a face: its overlap stays the same, `turning` is 0.
+
     The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
     resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
     """
@@ -255,33 +270,48 @@ def region_force(
         r.opened = 0
         r.resting = 1 if speed <= law.rest_speed else 0
         r.damping = 0.0 if r.resting else restitution_damping(elasticity) / speed
+        r.work = 0.0
+        r.loss = 0.0
+        r.withheld = 0.0
     r.phase += step_phase
-    if speed < 0.0:
-        r.opened = 1
+    if not (born or r.opened):
+        # what the last step's force did is now known: it acted while the speed went from the old to the present one
+        moved = 0.5 * dt * (r.speed + speed)
+        r.work += r.elastic * moved
+        r.loss += r.excess * moved
+        if speed < 0.0:
+            r.opened = 1
+            energy = 0.5 * r.first_speed * r.first_speed / inverse
+            missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
+            r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
     if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
         r.resting = 1
 
     couple = 0.0
     if r.resting:
-        # pressure of a Winkler bed with dashpots: a resultant at the centroid, and a moment against turning
         c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
         force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
         bed = c * r.chord * r.chord / 12.0
-        couple = bed * (a.w - b.w) / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
+        couple = bed * r.turning / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
         most = force * r.chord / 6.0  # more would need the pressure to pull at one end
         couple = min(most, max(-most, couple))
     else:
-        force = max(
-            0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse)
-        )
         # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
         # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
         depth = r.area / r.chord
-        leaving = dt * (dt * force * inverse - speed)
-        if born and depth < dt * speed:
-            force *= 0.5 * (1.0 + depth / (dt * speed))
-        elif depth < leaving:
-            force *= 0.5 * (1.0 + depth / leaving)
+        if r.opened:
+            force = elastic * (1.0 - r.withheld)
+            leaving = dt * (dt * force * inverse - speed)
+            if depth < leaving:
+                force *= 0.5 * (1.0 + depth / leaving)
+        else:
+            if born and depth < dt * speed:
+                elastic *= 0.5 * (1.0 + depth / (dt * speed))
+            force = max(
+                0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse)
+            )
+            r.elastic = elastic
+            r.excess = force - elastic
 
     tangential = 0.0
     if friction > 0.0:

@@ -110,6 +110,27 @@ def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
 
 
 @kernel
+def _off_corner(work: Work, start: int, stop: int) -> tuple[float, float]:
+    """The middle of a loop's longest edge: holes may touch a ring in a corner, where inside is undecided."""
+    longest = -1.0
+    x = 0.0
+    y = 0.0
+    ux = work.polygon[stop - 1, 0]
+    uy = work.polygon[stop - 1, 1]
+    for i in range(start, stop):
+        vx = work.polygon[i, 0]
+        vy = work.polygon[i, 1]
+        length = abs(vx - ux) + abs(vy - uy)
+        if length > longest:
+            longest = length
+            x = 0.5 * (ux + vx)
+            y = 0.5 * (uy + vy)
+        ux = vx
+        uy = vy
+    return x, y
+
+
+@kernel
 def _gather(work: Work, n: int) -> int:
     """Give each hole loop to its region, put the regions first; their number."""
     loops = work.loops
@@ -123,8 +144,7 @@ def _gather(work: Work, n: int) -> int:
         hole = loops[i]
         if hole.area > 0.0:
             continue
-        x = work.polygon[hole.start, 0]
-        y = work.polygon[hole.start, 1]
+        x, y = _off_corner(work, hole.start, hole.stop)
         best = -1
         for j in range(n):
             if loops[j].area > -hole.area and (holes == n - 1 or _in_loop(work, j, x, y)):

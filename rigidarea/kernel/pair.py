@@ -401,6 +401,9 @@ def pair_pull(
             # the gradient's line of action: its moment about the centroid is -lever
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
+        tilt = 0.0 if blind else area * loop.lever / chord
+        region.turning = 0.0 if born else 12.0 * (tilt - region.tilt) / (dt * chord**3)
+        region.tilt = tilt
         region.area = area
         region.x = x
         region.y = y

@@ -30,7 +30,7 @@ HEAD = record(
         ("rings", "i4"),
         ("box", "i4"),  # node n of the hierarchy is boxes[box + n]
         ("leaves", "i4"),  # a power of two
-        ("convex", "i4"),
+        ("convex", "i4"),  # and small enough to be clipped
         ("x", "f8"),  # middle of the bounding box, body frame (length)
         ("y", "f8"),
         ("radius", "f8"),  # about that middle (length)
@@ -65,6 +65,8 @@ class HasRings(Protocol):
     def convex(self) -> bool: ...
 
 
+#: Outlines of more points are not clipped, convex or not.
+MOST_CLIPPED = 21
 #: Depth at which `face` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
 FACE_DEPTH = 0.02
 
@@ -129,6 +131,18 @@ def _face(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[floa
     return float(chord[best]), float(abs(arm[best]))
 
 
+def _clippable(points: np.ndarray) -> bool:
+    """Whether every point lies left of every edge's line: a convex outline cut along its edges stays itself.
+
+    (An edge of rounding length may look the wrong way in an outline that is convex but for rounding.)
+    """
+    edge = np.roll(points, -1, axis=0) - points
+    edge /= np.hypot(edge[:, 0], edge[:, 1])[:, None]
+    apart = points[None, :, :] - points[:, None, :]
+    behind = edge[:, None, 0] * apart[..., 1] - edge[:, None, 1] * apart[..., 0]
+    return bool(behind.min() >= -1e-13 * np.abs(points).max())
+
+
 def pack(outlines: Sequence[HasRings]) -> Pool:
     """Cast outlines into one pool. Rings are taken as `Outline` makes them (checked there)."""
     points, following, ring_of, rings, boxes = [], [], [], [], []
@@ -148,7 +162,7 @@ def pack(outlines: Sequence[HasRings]) -> Pool:
         head["point"], head["count"] = n_points, len(local)
         head["ring"], head["rings"] = n_rings, len(sizes)
         head["box"], head["leaves"] = n_boxes, leaves
-        head["convex"] = outline.convex
+        head["convex"] = outline.convex and len(local) <= MOST_CLIPPED and _clippable(local)
         head["x"], head["y"] = middle
         head["radius"] = np.hypot(local[:, 0], local[:, 1]).max()
         head["area"], head["face"], head["face_arm"] = outline.area, face, arm
