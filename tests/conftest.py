@@ -1,0 +1,164 @@
+"""The kernel as tests see it: one place that knows its modules, how outlines are placed, and where the scratch grows.
+
+Run the kernel tests without compilation by `NUMBA_DISABLE_JIT=1 PAIRS=20 pytest tests/test_overlap.py -m ...`;
+`test_overlap.test_the_same_without_compilation` does so in a subprocess.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Sequence
+from types import ModuleType
+from typing import Any, NamedTuple
+
+import numba
+import numpy as np
+import pytest
+from hypothesis import settings
+
+
+def kernel_module(name: str) -> ModuleType:
+    """A kernel module by its short name: the one line that knows where in the package kernels live."""
+    return importlib.import_module(f"rigidarea.kernel.{name}")
+
+
+class Found(NamedTuple):
+    """Regions of many pairs, in world axes relative to the origin of A's body (n pairs, m regions)."""
+
+    count: np.ndarray  # (n,) regions of the pair
+    pair: np.ndarray  # (m,) which pair
+    area: np.ndarray  # (m,)
+    centroid: np.ndarray  # (m, 2)
+    chord: np.ndarray  # (m, 2) sum of end - start over A's arcs
+    extent: (
+        np.ndarray
+    )  # (m,) half perimeter of its bounding box, so area / extent is less than its mean width
+
+    def total(self, weights: np.ndarray) -> np.ndarray:
+        """(n,) sums over each pair's regions."""
+        return np.bincount(self.pair, weights, minlength=len(self.count))
+
+
+class Kernel:
+    """Overlap of outlines by `overlap_of_outlines`, as contacts call it: tangles undone, scratch grown."""
+
+    def __init__(self) -> None:
+        self.overlap = kernel_module("overlap")
+        self.pair = kernel_module("pair")
+        self.pool = kernel_module("pool")
+        self.force = kernel_module("force")
+        self.predicates = kernel_module("predicates")
+        regions_of = self.pair.overlap_of_outlines
+        Pose = self.pair.Pose
+
+        @numba.njit
+        def run(
+            pool: Any, ia: Any, ib: Any, pa: Any, pb: Any, work: Any, begin: int, m: int,
+            counts: Any, where: Any, out: Any,
+        ) -> Any:  # fmt: skip
+            for i in range(begin, len(ia)):
+                a = Pose(pa[i, 0], pa[i, 1], pa[i, 2], pa[i, 3])
+                b = Pose(pb[i, 0], pb[i, 1], pb[i, 2], pb[i, 3])
+                n = regions_of(pool, ia[i], a, ib[i], b, work)[0]
+                if n < 0 or m + n > len(out):
+                    return i, m
+                head = pool.heads[ia[i]]
+                for k in range(n):
+                    loop = work.loops[k]
+                    x = loop.x + head.x
+                    y = loop.y + head.y
+                    where[m] = i
+                    out[m, 0] = loop.area
+                    out[m, 1] = a.c * x - a.s * y
+                    out[m, 2] = a.s * x + a.c * y
+                    out[m, 3] = a.c * loop.chord_x - a.s * loop.chord_y
+                    out[m, 4] = a.s * loop.chord_x + a.c * loop.chord_y
+                    low_x = high_x = work.polygon[loop.start, 0]
+                    low_y = high_y = work.polygon[loop.start, 1]
+                    for v in range(loop.start, loop.stop):
+                        low_x = min(low_x, work.polygon[v, 0])
+                        high_x = max(high_x, work.polygon[v, 0])
+                        low_y = min(low_y, work.polygon[v, 1])
+                        high_y = max(high_y, work.polygon[v, 1])
+                    out[m, 5] = high_x - low_x + high_y - low_y
+                    m += 1
+                counts[i] = n
+            return len(ia), m
+
+        self._run = run
+
+    def work(self, outlines: Sequence[Any]) -> Any:
+        points = 2 * max(sum(map(len, o.rings)) for o in outlines)
+        return self.overlap.new_work(max(points, 256), 32, 2 * max(len(o.rings) for o in outlines))
+
+    def many(
+        self,
+        outlines: Sequence[Any],
+        ia: np.ndarray,
+        ib: np.ndarray,
+        pa: np.ndarray,
+        pb: np.ndarray,
+        work: Any = None,
+    ) -> Found:
+        """Regions of outlines[ia] at poses pa and outlines[ib] at pb; poses are rows (x, y, cosine, sine)."""
+        pool = self.pool.pack(outlines)
+        work = work or self.work(outlines)
+        points = 2 * max(sum(map(len, o.rings)) for o in outlines)
+        rings = 2 * max(len(o.rings) for o in outlines)
+        counts = np.full(len(ia), -1, np.int64)
+        where = np.zeros(64, np.int64)
+        out = np.zeros((64, 6))
+        begin = m = 0
+        while True:
+            begin, m = self._run(pool, ia, ib, pa, pb, work, begin, m, counts, where, out)
+            if begin == len(ia):
+                break
+            if m + len(work.loops) > len(out):
+                where = np.concatenate([where, np.zeros(max(len(out), len(work.loops)), np.int64)])
+                out = np.concatenate([out, np.zeros((len(where) - len(out), 6))])
+            elif len(work.cross) < 1 << 16:
+                work = self.overlap.enlarged(work, points, rings)
+            else:  # no scratch is enough: undecided, and counted as such
+                counts[begin] = -1
+                begin += 1
+        return Found(counts, where[:m], out[:m, 0], out[:m, 1:3], out[:m, 3:5], out[:m, 5])
+
+    def one(
+        self, a: Any, pose_a: Sequence[float], b: Any, pose_b: Sequence[float], work: Any = None
+    ) -> Found:
+        """Regions of one pair; poses are (x, y, angle) or (x, y, cosine, sine)."""
+        poses = [
+            np.array([[p[0], p[1], np.cos(p[2]), np.sin(p[2])] if len(p) == 3 else p], dtype=float)
+            for p in (pose_a, pose_b)
+        ]
+        return self.many([a, b], np.array([0]), np.array([1]), *poses, work=work)
+
+    def polygons(
+        self, a: Any, pose_a: Sequence[float], b: Any, pose_b: Sequence[float]
+    ) -> list[tuple[np.ndarray, np.ndarray]]:
+        """(vertices, labels) of each region, holes left out, relative to A's body, in A's axes."""
+        pool = self.pool.pack([a, b])
+        work = self.work([a, b])
+        pose = [
+            self.pair.Pose(p[0], p[1], float(np.cos(p[2])), float(np.sin(p[2]))) for p in (pose_a, pose_b)
+        ]
+        n = self.pair.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
+        while n < 0:
+            work = self.overlap.enlarged(
+                work, 2 * max(len(a.rings[0]), len(b.rings[0])), 2 * len(a.rings + b.rings)
+            )
+            n = self.pair.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
+        middle = (pool.heads["x"][0], pool.heads["y"][0])
+        spans = [slice(int(work.loops["start"][k]), int(work.loops["stop"][k])) for k in range(n)]
+        return [(work.polygon[s] + middle, work.label[s].copy()) for s in spans]
+
+
+@pytest.fixture(scope="session")
+def kernel() -> Kernel:
+    return Kernel()
+
+
+#: Without compilation everything is a hundred times slower: fewer examples.
+PURE_PYTHON = bool(numba.config.DISABLE_JIT)
+settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=8 if PURE_PYTHON else 60)
+settings.load_profile("fixed")
