@@ -215,8 +215,8 @@ class Query:
     """
 
     def __init__(self, a: Any, b: Any, pose: tuple[float, float, float]) -> None:
-        from ..overlap import enlarged, fits, new_work
-        from ..pool import pack
+        from ..kernel.pool import pack
+        from ..kernel.work import enlarged, fits, new_work
 
         self.pool, self.pose = pack([a, b]), pose
         points, rings = sum(len(r) for r in (*a.rings, *b.rings)), len(a.rings) + len(b.rings)
@@ -246,7 +246,8 @@ def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) ->
     if _compiled is None:
         import numba
 
-        from ..overlap import overlap_kernel, relative
+        from ..kernel.overlap import overlap_kernel
+        from ..kernel.work import relative
 
         @numba.njit
         def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]

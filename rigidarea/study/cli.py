@@ -46,6 +46,33 @@ def add_commands(subparsers: Any) -> None:
     chart.add_argument("--repeats", type=int, metavar="N", help="rounds of timing (default 5, quick 3)")
     chart.set_defaults(run=_chart)
 
+    atlas = subparsers.add_parser("atlas", help="where methods fail: maps over two knobs")
+    _common(atlas, "atlas")
+    _sweep(atlas)
+    atlas.add_argument("--map", action="append", default=[], metavar="NAME", help="only this (repeatable)")
+    atlas.set_defaults(run=_atlas)
+
+
+def _atlas(arguments: argparse.Namespace) -> int:
+    from . import atlas, draw_atlas
+    from .records import write_csv, write_json
+
+    report = atlas.atlas(
+        arguments.out,
+        quick=arguments.quick,
+        map_names=arguments.map,
+        peer_names=arguments.peer,
+        scheduler=arguments.scheduler,
+        workers=arguments.workers,
+        resume=not arguments.fresh,
+    )
+    write_json(arguments.out / "atlas.json", report)
+    write_csv(arguments.out / "atlas.csv", report["results"])
+    draw_atlas.atlas_maps(report, arguments.out)
+    draw_atlas.overview(report, arguments.out)
+    write_json(arguments.json, report)
+    return 0
+
 
 def _bench(arguments: argparse.Namespace) -> int:
     from . import bench, draw

@@ -60,8 +60,15 @@ def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pym
 class StepRun(SpaceRun):
     """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
 
-    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
-        super().__init__(scene, space, bodies, contact.steps(scene.frame))
+    def __init__(
+        self,
+        scene: Scene,
+        space: pymunk.Space,
+        bodies: list[pymunk.Body],
+        contact: Any,
+        steps: int | None = None,
+    ) -> None:
+        super().__init__(scene, space, bodies, contact.steps(scene.frame) if steps is None else steps)
         self.contact = contact
 
 
@@ -116,7 +123,7 @@ class Area:
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space."""
-        return StepRun(scene, *area_space(scene, settings))
+        return StepRun(scene, *area_space(scene, settings), settings.get("steps"))
 
 
 class AreaFrames(Area):

@@ -1,0 +1,169 @@
+"""Where methods fail: maps over two knobs, pass or fail and how, by a measured quantity, with theory's
+boundary.
+
+A map is a module of `rigidarea.study.maps` with a function `atlas_map()`. Each point is one small run, a
+task of a sweep, and independent of all others.
+"""
+
+from __future__ import annotations
+
+import importlib
+import math
+import pkgutil
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .peers import get_peer, record
+from .records import Row, report
+from .scene import Array, Scene, Trace
+from .sweep import run_tasks
+
+PASS = "pass"
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One knob: `label` with its unit, `values`, a coarser choice for quick runs; words in `names` if it has
+    any.
+    """
+
+    label: str
+    values: tuple[float, ...]
+    quick: tuple[float, ...]
+    log: bool = False
+    names: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Variant:
+    """An engine with settings, as a column of a map."""
+
+    peer: str
+    settings: Mapping[str, Any]
+
+
+Outcome = tuple[str, float]
+"""(verdict, measure): "pass" or how it failed, and the number that says so."""
+
+
+@dataclass(frozen=True)
+class Map:
+    """A map: `run(variant, x, y)` gives the outcome of one point; `theory` lists boundaries (label, x, y)."""
+
+    name: str
+    title: str
+    x: Axis
+    y: Axis
+    measure: str
+    limit: float
+    variants: Mapping[str, Variant]
+    run: Callable[[Variant, float, float], Outcome]
+    source: str
+    theory: Callable[[], list[tuple[str, Array, Array]]] = field(default=lambda: [])
+
+
+def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:
+    """The usual variants: rigidarea by frames, pymunk, Box2D, the paper's method; `changes` replace settings.
+
+    A change of None drops the engine.
+    """
+    usual: dict[str, dict[str, Any]] = {
+        "rigidarea": {"peer": "rigidarea-frame"},
+        "pymunk": {"peer": "pymunk", "steps": 4, "iterations": 10, "slop": 1e-3},
+        "box2d": {"peer": "box2d", "steps": 1, "substeps": 4, "stiff": False, "length": 1},
+        "literal": {"peer": "literal", "phase": 0.5},
+    }
+    found = {}
+    for label, settings in usual.items():
+        change = changes.get(label, {})
+        if change is not None:
+            merged = {**settings, **change}
+            found[label] = Variant(merged.pop("peer"), merged)
+    return found
+
+
+def run_scene(variant: Variant, scene: Scene, **settings: Any) -> Trace:
+    """The trace of a scene with a variant's settings and more."""
+    return record(get_peer(variant.peer).build(scene, {**variant.settings, **settings}), scene)
+
+
+def judge(measure: float, limit: float, how: str) -> Outcome:
+    """Pass if the measure is finite and within the limit, else `how` (or that the state left the numbers)."""
+    if not math.isfinite(measure):
+        return "not finite", math.inf
+    return (PASS if measure <= limit else how), measure
+
+
+@cache
+def maps() -> dict[str, Map]:
+    """Every map by name."""
+    from . import maps as package
+
+    found = {}
+    for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
+        made: Map = importlib.import_module(f"{package.__name__}.{info.name}").atlas_map()
+        if made.name != info.name:
+            raise ValueError(f"map module {info.name!r} defines a map called {made.name!r}")
+        found[made.name] = made
+    return found
+
+
+def get_map(name: str) -> Map:
+    """The map called `name`; `ValueError` lists the known ones."""
+    if name not in maps():
+        raise ValueError(f"unknown map {name!r}; expected one of {', '.join(maps())}")
+    return maps()[name]
+
+
+def evaluate(map: str, peer: str, x: float, y: float) -> Row:
+    """One point of a map for one of its variants: the task of the sweep."""
+    chart = get_map(map)
+    with np.errstate(all="ignore"):  # runs that blow up are what is looked for
+        verdict, measure = chart.run(chart.variants[peer], x, y)
+    return {"verdict": verdict, "measure": measure if math.isfinite(measure) else None}
+
+
+def atlas(
+    out: Path,
+    quick: bool = False,
+    map_names: Sequence[str] = (),
+    peer_names: Sequence[str] = (),
+    scheduler: str | None = None,
+    workers: int | None = None,
+    resume: bool = True,
+) -> Row:
+    """Run the maps; returns the object written to `out`/atlas.json, rows map, peer, x, y, verdict,
+    measure.
+    """
+    chosen = [get_map(name) for name in (map_names or maps())]
+    tasks = []
+    for chart in chosen:
+        xs, ys = (axis.quick if quick else axis.values for axis in (chart.x, chart.y))
+        for label, variant in chart.variants.items():
+            if not peer_names or label in peer_names or variant.peer in peer_names:
+                tasks += [{"map": chart.name, "peer": label, "x": x, "y": y} for y in ys for x in xs]
+    store = out / "atlas.jsonl"
+    if not resume:
+        store.unlink(missing_ok=True)
+    results = run_tasks(evaluate, tasks, store, scheduler, workers, title="atlas")
+    rows = [{**task, **result} for task, result in zip(tasks, results, strict=True)]
+    return report("atlas", {"quick": quick}, rows, maps=[describe(chart) for chart in chosen])
+
+
+def describe(chart: Map) -> Row:
+    """What a reader of the output has to know of a map."""
+    return {
+        "map": chart.name,
+        "title": chart.title,
+        "x": chart.x.label,
+        "y": chart.y.label,
+        "measure": chart.measure,
+        "limit": chart.limit,
+        "source": chart.source,
+        "variants": {name: {"peer": v.peer, **v.settings} for name, v in chart.variants.items()},
+    }

@@ -1,0 +1,53 @@
+"""Two squares meet corner to corner: does the impact keep its energy?"""
+
+import math
+
+from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
+from ..scene import OMEGA, VX, VY, Body, Scene, box, box_moment
+
+LIMIT, V = 0.02, 2.0
+MOMENT = box_moment(1.0, 1.0, 1.0)
+
+
+def run(variant: Variant, x: float, y: float) -> Outcome:
+    """Relative change of kinetic energy, e = 1, no friction."""
+    diagonal = math.sqrt(0.5)
+    tilt = math.radians(45)
+    bodies = (
+        Body("a", (box(1.0, 1.0),), (-diagonal - 0.05, 0.0), tilt, (V, 0.0), moment=MOMENT),
+        Body("b", (box(1.0, 1.0),), (diagonal, x), tilt + math.radians(y), moment=MOMENT),
+    )
+    scene = Scene(
+        name="corner_corner",
+        title="",
+        bodies=bodies,
+        gravity=(0.0, 0.0),
+        elasticity=1.0,
+        duration=0.6,
+        error_name="",
+        error=lambda trace: 0.0,
+        source="",
+        pressure=V**2,
+    )
+    settings = {"stiffness": 1e4} if variant.peer in ("literal", "rigidarea") else {}
+    last = run_scene(variant, scene, **settings).states[-1]
+    energy = float(sum(s[VX] ** 2 + s[VY] ** 2 + MOMENT * s[OMEGA] ** 2 for s in last))
+    return judge(abs(energy / V**2 - 1), LIMIT, "gained" if energy > V**2 else "lost")
+
+
+def atlas_map() -> Map:
+    """Offset × turn."""
+    area = {"peer": "rigidarea", "phase": 0.1}
+    variants = engines(rigidarea=area, literal={"phase": 0.1})
+    variants["rigidarea, energy law"] = Variant("rigidarea", {"phase": 0.1, "law": "energy"})
+    return Map(
+        name="corner_corner",
+        title="corner on corner: energy of an elastic impact",
+        x=Axis("offset of the corners / side", (0.0, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4), (0.0, 0.03, 0.2)),
+        y=Axis("turn of one square (degrees)", (-40, -20, -5, 0, 5, 20, 40), (-20, 0, 20)),
+        measure="|energy after / before − 1|",
+        limit=LIMIT,
+        variants=variants,
+        run=run,
+        source="e = 1 without friction keeps the energy; F = k A is not conservative between two corners (design 2.3)",
+    )

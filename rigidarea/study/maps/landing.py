@@ -1,0 +1,68 @@
+"""A box lands on a corner, then flat: the stiffness of its contact grows with the chord."""
+
+import math
+
+import numpy as np
+
+from ..atlas import Axis, Map, Outcome, Variant, judge
+from ..peers import get_peer, record
+from ..scene import OMEGA, VX, VY, Array, Body, G, Scene, Y, box, box_moment, floor
+
+K, DROP = 1e4, 0.5
+OMEGA_FLAT = math.sqrt(K * G)
+"""ω of the box lying flat (unit box, k = K m g/s²)."""
+
+
+def run(variant: Variant, x: float, y: float) -> Outcome:
+    """Largest energy after the first touch over the energy before; `x` is ω h lying flat, `y` the tilt."""
+    tilt = math.radians(y)
+    reach = math.sqrt(0.5) * math.cos(math.radians(45) - tilt)
+    body = Body("box", (box(1.0, 1.0),), (0.0, reach + DROP), tilt, moment=box_moment(1.0, 1.0, 1.0))
+    h = x / OMEGA_FLAT
+    scene = Scene(
+        name="landing",
+        title="",
+        bodies=(floor(), body),
+        friction=0.5,
+        elasticity=0.5,
+        duration=2.0,
+        error_name="",
+        error=lambda trace: 0.0,
+        source="",
+        frame=8 * h,
+    )
+    run_ = get_peer(variant.peer).build(scene, {**variant.settings, "stiffness": K, "steps": 8})
+    path = record(run_, scene)["box"]
+    if not np.all(np.isfinite(path)):
+        return "not finite", math.inf
+    moving = path[:, VX] ** 2 + path[:, VY] ** 2 + box_moment(1.0, 1.0, 1.0) * path[:, OMEGA] ** 2
+    energy = moving / 2 + G * path[:, Y]
+    resting = path[-1, Y]
+    if not 0.4 < resting < 0.8:
+        return ("fell through" if resting <= 0.4 else "shot up"), float(np.max(energy) / energy[0])
+    return judge(float(np.max(energy) / energy[0]), 1.05, "gained energy")
+
+
+def theory() -> list[tuple[str, Array, Array]]:
+    """ω h = 2, undamped."""
+    return [("ω h = 2", np.array((2.0, 2.0)), np.array((0.0, 45.0)))]
+
+
+def atlas_map() -> Map:
+    """ω h of the flat box × tilt at landing."""
+    return Map(
+        name="landing",
+        title="contact length: a box lands on a corner, then flat",
+        x=Axis(
+            "ω h of the box lying flat",
+            (0.1, 0.25, 0.5, 1.0, 1.4, 1.7, 2.0, 2.5, 3.0, 4.0),
+            (0.25, 1.0, 1.7, 2.5, 4.0),
+        ),
+        y=Axis("tilt at landing (degrees)", (0.0, 1.0, 5.0, 15.0, 30.0, 45.0), (0.0, 5.0, 30.0)),
+        measure="largest energy / first energy",
+        limit=1.05,
+        variants={"rigidarea": Variant("rigidarea", {}), "literal": Variant("literal", {})},
+        run=run,
+        source="ω = sqrt(k L/m): the longest chord sets the step",
+        theory=theory,
+    )

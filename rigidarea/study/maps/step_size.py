@@ -1,0 +1,93 @@
+"""A box resting on a floor: how large a step its contact bears."""
+
+import math
+
+import numpy as np
+
+from ...kernel.force import damping_ratio
+from ..atlas import Axis, Map, Outcome, Variant, judge
+from ..peers.area import area_space
+from ..peers.base import drive
+from ..scene import Array, G, Scene, block, floor
+
+STEPS, K, LIMIT = 3000, 1e5, 1.0
+OMEGA = math.sqrt(K)
+"""ω = sqrt(k L/m) of a unit box of unit mass."""
+
+
+def growth(phase: float, elasticity: float, law: str = "area") -> float:
+    """Amplitude after 3,000 steps of ω h = `phase`, over the amplitude at the start (both in ω-scaled phase
+    space).
+
+    The box starts in equilibrium, with a velocity that moves it by a thousandth of its sinking: no contact
+    is lost.
+    """
+    from pymunk._chipmunk_cffi import lib
+
+    sunk = G / K
+    scene = Scene(
+        name="step_size",
+        title="",
+        bodies=(floor(), block("box", 1.0, 1.0, (0.0, 0.5 - sunk))),
+        elasticity=elasticity,
+        duration=1.0,
+        error_name="",
+        error=lambda trace: 0.0,
+        source="",
+        pressure=1.0,
+    )
+    space, bodies, _contact = area_space(scene, {"stiffness": K, "rest_speed": 1e9, "law": law})
+    kick = 1e-3 * sunk * OMEGA
+    bodies[1].velocity = (0.0, kick)
+    drive(lib.cpSpaceStep, STEPS, space._space, phase / OMEGA)
+    # The conserved quantity of symplectic Euler, x² + v²/ω² + h x v, stays positive up to its limit.
+    x, v = bodies[1].position.y - scene.bodies[1].position[1], bodies[1].velocity.y / OMEGA
+    return math.sqrt(x * x + v * v) / (1e-3 * sunk) if math.isfinite(x + v) else math.inf
+
+
+def run(variant: Variant, x: float, y: float) -> Outcome:
+    """Bounded (a hundredfold at most: at the limit itself it grows with the number of steps) or not."""
+    return judge(math.log10(max(growth(x, y, **variant.settings), 1e-12)), 2.0, "unstable")
+
+
+def limit(zeta: Array) -> Array:
+    """ω h at which symplectic Euler with a damped force goes unstable, the damping taken at the new velocity.
+
+    With c = 2 ζ ω and the factor 1/(1 + h c) of an implicit dashpot: 4 − 2 h c' − (ω h)² = 0, h c' = h c/(1
+    + h c). Explicit damping would give 2 (sqrt(1 + ζ²) − ζ).
+    """
+    from scipy.optimize import brentq
+
+    def solve(z: float) -> float:
+        return float(brentq(lambda p: 4 - 2 * (2 * z * p / (1 + 2 * z * p)) - p * p, 0.5, 2.0))
+
+    return np.array([solve(float(z)) for z in zeta])
+
+
+def theory() -> list[tuple[str, Array, Array]]:
+    """The limit over the elasticity."""
+    e = np.linspace(0.02, 1.0, 50)
+    zeta = np.array([damping_ratio(float(value)) for value in e])
+    explicit = 2 * (np.sqrt(1 + zeta**2) - zeta)
+    return [("4 − 2hc′ − (ωh)² = 0", limit(zeta), e), ("explicit damping: 2(√(1+ζ²) − ζ)", explicit, e)]
+
+
+def atlas_map() -> Map:
+    """ω h × elasticity (e = 1: no damping)."""
+    return Map(
+        name="step_size",
+        title="step size: a box resting on a floor",
+        x=Axis(
+            "ω h", tuple(np.round(np.arange(1.0, 2.41, 0.05), 3)), (1.2, 1.4, 1.6, 1.8, 1.9, 1.97, 2.03, 2.1)
+        ),
+        y=Axis("elasticity e", (0.02, 0.1, 0.2, 0.4, 0.6, 0.8, 0.9, 1.0), (0.1, 0.5, 1.0)),
+        measure="log10 of the amplitude's growth in 3,000 steps",
+        limit=2.0,
+        variants={
+            "rigidarea": Variant("rigidarea", {}),
+            "rigidarea, energy law": Variant("rigidarea", {"law": "energy"}),
+        },
+        run=run,
+        source="symplectic Euler: ω h < 2 undamped",
+        theory=theory,
+    )
