@@ -25,6 +25,7 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
+from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible.element import Material, lumped_mass, stiffness
@@ -34,7 +35,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 VERSION = 2  # of the cache's content: raise it when the reduction changes
-BLOCK = 256  # right-hand sides solved at once: bounds memory to BLOCK columns
+BLOCK = 128  # right-hand sides solved at once: bounds memory to BLOCK columns
 
 
 @dataclass(frozen=True)
@@ -149,6 +150,52 @@ def free_modes(k: sp.csc_array, mass: Array, rigid: Array, count: int) -> tuple[
     return phi, square**0.5
 
 
+@njit(cache=True)
+def _substitute(
+    lp: Ints, li: Ints, lx: Array, up: Ints, ui: Ints, ux: Array, x: Array
+) -> None:  # compressed columns of L and U, right-hand sides as the columns of x
+    n, m = x.shape
+    for j in range(n):
+        for p in range(lp[j], lp[j + 1]):
+            if li[p] > j:
+                for k in range(m):
+                    x[li[p], k] -= lx[p] * x[j, k]
+    for j in range(n - 1, -1, -1):
+        for p in range(up[j], up[j + 1]):
+            if ui[p] == j:
+                for k in range(m):
+                    x[j, k] /= ux[p]
+        for p in range(up[j], up[j + 1]):
+            if ui[p] < j:
+                for k in range(m):
+                    x[ui[p], k] -= ux[p] * x[j, k]
+
+
+class _Solver:
+    """Sparse factors, applied to many right-hand sides row by row of all of them.
+
+    SuperLU's own ``solve`` takes one column after another through threaded BLAS calls of a few entries each: ten times
+    slower here, and more so on a busy machine.
+    """
+
+    def __init__(self, matrix: sp.csc_array) -> None:
+        factors = spl.splu(
+            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+        )
+        self._row, self._column = factors.perm_r, factors.perm_c
+        lower, upper = factors.L.tocsc(), factors.U.tocsc()
+        self._factors = tuple(
+            part for f in (lower, upper) for part in (f.indptr.astype(np.int64), f.indices.astype(np.int64), f.data)
+        )
+
+    def solve(self, rhs: Array) -> Array:
+        """x (n, m) of A x = rhs."""
+        x = np.empty(rhs.shape)
+        x[self._row] = rhs
+        _substitute(*self._factors, x)
+        return x[self._column]
+
+
 def _reduce(
     mesh: Mesh, material: Material, contact_rings: Sequence[int], hub: int | None, clamped: int | None, modes: int,
     flexible: bool,
@@ -192,12 +239,7 @@ def _reduce(
             start = np.random.default_rng(0).standard_normal(len(root))
             square, vectors = spl.eigsh(scaled, k=modes, sigma=0.0, v0=start)
             phi[free], omega = vectors / root[:, None], square**0.5
-    solver = spl.splu(
-        k[free][:, free].tocsc(),
-        permc_spec="MMD_AT_PLUS_A",
-        diag_pivot_thresh=0.0,
-        options={"SymmetricMode": True},
-    )
+    solver = _Solver(k[free][:, free].tocsc())
     where = np.full(n, -1)
     where[free] = np.arange(len(free))
     m_rigid = np.repeat(mass, 2)[:, None] * rigid
