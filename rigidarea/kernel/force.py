@@ -44,6 +44,7 @@ REGION = record(
         ("next", "i4"),  # next region of the pair, or of the free list; -1: none
         ("resting", "i4"),  # 0: impact, 1: rest
         ("opened", "i4"),  # 1 once the bodies have moved apart within this contact
+        ("past", "i4"),  # 1: past the middle of a body, the direction is kept
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
         ("y", "f8"),

@@ -393,11 +393,20 @@ def pair_pull(
                 nx, ny = push_out(pool, ia, ib, rel)
         wx = pose_a.c * nx - pose_a.s * ny
         wy = pose_a.s * nx + pose_a.c * ny
-        if not born and (blind or wx * region.nx + wy * region.ny < 0.0):
-            # past the middle of a body the chord turns round: a region keeps the way it came in (design 2.1)
-            wx = region.nx
-            wy = region.ny
-        elif law.law == LAW_ENERGY and not blind:
+        past = 0
+        if not born:
+            # Past the middle of a body the chord shrinks to nothing and comes out the other way: a region then keeps
+            # the way it came in, while it lives (design 2.1). A wide chord that turns by more than 90 degrees is not
+            # that: the sliver of a corner has found another edge, and that is another contact.
+            back = not blind and wx * region.nx + wy * region.ny < 0.0
+            if blind or (back and (region.past or region.chord * region.chord < region.area)):
+                wx = region.nx
+                wy = region.ny
+                past = 1
+            elif back:
+                born = True
+        region.past = past
+        if law.law == LAW_ENERGY and not (blind or past):
             # the gradient's line of action: its moment about the centroid is -lever
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
