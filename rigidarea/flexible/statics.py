@@ -168,3 +168,24 @@ def _shape(bd: Boundary, pose: Array, points: NDArray[np.int64], share: Array, n
             for axis in range(2):
                 np.add.at(out, (rows, 2 * node + axis), v * local[:, axis])
     return out
+
+
+def hub_fixed(b: Boundary, hub: Array | tuple[float, float]) -> Boundary:
+    """The boundary with the flexibility of a body whose hub is held: displacements relative to the hub.
+
+    The hub's reaction balances every load, so no inertia relief is left: with T the boundary's rigid motion about the hub,
+    C = C_bb − C_bh Tᵀ − T C_hb + T C_hh Tᵀ. ``hub`` (2,): its centre in the body frame; the FE nodes are taken from
+    the contact points that lie on them.
+    """
+    own = np.flatnonzero(b.share == 0.0)
+    points = np.zeros(((len(b.modes) - 3) // 2, 2))
+    points[b.low[own]] = b.points[own]
+    x = points - np.asarray(hub)
+    t = np.zeros((2 * len(x), 3))
+    t[0::2, 0] = t[1::2, 1] = 1.0
+    t[0::2, 2], t[1::2, 2] = -x[:, 1], x[:, 0]
+    c, n = b.flexibility, 2 * len(x)
+    mixed = c[:n, n:] @ t.T
+    out = np.zeros_like(c)
+    out[:n, :n] = c[:n, :n] - mixed - mixed.T + t @ c[n:, n:] @ t.T
+    return b._replace(flexibility=out)
