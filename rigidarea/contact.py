@@ -348,11 +348,7 @@ class AreaContact:
 
     def _serve(self, request: int, arbiter: pymunk.Arbiter) -> None:
         if request == hook.NEW_SHAPE:
-            for shape in hook.pair_of_shapes(arbiter):
-                if shape._hashid not in self._shapes:
-                    self._register(shape)
-            self._store.sync()
-            self._choose()
+            self._register_shapes()
         elif request == hook.NEW_PAIR:
             if self._store.tables.counters[FREE_PAIRS] == 0:
                 self._store.grow_pairs()
@@ -440,17 +436,12 @@ class AreaContact:
         arbiter._arbiter.data = ffi.cast("void *", (int(self._state["epoch"]) << 32) | number)
 
     def __getstate__(self) -> dict[str, Any]:
-        return {
-            "_settings": {
-                **self._settings,
-                "stiffness": self.stiffness or None,
-                "rest_speed": self.rest_speed,
-                "length": float(self._state["length"]) or None,
-            },
-            "max_steps": self.max_steps,
-            "phase": self.phase,
-            "_memory": self._remember() if self._space is not None else self._memory,
-        }
+        settings, memory = dict(self._settings), self._memory
+        if self._space is not None:
+            memory = self._remember()
+            if self.stiffness > 0.0:  # what was chosen stays chosen
+                settings |= {name: float(self._state[name]) for name in ("stiffness", "rest_speed", "length")}
+        return {"_settings": settings, "max_steps": self.max_steps, "phase": self.phase, "_memory": memory}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)

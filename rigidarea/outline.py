@@ -172,7 +172,9 @@ class Outline:
         if isinstance(shape, pymunk.Circle):
             return _rounded((tuple(shape.offset),), shape.radius, tolerance)
         if isinstance(shape, pymunk.Poly):
-            return _rounded(tuple(map(tuple, shape.get_vertices())), shape.radius, tolerance)
+            vertices = [tuple(vertex) for vertex in shape.get_vertices()]
+            first = vertices.index(min(vertices))  # a pymunk copy of the shape starts elsewhere
+            return _rounded(tuple(vertices[first:] + vertices[:first]), shape.radius, tolerance)
         if isinstance(shape, pymunk.Segment):
             if shape.radius > 0:
                 ends = dict.fromkeys((tuple(shape.a), tuple(shape.b)))  # a segment without length is a disc

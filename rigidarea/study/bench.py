@@ -143,7 +143,9 @@ def kernel_pairs() -> dict[str, tuple[Any, Any, tuple[float, float, float]]]:
     from ..shapes import box, circle, involute_gear, ring
     from .scenes import geneva
 
-    small, large = (involute_gear(0.05, teeth) for teeth in (20, 30))
+    coarse = [involute_gear(0.002, teeth, spacing=6e-4) for teeth in (23, 57)]
+    fine = [involute_gear(0.002, teeth, tolerance=6e-7) for teeth in (23, 57)]
+    mesh = (0.08, 0.0, math.pi + math.pi / 57 - 2.6e-3)  # flanks pressed 0.15 mm into each other
     parts = geneva.drive()
     crank = 0.3
     driver = Outline(parts.pin.rotated(crank).rings[0])
@@ -151,9 +153,11 @@ def kernel_pairs() -> dict[str, tuple[Any, Any, tuple[float, float, float]]]:
         "boxes": (box(1, 1), box(1, 1), (0.3, 0.98, 0.1)),
         "box, slab": (box(1, 1), box(100, 1), (0.3, -0.99, 0.0)),
         "16-gons": (_gon(16), _gon(16), (1.9, 0.1, 0.2)),
+        "64-gons": (_gon(64), _gon(64), (1.98, 0.05, 0.1)),
         "discs": (circle(0.5), circle(0.5), (0.99, 0.05, 0.0)),
         "disc in ring": (circle(0.45, tolerance=1e-5), ring(0.5, 0.6, tolerance=1e-5), (0.0, 0.0505, 0.0)),
-        "gears": (small, large, (1.247, 0.0, math.pi + math.pi / 30)),
+        "gears": (*coarse, mesh),
+        "fine gears": (*fine, mesh),
         "geneva": (driver, parts.wheel, (0.05, 0.0, parts.wheel_angle(crank) + 5e-3)),
         "1000-gons": (_gon(1000), _gon(1000), (1.99, 0.0, 0.0)),
     }
@@ -244,12 +248,11 @@ def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) ->
     """Compiled on first use: `count` queries, the loops found by the last."""
     global _compiled
     if _compiled is None:
-        import numba
-
+        from ..kernel.jit import kernel
         from ..kernel.overlap import overlap_kernel
         from ..kernel.work import relative
 
-        @numba.njit
+        @kernel
         def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
             found = 0
             for i in range(count):
