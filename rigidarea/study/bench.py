@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from ..outline import Outline
 from .crowds import CROWDS
 from .peers import drive, get_peer, record
 from .records import Progress, Row, report
@@ -135,11 +136,10 @@ def _us(step: Any, count: int, *arguments: object) -> float:
 # ---------------------------------------------------------------------------------------------------------
 
 
-def kernel_pairs() -> dict[str, tuple[Any, Any, tuple[float, float, float]]]:
+def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, float]]]:
     """Pairs of outlines and the pose (x, y, angle) of the second: boxes, discs, gears in mesh, a Geneva
     drive.
     """
-    from ..outline import Outline
     from ..shapes import box, circle, involute_gear, ring
     from .scenes import geneva
 
@@ -163,9 +163,7 @@ def kernel_pairs() -> dict[str, tuple[Any, Any, tuple[float, float, float]]]:
     }
 
 
-def _gon(n: int) -> Any:
-    from ..outline import Outline
-
+def _gon(n: int) -> Outline:
     angles = 2 * math.pi * np.arange(n) / n
     return Outline(np.column_stack((np.cos(angles), np.sin(angles))))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -23,13 +25,12 @@ FAIL_COLOURS = ("#D55E00", "#E69F00", "#CC79A7", "#F0E442", "#009E73", "#000000"
 def edges(axis: Axis, values: Sequence[float]) -> Array:
     """Cell edges around the values: halfway between them, on a logarithmic axis in the logarithm."""
     if axis.names:
-        return np.arange(len(values) + 1) - 0.5
-    points = np.log10(values) if axis.log else np.asarray(values, dtype=float)
-    half = np.diff(points) / 2 if len(points) > 1 else np.array([0.5])
-    found = np.concatenate(
-        ([points[0] - half[0]], points[:-1] + half[: len(points) - 1], [points[-1] + half[-1]])
-    )
-    return 10**found if axis.log else found
+        return np.arange(len(values) + 1, dtype=np.float64) - 0.5
+    points = [math.log10(value) if axis.log else value for value in values]
+    inner = [(one + other) / 2 for one, other in itertools.pairwise(points)]
+    first, last = (inner[0], inner[-1]) if inner else (points[0] - 0.5, points[0] + 0.5)
+    found = [2 * points[0] - first, *inner, 2 * points[-1] - last]
+    return np.array([10**value if axis.log else value for value in found], dtype=np.float64)
 
 
 def atlas_maps(report: Row, out: Path) -> list[Path]:
@@ -71,7 +72,8 @@ def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
     handles += axes[0, 0].get_legend_handles_labels()[0]
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), fontsize=8.5)
     figure.suptitle(chart.title, fontsize=11)
-    figure.supxlabel(chart.x.label, fontsize=9.5)
+    for ax in axes[-1]:
+        ax.set_xlabel(chart.x.label if columns < 4 else chart.x.label.replace(" / ", "\n/ "), fontsize=9)
     figure.supylabel(chart.y.label, fontsize=9.5)
     return save(figure, out, f"atlas-{chart.name}")
 

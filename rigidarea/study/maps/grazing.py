@@ -7,7 +7,7 @@ import numpy as np
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
 from ..scene import VX, VY, Body, Scene, box, disc
 
-RADIUS, LIMIT = 0.5, 0.02
+RADIUS, LIMIT = 0.5, 0.1
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:

@@ -1,0 +1,106 @@
+"""The atlas against theory: the step limit, buckling, and where the paper's method stops seeing contacts."""
+
+import math
+
+import numpy as np
+import pytest
+
+from rigidarea.kernel.force import damping_ratio
+from rigidarea.study import atlas
+from rigidarea.study.atlas import PASS, engines, evaluate, get_map, judge, maps
+from rigidarea.study.maps import buckling, step_size
+
+
+@pytest.mark.parametrize("name", list(maps()))
+def test_map_is_consistent(name):
+    """Quick values are few and inside the full range; every variant's peer exists; theory can be drawn."""
+    chart = maps()[name]
+    for axis in (chart.x, chart.y):
+        assert len(axis.quick) <= len(axis.values)
+        assert min(axis.values) <= min(axis.quick)
+        assert max(axis.quick) <= max(axis.values)
+        assert not axis.names or len(axis.names) == len(axis.values)
+    for _, x, y in chart.theory():
+        assert len(x) == len(y)
+        assert np.all(np.isfinite(x)) and np.all(np.isfinite(y))
+
+
+def test_step_limit_is_two():
+    """Undamped, ω h = 2 within 3 % (the issue's bound); bisected over the growth of a small motion."""
+    low, high = 1.5, 2.5
+    while high - low > 0.005:
+        middle = (low + high) / 2
+        low, high = (middle, high) if step_size.growth(middle, 1.0) < 100 else (low, middle)
+    assert low == pytest.approx(2.0, rel=0.03)
+
+
+@pytest.mark.parametrize("elasticity", [0.1, 0.5, 0.8])
+def test_damping_lowers_the_step_limit(elasticity):
+    """As the formula for a dashpot at the new velocity says."""
+    expected = float(step_size.limit(np.array([damping_ratio(elasticity)]))[0])
+    # 2 % either side: beyond, 3,000 steps grow by far more than a hundredfold, below they decay
+    assert step_size.growth(0.98 * expected, elasticity) < 1
+    assert step_size.growth(1.02 * expected, elasticity) > 100
+
+
+@pytest.mark.parametrize("sinking,boxes", [(1e-2, 3), (1e-3, 8), (1e-4, 18), (1e-5, 39)])
+def test_buckling_bound(sinking, boxes):
+    """The eigenvalue problem gives the design's numbers, and the round formula is within a box of them."""
+    assert buckling.tallest(sinking) == boxes
+    assert abs(math.floor((0.65 / sinking) ** (1 / 3)) - boxes) <= 1
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("sinking", [3e-3, 1e-3])
+def test_stacks_buckle_where_theory_says(sinking):
+    """The tallest stable stack stands for half a minute, one box more topples."""
+    chart = get_map("buckling")
+    variant = chart.variants["rigidarea"]
+    most = buckling.tallest(sinking)
+    assert chart.run(variant, sinking, most)[0] == PASS
+    assert chart.run(variant, sinking, most + 1)[0] == "toppled"
+
+
+@pytest.mark.parametrize(
+    "name,x,y", [("corner", 30, 0.1), ("crossed", 1.5, 0.3), ("overlap_depth", 0.03, 0), ("offset", 1.0, 0)]
+)
+def test_paper_misses_what_we_see(name, x, y):
+    """Design 2.1: one corner inside, no node inside, a floor without nodes: theirs fails, ours does not."""
+    assert evaluate(name, "rigidarea", x, y)["verdict"] == PASS
+    assert evaluate(name, "literal", x, y)["verdict"] != PASS
+
+
+def test_literal_works_where_its_gate_lets_it():
+    """Two finely sampled discs have nodes inside each other: the paper's method does as well as ours."""
+    from rigidarea.study.peers import get_peer, record
+    from rigidarea.study.scene import get_scene
+
+    scene = get_scene("oblique_discs")
+    settings = {"stiffness": 1e4, "phase": 0.5}
+    ours, literal = (
+        scene.measure(record(get_peer(name).build(scene, settings), scene))
+        for name in ("rigidarea", "literal")
+    )
+    assert literal == pytest.approx(ours, rel=0.2)
+
+
+def test_verdicts_and_variants():
+    """Limits, numbers that are none, settings changed and engines dropped."""
+    assert judge(0.5, 1.0, "broke") == (PASS, 0.5)
+    assert judge(2.0, 1.0, "broke") == ("broke", 2.0)
+    assert judge(math.nan, 1.0, "broke") == ("not finite", math.inf)
+    changed = engines(pymunk={"steps": 8}, literal=None)
+    assert changed["pymunk"].settings["steps"] == 8
+    assert "literal" not in changed
+    with pytest.raises(ValueError, match="unknown map 'x'"):
+        get_map("x")
+
+
+def test_atlas_rows(tmp_path):
+    """Rows carry the promised keys; a second call finds everything done."""
+    report = atlas.atlas(tmp_path, quick=True, map_names=["seams"], peer_names=["pymunk"], workers=0)
+    assert set(report["results"][0]) == {"map", "peer", "x", "y", "verdict", "measure"}
+    before = (tmp_path / "atlas.jsonl").stat().st_mtime_ns
+    again = atlas.atlas(tmp_path, quick=True, map_names=["seams"], peer_names=["pymunk"], workers=0)
+    assert again["results"] == report["results"]
+    assert (tmp_path / "atlas.jsonl").stat().st_mtime_ns == before
