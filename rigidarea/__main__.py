@@ -1,0 +1,81 @@
+"""The command line: `python -m rigidarea` (and `rigidarea`).
+
+Every command's own module adds its arguments and does its work; it is imported when that command is asked for.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module
+from typing import Any
+
+from . import __version__
+from .report import write_json
+
+COMMANDS = {
+    "demo": "render the game scenes: stills, films, a table of frame times",
+    "case": "one of the paper's examples, measured against the paper",
+    "bench": "speed beside shapely, pymunk's own solver and Box2D",
+    "chart": "accuracy against speed",
+    "atlas": "stability, where methods fail",
+    "compare": "rigid, compliant and modal beside each other",
+}
+STUDIES = ("bench", "chart", "atlas", "compare")
+
+
+def parser(command: str | None) -> argparse.ArgumentParser:
+    """The parser, with the arguments of `command` (all other commands are only listed).
+
+    A command's parser sets `run`, a function of the parsed arguments that returns the exit code (None: 0).
+    """
+    top = argparse.ArgumentParser(
+        prog="rigidarea",
+        description="Rigid-body contact by overlap area for pymunk: demos, cases and studies.",
+    )
+    top.add_argument("--version", action="version", version=f"rigidarea {__version__}")
+    commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
+    if command in STUDIES:
+        from .study import add_commands
+
+        add_commands(commands)
+    for name, text in COMMANDS.items():
+        if name in commands.choices:
+            continue
+        own = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
+        if name == command == "demo":
+            from .draw import demo
+
+            demo.add_arguments(own)
+            own.set_defaults(run=demo.run)
+        elif name == command == "case":
+            cases: Any = import_module(".cases", __package__)
+            cases.add_arguments(own)
+            own.set_defaults(run=lambda arguments: write_json(cases.run(arguments), arguments.json))
+    return top
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns the exit code: 2 for input that makes no sense, as argparse has it."""
+    given = list(sys.argv[1:] if argv is None else argv)
+    top = parser(next((word for word in given if not word.startswith("-")), None))
+    arguments = top.parse_args(given)
+    try:
+        code = arguments.run(arguments)
+    except ModuleNotFoundError as error:
+        if (error.name or "").split(".")[0] == "rigidarea":
+            raise
+        top.exit(
+            2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[demos,studies,flexible]'\n"
+        )
+    except (ValueError, OSError) as error:
+        top.exit(2, f"rigidarea {arguments.command}: {error}\n")
+    return int(code or 0)
+
+
+if __name__ == "__main__":
+    # pygame greets on standard output, which may be JSON
+    os.environ.setdefault("PYGAME_HIDE_SUPPORT_PROMPT", "1")
+    raise SystemExit(main())
