@@ -1,0 +1,108 @@
+"""Layers, kept by a check that runs: kernels are numbers only, and the core needs no more than its four libraries."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parent.parent
+PACKAGE = ROOT / "rigidarea"
+KERNELS = sorted((PACKAGE / "kernel").glob("*.py"))
+#: What `import rigidarea` may bring with it; cffi and llvmlite come with pymunk and numba.
+CORE = {"pymunk", "numpy", "numba", "llvmlite", "shapely", "cffi", "_cffi_backend"}
+EXTRAS = ("scipy", "matplotlib", "pygame", "imageio", "b2d", "pyb2d3", "dask", "distributed", "skfem")
+
+
+def name_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+MODULES = {name_of(p): p for p in PACKAGE.rglob("*.py")}
+
+
+def statements(body: list[ast.stmt], inside_functions: bool) -> Iterator[ast.stmt]:
+    """Statements that run on import, those under if, try and with included; with those in functions if asked."""
+    for node in body:
+        if isinstance(node, ast.If) and ast.unparse(node.test).endswith("TYPE_CHECKING"):
+            continue
+        yield node
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and not inside_functions:
+            continue
+        for field in ("body", "orelse", "finalbody"):
+            yield from statements(getattr(node, field, []), inside_functions)
+        for handler in getattr(node, "handlers", []):
+            yield from statements(handler.body, inside_functions)
+
+
+def imports(path: Path, inside_functions: bool = False) -> set[str]:
+    """Absolute names of the modules that a file imports."""
+    module = name_of(path)
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    found = set()
+    for node in statements(ast.parse(path.read_text()).body, inside_functions):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = node.module or ""
+            if node.level:
+                up = package.split(".")[: len(package.split(".")) - node.level + 1]
+                base = ".".join(up + ([base] if base else []))
+            found.add(base)
+            found |= {f"{base}.{a.name}" for a in node.names if f"{base}.{a.name}" in MODULES}
+    return found
+
+
+def reached(start: set[str]) -> set[str]:
+    """Everything that importing `start` imports, through all modules of this package."""
+    seen: set[str] = set()
+    todo = set(start)
+    while todo:
+        name = todo.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        if name in MODULES:
+            todo |= imports(MODULES[name])
+    return seen
+
+
+def is_standard(name: str) -> bool:
+    return name.partition(".")[0] in sys.stdlib_module_names
+
+
+def test_there_are_kernels() -> None:
+    assert {"predicates", "pool", "overlap", "force", "pair"} <= {p.stem for p in KERNELS}
+
+
+@pytest.mark.parametrize("path", KERNELS, ids=lambda p: p.stem)
+def test_kernels_know_numbers_only(path: Path) -> None:
+    """numpy and numba, other kernels, nothing else; not even inside a function."""
+    for name in imports(path, inside_functions=True):
+        ours = name == "rigidarea.kernel" or name.startswith("rigidarea.kernel.")
+        assert ours or is_standard(name) or name.partition(".")[0] in ("numpy", "numba"), name
+
+
+def test_the_core_needs_four_libraries() -> None:
+    others = {n.partition(".")[0] for n in reached({"rigidarea"}) if not is_standard(n)} - {"rigidarea"}
+    assert others <= CORE
+    assert {"pymunk", "numpy", "numba", "shapely"} <= others  # the walk gets there
+
+
+def test_importing_the_core_imports_no_extras() -> None:
+    """As it is, and not only as it reads: beyond what the four libraries bring (numba looks whether scipy is there)."""
+    program = f"""
+import sys, pymunk, numpy, numba, shapely
+before = set(sys.modules)
+import rigidarea
+print(sorted({set(EXTRAS)} & (set(sys.modules) - before)))
+"""
+    out = subprocess.run(
+        [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
+    )
+    assert out.stdout.strip() == "[]"
