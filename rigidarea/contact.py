@@ -45,8 +45,8 @@ REGIONS = np.dtype(
 )
 
 _epochs = itertools.count(1)
-_STATE = pymunk.batch.BodyFields.POSITION | pymunk.batch.BodyFields.ANGLE
-_FULL = _STATE | pymunk.batch.BodyFields.VELOCITY | pymunk.batch.BodyFields.ANGULAR_VELOCITY
+_Fields = pymunk.batch.BodyFields
+_STATE = _Fields.POSITION | _Fields.ANGLE | _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
 
 
 class SimulationError(RuntimeError):
@@ -85,6 +85,7 @@ class AreaContact:
         self._store = Store()
         self._shapes: dict[int, pymunk.Shape] = {}
         self._seen_ids = -1
+        self._buffers = pymunk.batch.Buffer(), pymunk.batch.Buffer()
         self._state = state = self._store.state[0]
         settings = self._settings
         state["law"] = LAWS[settings["law"]]
@@ -112,6 +113,7 @@ class AreaContact:
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Chipmunk calls separate once more for what touches when the space goes: not into freed tables.
         self._end = _finalize(space)
+        self._frequency()  # compiled now, not in the first frame
 
     def _choose_hook(self, wanted: str) -> bool:
         if wanted == "python":
@@ -250,13 +252,12 @@ class AreaContact:
         """
         n = self.steps(dt)
         space = self.space
-        buffer = pymunk.batch.Buffer()
-        good = self._snapshot(space, buffer, _FULL)
+        good = self._snapshot(0)
         for i in range(n):
             space.step(dt / n)
-            now = self._snapshot(space, buffer, _FULL)
+            now = self._snapshot(1 - i % 2)
             if not stepping.finite(now):
-                self._restore(space, good, now, i, n)
+                self._put_back(good, now, i, n)
             good = now
         return n
 
@@ -265,10 +266,7 @@ class AreaContact:
         positive(dt, "dt")
         self._check_hooked()
         self._register_shapes()
-        store = self._store
-        stamp = lib.cpSpaceGetTimestamp(self.space._space)
-        law = load_law(self._state)
-        frequency = stepping.highest_frequency(store.pool, store.tables, len(store.known_shapes), law, stamp)
+        frequency = self._frequency()
         n = max(1, math.ceil(dt * frequency / self.phase))
         if n > self.max_steps:
             if not self._warned:
@@ -283,31 +281,38 @@ class AreaContact:
             n = self.max_steps
         return n
 
-    @staticmethod
-    def _snapshot(space: pymunk.Space, buffer: Any, fields: Any) -> np.ndarray:
-        buffer.clear()
-        pymunk.batch.get_space_bodies(space, fields, buffer)
-        return np.frombuffer(buffer.float_buf(), dtype=np.float64).copy()
+    def _frequency(self) -> float:
+        store = self._store
+        stamp = lib.cpSpaceGetTimestamp(self.space._space)
+        shapes = len(store.known_shapes)
+        return stepping.highest_frequency(store.pool, store.tables, shapes, load_law(self._state), stamp)
 
-    def _restore(self, space: pymunk.Space, good: np.ndarray, now: np.ndarray, i: int, n: int) -> None:
-        bodies: list[pymunk.Body] = []
-        lib.cpSpaceEachBody(space._space, lib.ext_cpSpaceBodyIteratorFunc, ffi.new_handle(bodies))
-        rows = now.reshape(-1, 6)
-        bad = [
-            ffi.from_handle(lib.cpBodyGetUserData(body))
-            for body, row in zip(bodies, rows)
+    def _snapshot(self, which: int) -> np.ndarray:
+        """State (bodies, 6) of all bodies in one of two buffers: a view, good until that buffer is used again."""
+        buffer = self._buffers[which]
+        buffer.clear()
+        pymunk.batch.get_space_bodies(self.space, _STATE, buffer)
+        return np.frombuffer(buffer.float_buf(), dtype=np.float64).reshape(-1, 6)
+
+    def _put_back(self, good: np.ndarray, now: np.ndarray, i: int, n: int) -> None:
+        found: list[Any] = []
+        handle = ffi.new_handle(found)
+        lib.cpSpaceEachBody(self.space._space, lib.ext_cpSpaceBodyIteratorFunc, handle)
+        bodies = [ffi.from_handle(lib.cpBodyGetUserData(body)) for body in found]
+        known = list(self.space.bodies)
+        names = [
+            f"bodies[{known.index(body)}]" if body in known else "a body"
+            for body, row in zip(bodies, now)
             if not np.isfinite(row).all()
         ]
-        for body, row in zip(bodies, good.reshape(-1, 6)):
-            lib.cpBodySetAngle(body, row[2])
-            lib.cpBodySetPosition(body, tuple(row[:2]))
-            lib.cpBodySetVelocity(body, tuple(row[3:5]))
-            lib.cpBodySetAngularVelocity(body, row[5])
-        known = list(space.bodies)
-        names = ", ".join(f"bodies[{known.index(b)}]" if b in known else repr(b) for b in bad[:3])
+        what = "bodies were added or removed in that step, the state is as it left them"
+        if len(good) == len(now):
+            what = "all bodies were put back to the step before"
+            for body, row in zip(bodies, good):
+                body.angle, body.position = row[2], (row[0], row[1])
+                body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
         raise SimulationError(
-            f"the state of {names} is not finite after step {i + 1} of {n} of this frame; all bodies were put "
-            "back to the step before"
+            f"the state of {', '.join(names[:3])} is not finite after step {i + 1} of {n} of this frame; {what}"
         )
 
     # --- what it shows ---

@@ -11,11 +11,13 @@ order along the ring as good a key as any; and nothing has to be stored but the 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
 
+from .jit import njit
 from .memory import record
 
 #: Edges to a leaf. More: fewer boxes tested, more edge pairs; 4 was fastest on gears and on 64-gons.
@@ -61,8 +63,6 @@ class HasRings(Protocol):
     def area(self) -> float: ...
     @property
     def centroid(self) -> tuple[float, float]: ...
-    @property
-    def convex(self) -> bool: ...
 
 
 #: Outlines of more points are not clipped, convex or not.
@@ -71,114 +71,161 @@ MOST_CLIPPED = 21
 FACE_DEPTH = 0.02
 
 
+@njit
 def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
     """The hierarchy over the edges (point, following point): boxes (2 leaves, 4), leaves."""
-    a, b = points, points[following]
     n = len(points)
     leaves = 1
     while leaves * LEAF < n:
         leaves *= 2
-    low = np.full((2 * leaves, 2), np.inf)
-    high = np.full((2 * leaves, 2), -np.inf)
-    starts = np.arange(0, n, LEAF)
-    low[leaves : leaves + len(starts)] = np.minimum.reduceat(np.minimum(a, b), starts)
-    high[leaves : leaves + len(starts)] = np.maximum.reduceat(np.maximum(a, b), starts)
-    level = leaves // 2
-    while level:
-        children = slice(2 * level, 4 * level)
-        low[level : 2 * level] = low[children].reshape(level, 2, 2).min(axis=1)
-        high[level : 2 * level] = high[children].reshape(level, 2, 2).max(axis=1)
-        level //= 2
-    boxes = np.zeros((2 * leaves, 4))
-    boxes[:, 2:] = -1e300  # an empty box touches nothing
-    real = np.isfinite(low[:, 0])
-    boxes[real, :2] = 0.5 * (low[real] + high[real])
-    boxes[real, 2:] = 0.5 * (high[real] - low[real])
+    edge = np.empty((2 * leaves, 4))  # low x, low y, high x, high y
+    edge[:, :2] = np.inf
+    edge[:, 2:] = -np.inf
+    for i in range(n):
+        node = leaves + i // LEAF
+        for p in (i, np.int64(following[i])):
+            for d in range(2):
+                edge[node, d] = min(edge[node, d], points[p, d])
+                edge[node, 2 + d] = max(edge[node, 2 + d], points[p, d])
+    for node in range(leaves - 1, 0, -1):
+        for d in range(2):
+            edge[node, d] = min(edge[2 * node, d], edge[2 * node + 1, d])
+            edge[node, 2 + d] = max(edge[2 * node, 2 + d], edge[2 * node + 1, 2 + d])
+    boxes = np.empty((2 * leaves, 4))
+    for node in range(2 * leaves):
+        for d in range(2):
+            if edge[node, d] <= edge[node, 2 + d]:
+                boxes[node, d] = 0.5 * (edge[node, d] + edge[node, 2 + d])
+                boxes[node, 2 + d] = 0.5 * (edge[node, 2 + d] - edge[node, d])
+            else:  # an empty box touches nothing
+                boxes[node, d] = 0.0
+                boxes[node, 2 + d] = -1e300
     return boxes, leaves
 
 
-def _face(points: np.ndarray, centroid: np.ndarray, extent: float) -> tuple[float, float]:
+@njit
+def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
     """(chord, arm) for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (design 2.3).
 
     A straight edge pressed `FACE_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
-    stiffness is k chord, its leverage on a free body the arm of its middle about the centroid.
+    stiffness is k chord, its leverage on a free body the arm of its middle about the centroid (x, y). Directions are
+    those of the outline's own edges, 64 at the most.
     """
-    step = max(1, len(points) // 64)
-    edge = (np.roll(points, -step, axis=0) - points)[::step]
-    length = np.hypot(edge[:, 0], edge[:, 1])
-    keep = length > 0
-    tangent = edge[keep] / length[keep, None]
-    normal = np.stack([tangent[:, 1], -tangent[:, 0]], axis=1)
-    height = points @ normal.T  # (points, directions)
-    along = points @ tangent.T
-    cut = height.max(axis=0) - FACE_DEPTH * extent
-    following = np.roll(np.arange(len(points)), -1)
-    h0, h1 = height - cut, height[following] - cut
-    crossing = (h0 > 0) != (h1 > 0)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        s = along + (along[following] - along) * np.where(crossing, h0 / (h0 - h1), 0.0)
-    # the line enters and leaves the outline in turn: of its stretches inside, the longest
-    s = np.sort(np.where(crossing, s, np.nan), axis=0)
-    pairs = len(s) // 2
-    low, high = s[0 : 2 * pairs : 2], s[1 : 2 * pairs : 2]
-    stretch = np.nan_to_num(high - low)
-    longest = stretch.argmax(axis=0)
-    column = np.arange(stretch.shape[1])
-    chord = stretch[longest, column]
-    arm = np.nan_to_num(0.5 * (low + high)[longest, column]) - tangent @ centroid
+    n = len(points)
+    extent = max(points[:, 0].max() - points[:, 0].min(), points[:, 1].max() - points[:, 1].min())
     gyration2 = extent**2 / 8.0  # of a disc of that diameter: only the ranking depends on it
-    best = int(np.argmax(chord * (1.0 + arm**2 / gyration2)))
-    return float(chord[best]), float(abs(arm[best]))
+    step = max(1, n // 64)
+    best = -1.0
+    best_chord = 0.0
+    best_arm = 0.0
+    cuts = np.empty(n + 1)
+    for start in range(0, n, step):
+        end = (start + step) % n
+        tx = points[end, 0] - points[start, 0]
+        ty = points[end, 1] - points[start, 1]
+        length = math.hypot(tx, ty)
+        if length == 0.0:
+            continue
+        tx /= length
+        ty /= length
+        top = -np.inf
+        for i in range(n):
+            top = max(top, points[i, 0] * ty - points[i, 1] * tx)
+        level = top - FACE_DEPTH * extent
+        crossings = 0
+        j = n - 1
+        for i in range(n):
+            h0 = points[j, 0] * ty - points[j, 1] * tx - level
+            h1 = points[i, 0] * ty - points[i, 1] * tx - level
+            if (h0 > 0.0) != (h1 > 0.0):
+                f = h0 / (h0 - h1)
+                s0 = points[j, 0] * tx + points[j, 1] * ty
+                s1 = points[i, 0] * tx + points[i, 1] * ty
+                cuts[crossings] = s0 + f * (s1 - s0)
+                crossings += 1
+            j = i
+        found = np.sort(cuts[:crossings])
+        for k in range(0, crossings - 1, 2):  # the line enters and leaves the outline in turn
+            chord = found[k + 1] - found[k]
+            arm = 0.5 * (found[k] + found[k + 1]) - (x * tx + y * ty)
+            rank = chord * (1.0 + arm * arm / gyration2)
+            if rank > best:
+                best = rank
+                best_chord = chord
+                best_arm = abs(arm)
+    return best_chord, best_arm
 
 
+@njit
 def _clippable(points: np.ndarray) -> bool:
     """Whether every point lies left of every edge's line: a convex outline cut along its edges stays itself.
 
     (An edge of rounding length may look the wrong way in an outline that is convex but for rounding.)
     """
-    edge = np.roll(points, -1, axis=0) - points
-    edge /= np.hypot(edge[:, 0], edge[:, 1])[:, None]
-    apart = points[None, :, :] - points[:, None, :]
-    behind = edge[:, None, 0] * apart[..., 1] - edge[:, None, 1] * apart[..., 0]
-    return bool(behind.min() >= -1e-13 * np.abs(points).max())
+    n = len(points)
+    least = -1e-13 * np.abs(points).max()
+    for i in range(n):
+        j = (i + 1) % n
+        ex = points[j, 0] - points[i, 0]
+        ey = points[j, 1] - points[i, 1]
+        length = math.hypot(ex, ey)
+        for k in range(n):
+            if ex * (points[k, 1] - points[i, 1]) - ey * (points[k, 0] - points[i, 0]) < least * length:
+                return False
+    return True
+
+
+@njit
+def _prepare(
+    points: np.ndarray, starts: np.ndarray, x: float, y: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, float, float, float]]:
+    """Everything of one outline but its rings: following, ring_of, boxes, (leaves, convex, radius, face, face_arm).
+
+    From its points about the middle of its box, where its rings start in them, and its centroid (x, y).
+    """
+    n = len(points)
+    following = np.arange(1, n + 1).astype(np.int32)
+    ring_of = np.empty(n, np.int32)
+    for r in range(len(starts) - 1):
+        following[starts[r + 1] - 1] = starts[r]
+        ring_of[starts[r] : starts[r + 1]] = r
+    boxes, leaves = _boxes(points, following)
+    face, arm = _face(points[: starts[1]], x, y)
+    convex = len(starts) == 2 and n <= MOST_CLIPPED and _clippable(points)
+    radius = 0.0
+    for i in range(n):
+        radius = max(radius, math.hypot(points[i, 0], points[i, 1]))
+    return following, ring_of, boxes, (leaves, convex, radius, face, arm)
 
 
 def pack(outlines: Sequence[HasRings]) -> Pool:
     """Cast outlines into one pool. Rings are taken as `Outline` makes them (checked there)."""
-    points, following, ring_of, rings, boxes = [], [], [], [], []
     heads = np.zeros(len(outlines), HEAD)
+    columns: list[list[np.ndarray]] = [[], [], [], [], []]
     n_points = n_rings = n_boxes = 0
     for head, outline in zip(heads, outlines):
         outer = outline.rings[0]
         low, high = outer.min(axis=0), outer.max(axis=0)
         middle = 0.5 * (low + high)
-        local = np.concatenate([ring - middle for ring in outline.rings])
-        sizes = [len(ring) for ring in outline.rings]
-        start = np.concatenate([[0], np.cumsum(sizes)])
-        nxt = np.arange(1, len(local) + 1)
-        nxt[start[1:] - 1] = start[:-1]
-        box, leaves = _boxes(local, nxt)
-        face, arm = _face(outer - middle, np.asarray(outline.centroid) - middle, float((high - low).max()))
-        head["point"], head["count"] = n_points, len(local)
-        head["ring"], head["rings"] = n_rings, len(sizes)
-        head["box"], head["leaves"] = n_boxes, leaves
-        head["convex"] = outline.convex and len(local) <= MOST_CLIPPED and _clippable(local)
         head["x"], head["y"] = middle
-        head["radius"] = np.hypot(local[:, 0], local[:, 1]).max()
-        head["area"], head["face"], head["face_arm"] = outline.area, face, arm
-        points.append(local)
-        following.append(nxt + n_points)
-        ring_of.append(np.repeat(np.arange(len(sizes)) + n_rings, sizes))
-        rings.append(np.stack([start[:-1], start[1:]], axis=1) + n_points)
-        boxes.append(box)
-        n_points += len(local)
-        n_rings += len(sizes)
-        n_boxes += len(box)
-    return Pool(
-        np.ascontiguousarray(np.concatenate(points), dtype=np.float64),
-        np.concatenate(following).astype(np.int32),
-        np.concatenate(ring_of).astype(np.int32),
-        np.ascontiguousarray(np.concatenate(rings), dtype=np.int32),
-        np.ascontiguousarray(np.concatenate(boxes), dtype=np.float64),
-        heads,
-    )
+        head["area"] = outline.area
+        starts = np.zeros(len(outline.rings) + 1, np.int64)
+        np.cumsum([len(ring) for ring in outline.rings], out=starts[1:])
+        rings = outline.rings[0] if len(starts) == 2 else np.concatenate(outline.rings)
+        points = np.ascontiguousarray(rings - middle, dtype=np.float64)
+        x, y = outline.centroid
+        following, ring_of, boxes, numbers = _prepare(points, starts, x - middle[0], y - middle[1])
+        head["leaves"], head["convex"], head["radius"], head["face"], head["face_arm"] = numbers
+        head["point"], head["ring"], head["box"] = n_points, n_rings, n_boxes
+        head["count"], head["rings"] = len(points), len(starts) - 1
+        ends = np.stack([starts[:-1], starts[1:]], axis=1).astype(np.int32)
+        for column, array in zip(
+            columns, (points, following + n_points, ring_of + n_rings, ends + n_points, boxes)
+        ):
+            column.append(array)
+        n_points += len(points)
+        n_rings += len(starts) - 1
+        n_boxes += len(boxes)
+    dtypes = (np.float64, np.int32, np.int32, np.int32, np.float64)
+    arrays = [np.concatenate(column).astype(dtype, copy=False) for column, dtype in zip(columns, dtypes)]
+    return Pool(arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], heads)
