@@ -1,0 +1,61 @@
+"""The paper's numerical examples: each case builds, runs, measures, and holds its figures against the paper's.
+
+``add_arguments`` and ``run`` serve the command line's ``case NAME``; each module's own ``run`` is the Python entry.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+from pathlib import Path
+from typing import Any
+
+NAMES = ("hertz", "pin-joint", "patch", "geneva", "gearbox")
+MODES = ("rigid", "compliant", "modal")
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of ``case``; ``--out`` and ``--json`` belong to every command and are added by the caller."""
+    parser.add_argument("name", choices=NAMES, help="which of the paper's examples")
+    parser.add_argument("--mode", choices=MODES, help="level of model (default: rigid for pin-joint, else compliant)")
+    parser.add_argument("--mesh", type=float, metavar="MM", help="mesh size in millimetres (pin-joint, geneva, gearbox)")
+    parser.add_argument("--contact", choices=("area", "sts"), default="area", help="contact evaluation")
+
+
+def cache_directory() -> Path:
+    """Where reductions are kept: $RIGIDAREA_CACHE, else the user's cache directory."""
+    own = os.environ.get("RIGIDAREA_CACHE")
+    return Path(own) if own else Path(os.environ.get("XDG_CACHE_HOME", Path.home() / ".cache")) / "rigidarea"
+
+
+def run(args: argparse.Namespace) -> dict[str, Any]:
+    """Runs ``args.name`` and returns its JSON object; figures go to ``args.out`` (none if it is missing or None).
+
+    Raises ValueError for options the case has no use for, and for mesh sizes it cannot mesh.
+    """
+    out = getattr(args, "out", None)
+    out = None if out is None else Path(out)
+    name, cache = args.name, cache_directory()
+    if name in ("hertz", "patch"):
+        if args.mode is not None or args.mesh is not None or args.contact != "area":
+            raise ValueError(f"case {name} runs all its variants at once: expected no --mode, --mesh or --contact")
+        if name == "hertz":
+            from rigidarea.cases import hertz
+
+            return hertz.run(out, cache=cache)
+        from rigidarea.cases import patch
+
+        return patch.run(out)
+    if args.mesh is not None and not args.mesh > 0:
+        raise ValueError(f"--mesh must be positive (millimetres), got {args.mesh}")
+    if name == "pin-joint":
+        from rigidarea.cases import pin_joint
+
+        return pin_joint.run(args.mode or "rigid", args.mesh or 1.0, args.contact, out, cache)
+    if name == "geneva":
+        from rigidarea.cases import geneva
+
+        return geneva.run(args.mode or "compliant", args.mesh or geneva.MESH, args.contact, out, cache)
+    from rigidarea.cases import gearbox
+
+    return gearbox.run(args.mode or "compliant", args.mesh or 0.6, args.contact, out, cache)

@@ -1,7 +1,7 @@
 """An ordinary gearbox of two involute spur gears (the paper's section 3.5, Fig. 22–28, Table 6).
 
 Left open by the paper and chosen here: tooth heights (addendum 1, dedendum 1.25 modules, ISO 53 profile A root), bores (16
-and 30 mm), no backlash, no structural damping, step 50 µs, ρ∞ = 0.8. k = 6×10⁸ N/m² without the thickness: F = k A. E is
+and 30 mm), no backlash, no structural damping, step 80 µs (its Fig. 28), ρ∞ = 0.8. k = 6×10⁸ N/m² without the thickness: F = k A. E is
 207×10⁹ Pa as its Table 5 prints.
 
 With this k the teeth overlap by 0.1 to 0.2 mm, a hundred times what steel would yield: the ripple of the ratio is the
@@ -32,7 +32,8 @@ Array = NDArray[np.float64]
 
 TEETH, MODULE, ANGLE, THICKNESS = (23, 57), 2e-3, np.radians(20), 0.050
 STEEL = Material(207e9, 0.29, 7800.0, THICKNESS)
-K, DAMPER, SPEED, RAMP, STEP, RHO = 6e8, 0.4, 2 * np.pi * 10, 0.2, 5e-5, 0.8
+K, DAMPER, SPEED, RAMP, STEP, RHO = 6e8, 0.4, 2 * np.pi * 10, 0.2, 8e-5, 0.8
+REFINE = 2  # contact points a mesh edge: halves the step in slope where two edges meet
 BORES = (8e-3, 15e-3)
 CENTRES = MODULE * sum(TEETH) / 2
 IDEAL = TEETH[0] / TEETH[1]
@@ -65,7 +66,8 @@ def outlines(addendum: float = 1.0, tolerance: float = 1e-7) -> tuple[Any, Any]:
 
 def simulation(
     mode: str, mesh_mm: float, contact: str = "area", *, k: float = K, damper: float = DAMPER, addendum: float = 1.0,
-    refine: int = 1, modes: int = 40, cache: Path | None = None,
+    q: float = 1.0,
+    refine: int = REFINE, modes: int = 40, cache: Path | None = None,
 ) -> Simulation:  # fmt: skip
     """The gearbox, teeth centred in mesh at rest."""
     pinion, wheel = outlines(addendum)
@@ -76,7 +78,7 @@ def simulation(
         wheel.rings, size, STEEL, mode, anchor=(CENTRES, 0.0), position=(CENTRES, 0.0),
         angle=np.pi + np.pi / TEETH[1], damper=damper, **keys,
     )  # fmt: skip
-    return Simulation([a, b], [(0, 1)], k=k, contact=contact, reach=5e-4, margin=3e-4, rho=RHO)
+    return Simulation([a, b], [(0, 1)], k=k, q=q, contact=contact, reach=5e-4, margin=3e-4, rho=RHO)
 
 
 def measure(r: Record) -> dict[str, Any]:
@@ -85,14 +87,20 @@ def measure(r: Record) -> dict[str, Any]:
     ratio = -r.hub_rate[steady, 1] / r.hub_rate[steady, 0]
     force = r.force[steady]
     angle = np.degrees(np.arctan2(force[:, 0], force[:, 1]))
+    pairs = r.regions[steady]
+    part = pairs[:, :, 0] / np.maximum(pairs[:, :, 0].sum(1, keepdims=True), 1e-300)
+    carrying = part > 0.4  # the others are tips that enter or leave, deep in the mate's flank
+    pair_angle = np.degrees(np.arctan2(pairs[:, :, 1], pairs[:, :, 2]))[carrying]
     error = (r.hub[steady, 1] - r.hub[0, 1] + (r.hub[steady, 0] - r.hub[0, 0]) * IDEAL) * 0.5 * MODULE * TEETH[1]
     return {
         "mean_ratio": float(ratio.mean()),
         "ratio_rmse_percent": 100 * float(np.sqrt(np.mean((ratio - IDEAL) ** 2))) / IDEAL,
         "pressure_angle_mean_deg": float(angle.mean()),
         "pressure_angle_std_deg": float(angle.std()),
+        "pressure_angle_carrying_pairs_mean_deg": float(pair_angle.mean()),
+        "pressure_angle_carrying_pairs_std_deg": float(pair_angle.std()),
         "pairs_in_contact_loaded": float((r.regions[steady, :, 0] > 0).sum(1).mean()),
-        "transmission_error_um": 1e6 * float(np.ptp(error)) * np.cos(ANGLE),
+        "transmission_error_um": 1e6 * float(np.ptp(error) * np.cos(ANGLE)),
         "force_mean_n": float(np.hypot(*force.T).mean()),
         "newton_iterations_mean": float(r.iterations.mean()),
         "steps_halved": int(r.halved.sum()),
@@ -176,11 +184,11 @@ def mesh_stiffness(mesh_mm: float = 0.6, load: float = 100e3, points: int = 8, c
             "transmission_error_static_um": 1e6 * float(np.ptp(error)), "error_um": [1e6 * float(e) for e in error]}  # fmt: skip
 
 
-def timed(sim: Simulation, duration: float, h: float) -> tuple[Record, float]:
-    """A run and its seconds; a first step is taken on a copy, so that compiling is not timed."""
-    start = time.perf_counter()
+def timed(sim: Simulation, duration: float, h: float) -> tuple[Record, dict[str, float]]:
+    """A run, its wall seconds and its processor seconds (a busy machine has more of the former)."""
+    wall, cpu = time.perf_counter(), time.process_time()
     r = sim.run(duration, h)
-    return r, time.perf_counter() - start
+    return r, {"run_s": time.perf_counter() - wall, "run_cpu_s": time.process_time() - cpu}
 
 
 def run(
@@ -191,11 +199,9 @@ def run(
     clock = report.Clock()
     sim = simulation(mode, mesh_mm, contact, cache=cache)
     clock.setup()
-    simulation("rigid", 1.2, contact).run(STEP, STEP) if mode == "rigid" else simulation(
-        mode, mesh_mm, contact, cache=cache
-    ).run(STEP, STEP)  # compiles
-    r, run_s = timed(sim, duration, STEP)
-    results: dict[str, Any] = {"mesh_mm": mesh_mm, **measure(r), "run_s": run_s}
+    simulation(mode, mesh_mm, contact, cache=cache).run(STEP, STEP)  # compiles, or loads from the cache
+    r, seconds = timed(sim, duration, STEP)
+    results: dict[str, Any] = {"mesh_mm": mesh_mm, **measure(r), **seconds}
     light = light_load()
     results["contact_ratio"] = light["contact_ratio"]
     results["contact_ratio_analytic"] = analytic_contact_ratio()
@@ -211,12 +217,12 @@ def run(
             s = simulation(mode, m, contact, cache=cache)
             setup = time.perf_counter() - start
             record, seconds = timed(s, duration, STEP)
-            rows.append({"mesh_mm": m, **measure(record), "run_s": seconds, "setup_s": setup})
+            rows.append({"mesh_mm": m, **measure(record), **seconds, "setup_s": setup})
         results["meshes"] = rows
         report.say("gearbox: fine profile, variants, steps, damper")
         variants = []
         for name, keys in (
-            ("fine profile", {}), ("k / 4", {"k": K / 4}), ("4 k", {"k": 4 * K}), ("addendum 1.1", {"addendum": 1.1}),
+            ("fine profile", {}), ("q = 2", {"q": 2.0}), ("k / 4", {"k": K / 4}), ("4 k", {"k": 4 * K}), ("addendum 1.1", {"addendum": 1.1}),
             ("addendum 1.2", {"addendum": 1.2}), ("damper / 2", {"damper": DAMPER / 2}),
         ):  # fmt: skip
             record, _ = timed(simulation("rigid", 0.6, contact, refine=10, **keys), duration, STEP)
@@ -232,7 +238,7 @@ def run(
                 steps.append({"step_s": h, "failed": str(error)})
                 continue
             # a tooth pair is in contact for contact-ratio pitches; the contact spring's own period is 6 to 7 ms
-            steps.append({"step_s": h, "run_s": seconds, **measure(record),
+            steps.append({"step_s": h, **seconds, **measure(record),
                           "under_resolved": bool(h > RESOLVED)})  # fmt: skip
             if h in (5e-5, 8e-5):
                 curves[f"iterations {h:g}"] = record
@@ -303,8 +309,10 @@ def _figures(out: Path, results: dict[str, Any], curves: dict[str, Any], sim: Si
     rows = results["meshes"]
     ax.plot([m["mesh_mm"] for m in rows], [m["ratio_rmse_percent"] for m in rows], "o-", color=report.BLUE, label="ours")
     ax.plot(MESHES, PAPER["table_6"]["rmse_percent"], "s--", color=report.BLACK, label="the paper")
-    for v, colour in zip(results["variants"], (report.SKY, report.GREEN, report.RED, report.ORANGE, report.PURPLE, report.YELLOW),
-                         strict=True):  # fmt: skip
+    palette = (report.SKY, report.GREEN, report.ORANGE, report.RED, report.PURPLE, report.YELLOW, report.BLACK)
+    for v, colour in zip(results["variants"], palette, strict=False):
+        if v["ratio_rmse_percent"] > 3:
+            continue  # teeth that lift off: off the scale
         ax.axhline(v["ratio_rmse_percent"], color=colour, lw=1, ls=":", label=v["variant"])
     ax.set(xlabel="mesh size (mm)", ylabel="RMSE of the transmission ratio (%)", ylim=(0, None))
     ax.legend(fontsize=8)

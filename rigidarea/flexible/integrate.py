@@ -648,12 +648,41 @@ class Simulation:
     def _new_state(self, modes: int) -> State:
         x = np.array([[*b.position, b.angle] for b in self.bodies], float)
         v = np.array([b.velocity for b in self.bodies], float)
-        acc = np.zeros_like(x)
+        acc, mu = np.zeros_like(x), np.zeros_like(x)
         for i, b in enumerate(self.bodies):
-            if not b.fixed and b.anchor is None:
-                acc[i, :2] = self.system.gravity
+            if not b.fixed:
+                acc[i], mu[i] = self._start(b)
         z = np.zeros(modes)
-        return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), np.zeros_like(x))
+        return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu)
+
+    def _start(self, b: Body) -> tuple[Array, Array]:
+        """Accelerations and multipliers (3,) that satisfy motion and constraints at t = 0, contacts and modes at rest.
+
+        Without them the scheme starts with an error of first order.
+        """
+        c, s = np.cos(b.angle), np.sin(b.angle)
+        arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
+        omega = b.velocity[2]
+        rows, right = [], []
+        if b.anchor is not None:
+            rows += [[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]]
+            right += list(omega**2 * arm)
+        if b.drive is not None:
+            rows.append([0.0, 0.0, 1.0])
+            right.append(b.drive[1] / b.drive[2] if b.drive[2] > 0 else 0.0)
+        n = len(rows)
+        matrix = np.zeros((3 + n, 3 + n))
+        matrix[:3, :3] = np.diag([b.mass, b.mass, b.inertia])
+        if n:
+            matrix[3:, :3] = rows
+            matrix[:3, 3:] = -np.array(rows).T
+        load = [b.mass * self.system.gravity[0], b.mass * self.system.gravity[1], b.torque - b.damper * omega]
+        solution = np.linalg.solve(matrix, np.array(load + right))
+        mu = np.zeros(3)
+        mu[: 2 if b.anchor is not None else 0] = solution[3 : 5 if b.anchor is not None else 3]
+        if b.drive is not None:
+            mu[2] = solution[-1]
+        return solution[:3], mu
 
     def run(self, duration: float, h: float, every: int = 1) -> Record:
         """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps.

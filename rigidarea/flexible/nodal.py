@@ -242,6 +242,49 @@ def scratch(points: int) -> Scratch:
 
 
 @njit(cache=True)
+def _turn(r: NDArray[np.void], x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float) -> float:
+    """Direction of the force by Eq. 13-15, and the arcs in axes across and along it; returns x of the centroid there.
+
+    An edge's normal times its length is its chord turned by a quarter, so with heights b (arc of A) and t (arc of B) over
+    the chord the weighted mean normals are (∫ d^q b' dx, −∫ d^q dx) and (−∫ d^q t' dx, ∫ d^q dx), d = t − b: the
+    force leans from the chord's normal by the slope of the middle line. On a flank, whose curvature changes along it, the
+    chord alone would be off by a degree at a depth of a twentieth of the module.
+    """
+    lean = weight = 0.0
+    i = j = 0
+    lo = 0.0
+    chord = r.chord
+    while i < n_a and j < n_b:
+        xa, xb = x[0, i + 1], x[1, j + 1]
+        hi = min(xa, xb, chord)
+        if hi > lo and xa - x[0, i] > 1e-9 * chord and xb - x[1, j] > 1e-9 * chord:
+            ga = (y[0, i + 1] - y[0, i]) / (xa - x[0, i])
+            gb = (y[1, j + 1] - y[1, j]) / (xb - x[1, j])
+            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
+            d1 = d0 + (gb - ga) * (hi - lo)
+            w = (0.5 * (d0 + d1) if q == 1.0 else max(0.5 * (d0 + d1), 0.0) ** q) * (hi - lo)
+            lean += 0.5 * w * (ga + gb)
+            weight += w
+            lo = hi
+        if xa <= xb:
+            i += 1
+        else:
+            j += 1
+    if weight <= 0.0:
+        return xc
+    lean = min(max(lean / weight, -1.0), 1.0)  # beyond 45° the arcs are no graphs over the chord
+    c = 1.0 / np.sqrt(1.0 + lean * lean)
+    s = lean * c
+    for k in range(n_a + 1):
+        x[0, k], y[0, k] = c * x[0, k] + s * y[0, k], -s * x[0, k] + c * y[0, k]
+    for k in range(n_b + 1):
+        x[1, k], y[1, k] = c * x[1, k] + s * y[1, k], -s * x[1, k] + c * y[1, k]
+    nx, ny = r.nx, r.ny
+    r.nx, r.ny = c * nx - s * ny, c * ny + s * nx
+    return c * xc + s * yc
+
+
+@njit(cache=True)
 def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
     """Candidate leaf pairs into ``s.pairs``; their number, or MANY."""
     return candidates(a, pose_a, b, pose_b, margin, s.stack, s.pairs)
@@ -267,7 +310,10 @@ def contact(
         r.area, r.force = area, k * area  # Eq. 5
         ux, uy = -r.ny, r.nx
         r.x, r.y = r.enter_x + ux * xc - uy * yc, r.enter_y + uy * xc + ux * yc
-        if spread and area > 0.0:
+        if area <= 0.0:
+            continue
+        xc = _turn(r, s.x, s.y, n_a, n_b, q, xc, yc)
+        if spread:
             distribute(
                 a, wa, b, wb, r.nx, r.ny, s.x, s.y, s.edge, s.t, n_a, n_b, r.force, area, xc, r.chord, q
             )
