@@ -35,15 +35,21 @@ def build() -> Scene:
         balls.append(body)
 
     best = {0: 0.0, BALLS - 1: 0.0}
+    seen = [0.0]
     inertia = MASS + ball.moment(MASS) / LENGTH**2
 
     def watch(t: float) -> None:
         """The speed at height 0 that the outer balls have energy for, up to the last ball's first return."""
+        seen[0] = t
         for i in best:
             body = balls[i]
             energy = inertia * body.velocity.dot(body.velocity) / 2 + MASS * G * body.position.y
             if t < 0.45 * period:
                 best[i] = max(best[i], math.sqrt(max(0.0, 2 * energy / inertia)))
+
+    def handed_on() -> float:
+        """Speed of the last ball over that of the first; NaN before the first hand-over."""
+        return best[BALLS - 1] / best[0] if seen[0] > 0.4 * period else math.nan
 
     period = 2 * math.pi * math.sqrt(inertia / MASS * LENGTH / G) * (1 + LIFT**2 / 16)
     return Scene(
@@ -52,7 +58,7 @@ def build() -> Scene:
         shows="Elasticity 1: the last ball leaves with the speed at which the first one came.",
         space=space,
         view=(-0.62, -0.1, 0.62, 0.5),
-        headline=Headline("last_to_first_speed", lambda: best[BALLS - 1] / best[0], 1.0),
+        headline=Headline("last_to_first_speed", handed_on, 1.0),
         chipmunk="as it is, the discs as polygons",
         attach={"stiffness": STIFFNESS, "rest_speed": 0.0},
         frame=1 / 120,

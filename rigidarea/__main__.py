@@ -51,10 +51,17 @@ def parser(command: str | None) -> argparse.ArgumentParser:
             demo.add_arguments(own)
             own.set_defaults(run=demo.run)
         elif name == command == "case":
-            cases: Any = import_module(".cases", __package__)
-            cases.add_arguments(own)
-            own.set_defaults(run=lambda arguments: write_json(cases.run(arguments), arguments.json))
+            _cases().add_arguments(own)
+            own.set_defaults(run=_case)
     return top
+
+
+def _cases() -> Any:
+    return import_module(".cases", __package__)
+
+
+def _case(arguments: argparse.Namespace) -> None:
+    write_json(_cases().run(arguments), arguments.json)
 
 
 def main(argv: Sequence[str] | None = None) -> int:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+
 import pygame
 import pymunk
 import shapely
@@ -15,14 +17,15 @@ PULL = 30.0
 
 
 def show(run: Run) -> None:
-    """Open the window and step the run until it is closed. RuntimeError where there is no display."""
-    pygame.display.init()
+    """Open the window and step the run until it is closed. OSError where there is no display."""
     try:
+        pygame.display.init()
         screen = pygame.display.set_mode(SIZE)
     except pygame.error as error:
-        raise RuntimeError(
-            f"no window can be opened here ({error}); leave --window out to render to files"
-        ) from error
+        raise OSError(f"no window can be opened here ({error}); without --window files are written") from error
+    if pygame.display.get_driver() in ("dummy", "offscreen") and "SDL_VIDEODRIVER" not in os.environ:
+        pygame.display.quit()
+        raise OSError("no window can be opened here: there is no display; without --window files are written")
     pygame.display.set_caption(f"rigidarea: {run.scene.title}")
     picture, clock, hand, paused = Picture(run), pygame.time.Clock(), Hand(run), False
     while True:
