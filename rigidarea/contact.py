@@ -167,24 +167,29 @@ class AreaContact:
         """Give every shape of the space that has none yet its outline; choose what was left to be chosen."""
         space = self.space
         counter = lib.cpSpaceGetShapeIDCounter(space._space)
-        if counter == self._seen_ids:
+        if counter == self._seen_ids and len(space.shapes) == len(self._shapes):
             return
-        for shape in space.shapes:
-            if shape._hashid not in self._shapes:
+        present = {shape._hashid: shape for shape in space.shapes}
+        gone = self._shapes.keys() - present.keys()
+        self._store.forget(gone)
+        for ident in gone:
+            del self._shapes[ident]
+        for ident, shape in present.items():
+            if ident not in self._shapes:
                 self._register(shape)
         self._seen_ids = counter
-        if len(self._shapes) > 2 * len(space.shapes) + 64:
-            self._shapes = {shape._hashid: shape for shape in space.shapes}
         self._store.sync()
         self._choose()
 
     def _register(self, shape: pymunk.Shape) -> None:
         outline = Outline.from_pymunk(shape)
         body = shape.body
-        dynamic = body is not None and body.body_type == pymunk.Body.DYNAMIC
-        inverse_mass = 1.0 / body.mass if dynamic and body is not None and body.mass > 0 else 0.0
-        inverse_moment = 1.0 / body.moment if dynamic and body is not None and body.moment > 0 else 0.0
-        self._store.shape(shape._hashid, outline, outline.mirror, inverse_mass, inverse_moment)
+        assert body is not None
+        inverse_mass = inverse_moment = 0.0
+        if body.body_type == pymunk.Body.DYNAMIC and not shape.sensor:
+            inverse_mass = 1.0 / body.mass if body.mass > 0 else 0.0
+            inverse_moment = 1.0 / body.moment if body.moment > 0 else 0.0
+        self._store.shape(shape._hashid, outline, outline.mirror, body.id, inverse_mass, inverse_moment)
         self._shapes[shape._hashid] = shape
 
     def refresh(self, shape: pymunk.Shape) -> None:

@@ -75,6 +75,28 @@ def _pose(s: Any, body: int) -> Pose:
     return Pose(t[4], t[5], t[0], t[1])
 
 
+@kernel(inline="always")
+def _push(s: Any, body: int, row: Any, stamp: int, fx: float, fy: float, moment: float) -> None:
+    """Add to the body's accumulators.
+
+    Chipmunk puts a body to sleep between the hook and the step's velocities, with the accumulators full: what is
+    still there, unchanged, when the body is met again would push it twice.
+    """
+    f = _floats(body + s.body_force, 2)
+    t = _floats(body + s.body_torque, 1)
+    if row.stamp != stamp and f[0] == row.force_x and f[1] == row.force_y and t[0] == row.torque:
+        f[0] = 0.0
+        f[1] = 0.0
+        t[0] = 0.0
+    f[0] += fx
+    f[1] += fy
+    t[0] += moment
+    row.stamp = stamp
+    row.force_x = f[0]
+    row.force_y = f[1]
+    row.torque = t[0]
+
+
 @callback(types.void(types.uintp, types.uintp, types.uintp))
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair of one step, in machine code. See the module's docstring."""
@@ -155,16 +177,11 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         _ask_python(arbiter, space, data)
         if s.request != NOTHING:
             return  # Python could not: it keeps the error
+    tables = load_tables(s)
     if a.inverse_mass > 0.0:
-        f = _floats(body_a + s.body_force, 2)
-        f[0] -= pull.fx
-        f[1] -= pull.fy
-        _floats(body_a + s.body_torque, 1)[0] += pull.moment_a
+        _push(s, body_a, tables.bodies[tables.shapes[sa].body], stamp, -pull.fx, -pull.fy, pull.moment_a)
     if b.inverse_mass > 0.0:
-        f = _floats(body_b + s.body_force, 2)
-        f[0] += pull.fx
-        f[1] += pull.fy
-        _floats(body_b + s.body_torque, 1)[0] += pull.moment_b
+        _push(s, body_b, tables.bodies[tables.shapes[sb].body], stamp, pull.fx, pull.fy, pull.moment_b)
 
 
 @callback(types.void(types.uintp, types.uintp, types.uintp))

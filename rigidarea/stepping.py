@@ -40,6 +40,8 @@ def highest_frequency(pool: Pool, tables: Tables, shapes: int, law: Law, stamp: 
     most = 0.0
     for i in range(shapes):
         shape = tables.shapes[i]
+        if shape.outline < 0:
+            continue
         head = pool.heads[shape.outline]
         length = head.face
         stiffness = length if law.law == LAW_AREA else length * length / law.length

@@ -8,6 +8,7 @@ which alone would cost as much as clipping two boxes).
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -16,13 +17,13 @@ from .kernel.force import REGION, Law
 from .kernel.jit import kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
-from .kernel.pair import COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
+from .kernel.pair import BODY, COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
 from .kernel.pool import HEAD, HasRings, Pool, pack
 
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "loops"),
-    *("shapes", "pairs", "regions", "counters", "slots"),
+    *("shapes", "bodies", "pairs", "regions", "counters", "slots"),
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
@@ -87,6 +88,7 @@ def load_tables(s: Any) -> Tables:
     """The shapes, pairs and regions of the space whose state record is s."""
     return Tables(
         array_at(s.shapes_at, (s.shapes_n,), SHAPE),
+        array_at(s.bodies_at, (s.bodies_n,), BODY),
         array_at(s.pairs_at, (s.pairs_n,), PAIR),
         array_at(s.regions_at, (s.regions_n,), REGION),
         array_at(s.counters_at, (s.counters_n,), np.int64),
@@ -115,12 +117,21 @@ class Store:
         )
         self.work = new_work()
         self.tables = Tables(
-            np.zeros(16, SHAPE), np.zeros(0, PAIR), np.zeros(0, REGION), np.zeros(COUNTERS, np.int64)
+            np.zeros(16, SHAPE),
+            np.zeros(16, BODY),
+            np.zeros(0, PAIR),
+            np.zeros(0, REGION),
+            np.zeros(COUNTERS, np.int64),
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
-        self._outlines: dict[int, int] = {}
-        self._kept: list[HasRings] = []  # ids stay unique while the objects live
+        self._outlines: dict[
+            int, tuple[int, HasRings]
+        ] = {}  # by id: number, and the object that keeps the id
+        self._free: list[int] = []  # rows of shapes that are gone
+        self._bodies: dict[int, tuple[int, int]] = {}  # by key: row, and how many shapes
+        self._free_bodies: list[int] = []
+        self._body_of: dict[int, int] = {}
         self._most = (0, 0)  # points and rings of the largest outline
         self.grow_pairs(64)
         self.grow_regions(64)
@@ -168,9 +179,9 @@ class Store:
 
     def outline(self, outline: HasRings) -> int:
         """The outline's number in the pool; packed the first time it is seen."""
-        number = self._outlines.get(id(outline))
-        if number is not None:
-            return number
+        found = self._outlines.get(id(outline))
+        if found is not None:
+            return found[0]
         one = pack([outline])
         fill = self._fill
         room = {}
@@ -200,8 +211,7 @@ class Store:
         self._most = (max(self._most[0], len(one.points)), max(self._most[1], len(one.rings)))
         if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
             self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
-        self._outlines[id(outline)] = h
-        self._kept.append(outline)
+        self._outlines[id(outline)] = h, outline
         return h
 
     def shape(
@@ -209,26 +219,66 @@ class Store:
         ident: int,
         outline: HasRings,
         mirror: HasRings | None,
+        body: int,
         inverse_mass: float,
         inverse_moment: float,
     ) -> None:
-        """Tell the tables which outline Chipmunk's shape `ident` has. Call `sync` after the last."""
+        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `sync` after the last."""
         number = self.outline(outline)
         other = -1 if mirror is None else self.outline(mirror)
         if ident >= len(self.slots):
             slots = np.full(max(ident + 1, 2 * len(self.slots)), -1, np.int32)
             slots[: len(self.slots)] = self.slots
             self.slots = slots
-        row = self.slots[ident]
-        if row < 0:
-            row = self._fill["shapes"]
-            if row == len(self.tables.shapes):
-                shapes = np.zeros(2 * row, SHAPE)
-                shapes[:row] = self.tables.shapes
-                self.tables = self.tables._replace(shapes=shapes)
-            self._fill["shapes"] += 1
-            self.slots[ident] = row
-        self.tables.shapes[row] = (number, other, inverse_mass, inverse_moment)
+        self.forget([ident])
+        row = self._free.pop() if self._free else self._fill["shapes"]
+        if row == len(self.tables.shapes):
+            self.tables = self.tables._replace(shapes=np.resize(self.tables.shapes, 2 * row))
+        self._fill["shapes"] = max(self._fill["shapes"], row + 1)
+        self.slots[ident] = row
+        body_row, shapes = self._bodies.get(body, (-1, 0))
+        if body_row < 0:
+            body_row = self._free_bodies.pop() if self._free_bodies else len(self._bodies)
+            if body_row >= len(self.tables.bodies):
+                self.tables = self.tables._replace(bodies=np.resize(self.tables.bodies, 2 * body_row))
+            self.tables.bodies[body_row] = (-1, 0.0, 0.0, 0.0)
+        self._bodies[body] = body_row, shapes + 1
+        self._body_of[ident] = body
+        self.tables.shapes[row] = (number, other, inverse_mass, inverse_moment, body_row)
+
+    def forget(self, idents: Iterable[int]) -> None:
+        """Free what the tables hold of shapes that are gone; outlines nobody has any more go with them in time."""
+        for ident in idents:
+            if not self.knows(ident):
+                continue
+            row = int(self.slots[ident])
+            self.slots[ident] = -1
+            self.tables.shapes[row] = (-1, -1, 0.0, 0.0, -1)
+            self._free.append(row)
+            body = self._body_of.pop(ident)
+            body_row, shapes = self._bodies[body]
+            if shapes > 1:
+                self._bodies[body] = body_row, shapes - 1
+            else:
+                del self._bodies[body]
+                self._free_bodies.append(body_row)
+        rows = self.known_shapes
+        used = np.union1d(rows["outline"], rows["mirror"])
+        used = used[used >= 0]
+        if len(self._outlines) > 2 * len(used) + 64:
+            self._repack(used)
+
+    def _repack(self, used: np.ndarray) -> None:
+        """Only the outlines of these numbers stay, with new numbers."""
+        kept = {number: outline for number, outline in self._outlines.values()}
+        self._outlines = {}
+        self._fill |= {"points": 0, "rings": 0, "boxes": 0, "heads": 0}
+        renumbered = np.full(len(self.pool.heads) + 1, -1)  # the last for "none"
+        for number in used:
+            renumbered[number] = self.outline(kept[int(number)])
+        rows = self.known_shapes
+        for name in ("outline", "mirror"):
+            rows[name] = renumbered[rows[name]]
 
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
@@ -236,5 +286,5 @@ class Store:
 
     @property
     def known_shapes(self) -> np.ndarray:
-        """The rows of tables.shapes in use."""
+        """The rows of tables.shapes in use (outline -1: free again)."""
         return self.tables.shapes[: self._fill["shapes"]]

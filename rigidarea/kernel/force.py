@@ -62,8 +62,7 @@ REGION = record(
         ("work", "f8"),  # done on the spring while closing (force length)
         ("loss", "f8"),  # energy lost to damping while closing (force length)
         ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
-        ("tilt", "f8"),  # area times the chord's middle seen from the centroid, along t (length^3)
-        ("turning", "f8"),  # angular speed of A's face against B's, from the change of tilt (1/time)
+        ("flat", "f8"),  # longest straight stretch of both boundaries in it (length)
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
         ("speed", "f8"),  # closing speed (length/time)
@@ -120,7 +119,7 @@ def restitution_damping(e: float) -> float:
     high = 1.0 / e
     for _ in range(60):
         mid = 0.5 * (low + high)
-        if math.log1p(mid) - math.log1p(-mid * e) < mid * (1.0 + e):
+        if mid * e < 1.0 and math.log1p(mid) - math.log1p(-mid * e) < mid * (1.0 + e):
             low = mid
         else:
             high = mid
@@ -233,8 +232,9 @@ def region_force(
     kinetic energy at first touch: the same restitution again, but also where gravity, or anything else, acts during
     the impact (the plain law then returns up to 0.25 less, the softer the contact).
 
-    Rest. A bed of springs with dashpots beside them: a resultant along n, and a moment against the turning of one
-    face on the other. A disc that rolls does not turn a face: its overlap stays the same, `turning` is 0.
+    Rest. A bed of springs with dashpots beside them: a resultant along n, and, where the boundaries are straight, a
+    moment against the turning of one face on the other (else a box rocks on its face for ever). Not where they are
+    curved: a bed of dashpots would brake a rolling disc, as a damped foundation does, and no user expects that.
 
     The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
     resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
@@ -292,8 +292,8 @@ def region_force(
     if r.resting:
         c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
         force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
-        bed = c * r.chord * r.chord / 12.0
-        couple = bed * r.turning / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
+        bed = c * r.flat**3 / (12.0 * r.chord)
+        couple = bed * (a.w - b.w) / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
         most = force * r.chord / 6.0  # more would need the pressure to pull at one end
         couple = min(most, max(-most, couple))
     else:
@@ -311,6 +311,8 @@ def region_force(
             force = max(
                 0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse)
             )
+            # damping slows down, it never turns the speed round within a step
+            force = min(force, max(elastic, speed / (dt * inverse)))
             r.elastic = elastic
             r.excess = force - elastic
 

@@ -31,9 +31,19 @@ SHAPE = record(
     [
         ("outline", "i4"),  # number in the pool
         ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
-        ("inverse_mass", "f8"),  # of its body, as last seen
+        ("inverse_mass", "f8"),  # of its body, as last seen; 0 for a sensor
         ("inverse_moment", "f8"),
+        ("body", "i4"),  # row of its body
     ],
+)
+
+BODY = record(
+    [
+        ("stamp", "i8"),  # space step in which a contact last pushed it
+        ("force_x", "f8"),  # what was in its accumulators after that
+        ("force_y", "f8"),
+        ("torque", "f8"),
+    ]
 )
 
 PAIR = record(
@@ -58,6 +68,7 @@ class Tables(NamedTuple):
     """What outlives a step."""
 
     shapes: np.ndarray  # (n,) SHAPE
+    bodies: np.ndarray  # (n,) BODY
     pairs: np.ndarray  # (n,) PAIR
     regions: np.ndarray  # (n,) REGION
     counters: np.ndarray  # (COUNTERS,) int64
@@ -410,9 +421,7 @@ def pair_pull(
             # the gradient's line of action: its moment about the centroid is -lever
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
-        tilt = 0.0 if blind else area * loop.lever / chord
-        region.turning = 0.0 if born else 12.0 * (tilt - region.tilt) / (dt * chord**3)
-        region.tilt = tilt
+        region.flat = min(loop.flat, chord)
         region.area = area
         region.x = x
         region.y = y

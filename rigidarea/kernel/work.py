@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -24,6 +25,10 @@ LOOP = record(
         ("chord_x", "f8"),  # sum of (end - start) over the arcs of A, A's frame (length)
         ("chord_y", "f8"),
         ("lever", "f8"),  # sum of (|end|^2 - |start|^2) / 2 over the arcs of A, about the centroid (length^2)
+        (
+            "flat",
+            "f8",
+        ),  # longest straight stretch of both boundaries: the shorter of A's and B's longest edges (length)
         ("region", "i4"),  # of a hole: the loop it is a hole of; of a region: itself
     ],
 )
@@ -116,6 +121,8 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
     chord_x = 0.0
     chord_y = 0.0
     lever = 0.0
+    flat_a = 0.0
+    flat_b = 0.0
     perimeter = 0.0
     ux = p[stop - 1, 0] - ox
     uy = p[stop - 1, 1] - oy
@@ -127,11 +134,16 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
         doubled += cross
         sx += (ux + vx) * cross
         sy += (uy + vy) * cross
-        perimeter += abs(vx - ux) + abs(vy - uy)
+        dx = vx - ux
+        dy = vy - uy
+        perimeter += abs(dx) + abs(dy)
         if on_a:
-            chord_x += vx - ux
-            chord_y += vy - uy
+            chord_x += dx
+            chord_y += dy
             lever += 0.5 * (vx * vx + vy * vy - ux * ux - uy * uy)
+            flat_a = max(flat_a, dx * dx + dy * dy)
+        else:
+            flat_b = max(flat_b, dx * dx + dy * dy)
         on_a = label[i] == A_EDGE
         ux = vx
         uy = vy
@@ -148,5 +160,6 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
     loop.chord_x = chord_x
     loop.chord_y = chord_y
     loop.lever = lever - sx * chord_x - sy * chord_y
+    loop.flat = math.sqrt(min(flat_a, flat_b))
     loop.region = n
     return n + 1
