@@ -57,8 +57,11 @@ def build() -> Scene:
         steps = [abs(b - a) for a, b in itertools.pairwise(stops)]
         return max((abs(math.degrees(s) - 360 / SLOTS) for s in steps), default=math.nan)
 
-    def pin() -> tuple[float, float]:
-        at = driver.local_to_world((parts.crank_radius, 0))
+    def flank() -> tuple[float, float]:
+        """Where the pin pushes: its point furthest across the slot."""
+        center = driver.local_to_world((parts.crank_radius, 0))
+        across = (wheel.position - center).normalized().perpendicular()
+        at = center + PIN / 2 * across
         return at.x, at.y
 
     frame = 1 / 60
@@ -77,7 +80,7 @@ def build() -> Scene:
         watch=watch,
         energy="driven",
         force=5.0,
-        lens=Lens(pin, 0.012),
+        lens=Lens(flank, 0.0004),
         colors={driver: 1, wheel: 4},
     )
 

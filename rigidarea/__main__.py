@@ -9,11 +9,10 @@ import argparse
 import os
 import sys
 from collections.abc import Sequence
-from importlib import import_module
-from typing import Any
+from pathlib import Path
 
 from . import __version__
-from .report import write_json
+from .report import lines, output_arguments, write_json
 
 COMMANDS = {
     "demo": "render the game scenes: stills, films, a table of frame times",
@@ -51,17 +50,25 @@ def parser(command: str | None) -> argparse.ArgumentParser:
             demo.add_arguments(own)
             own.set_defaults(run=demo.run)
         elif name == command == "case":
-            _cases().add_arguments(own)
+            from . import cases
+
+            cases.add_arguments(own)
+            output_arguments(own, Path("out") / "cases")
             own.set_defaults(run=_case)
     return top
 
 
-def _cases() -> Any:
-    return import_module(".cases", __package__)
-
-
 def _case(arguments: argparse.Namespace) -> None:
-    write_json(_cases().run(arguments), arguments.json)
+    from . import cases
+
+    told = cases.run(arguments)
+    write_json(told, arguments.json)
+    if arguments.json != "-":
+        print(f"{told['command']}: {told['wall_s']:.1f} s")
+        print("\n".join(lines(told["results"])))
+        print("\nthe paper:")
+        print("\n".join(lines(told["paper"])))
+        print(f"\nFigures: {arguments.out}/")
 
 
 def main(argv: Sequence[str] | None = None) -> int:

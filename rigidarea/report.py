@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import math
 import os
 import platform
 import sys
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -93,3 +94,39 @@ def write_json(value: Any, file: str | Path | None) -> None:
     path = Path(file)
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(text)
+
+
+def output_arguments(parser: argparse.ArgumentParser, out: Path) -> None:
+    """The two arguments of every command: `--out` (a folder, default `out`) and `--json`."""
+    parser.add_argument("--out", type=Path, default=out, metavar="DIR", help="where files go (%(default)s)")
+    parser.add_argument(
+        "--json", metavar="FILE", help="also write the numbers here; - for JSON alone on standard output"
+    )
+
+
+def lines(results: Any) -> list[str]:
+    """Results for reading: a mapping as a line an entry, rows as a table."""
+    if isinstance(results, Mapping):
+        return align([(key, _short(value)) for key, value in results.items()])
+    columns = list(dict.fromkeys(key for row in results for key in row))
+    cells = [[_short(row[key]) if key in row else "" for key in columns] for row in results]
+    return align([columns, *cells])
+
+
+def align(rows: Sequence[Sequence[str]], left: Sequence[int] = (0,)) -> list[str]:
+    """Cells in columns, those in `left` to the left, the others to the right."""
+    widths = [max(map(len, column)) for column in zip(*rows)]
+    return [
+        "  ".join(
+            c.ljust(w) if i in left else c.rjust(w) for i, (c, w) in enumerate(zip(row, widths))
+        ).rstrip()
+        for row in rows
+    ]
+
+
+def _short(value: Any) -> str:
+    value = plain(value)
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    text = json.dumps(value, ensure_ascii=False)
+    return text if len(text) < 60 else f"{text[:56]} ..."

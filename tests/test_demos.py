@@ -17,7 +17,7 @@ from rigidarea.report import envelope, plain, write_json
 pygame = pytest.importorskip("pygame")
 
 from rigidarea.__main__ import main  # noqa: E402
-from rigidarea.draw import canvas, demo, window  # noqa: E402
+from rigidarea.draw import canvas, demo, film, window  # noqa: E402
 from rigidarea.draw.picture import SIZE, Picture  # noqa: E402
 
 
@@ -241,6 +241,36 @@ def test_demo_writes_picture_film_and_json(tmp_path, capsys):
     text = capsys.readouterr()
     assert "last_to_first_speed" in text.out and str(out) in text.out
     assert "cradle" in text.err
+
+
+def test_film_falls_back_to_gif(tmp_path, monkeypatch):
+    monkeypatch.setattr(film.importlib.util, "find_spec", lambda name: None)
+    with film.Film(tmp_path / "film") as movie:
+        for shade in range(6):
+            surface = pygame.Surface((64, 40))
+            surface.fill((40 * shade, 0, 0))
+            movie.add(surface)
+    import imageio.v2 as imageio
+
+    assert movie.path.suffix == ".gif"
+    pictures = imageio.mimread(movie.path)
+    assert len(pictures) == 2 and pictures[0].shape[:2] == (20, 32)
+
+
+def test_case_goes_to_the_cases(tmp_path, monkeypatch, capsys):
+    from rigidarea import cases
+
+    seen = []
+
+    def run(arguments):
+        seen.append((arguments.name, arguments.mesh, arguments.out))
+        return {"command": "case patch", "results": [{"gap_mm": 2.0}], "paper": {"gap_mm": 2}, "wall_s": 0.5}
+
+    monkeypatch.setattr(cases, "run", run)
+    assert main(["case", "patch", "--mesh", "1.5", "--out", str(tmp_path)]) == 0
+    assert seen == [("patch", 1.5, tmp_path)]
+    told = capsys.readouterr().out
+    assert "gap_mm" in told and str(tmp_path) in told
 
 
 def test_json_alone_on_standard_output(tmp_path):

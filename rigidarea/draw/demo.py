@@ -6,12 +6,12 @@ import argparse
 import contextlib
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..gallery import ENGINES, NAMES, Run, load
-from ..report import envelope, write_json
+from ..report import align, envelope, output_arguments, write_json
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -31,14 +31,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--frames", type=_count, metavar="N", help="frames of each scene (default: as the scene says)")
     add("--window", action="store_true", help="open a window instead: drag bodies, space pauses, Esc closes")
     add("--no-film", action="store_true", help="stills only")
-    add(
-        "--out",
-        type=Path,
-        default=Path("out") / "gallery",
-        metavar="DIR",
-        help="where pictures go (%(default)s)",
-    )
-    add("--json", metavar="FILE", help="also write the numbers here; - for JSON alone on standard output")
+    output_arguments(parser, Path("out") / "gallery")
 
 
 def _count(text: str) -> int:
@@ -161,7 +154,7 @@ def table(rows: list[dict[str, Any]]) -> str:
         "",
         "exact",
     )
-    lines = [head]
+    lines: list[Sequence[str]] = [head]
     for row in rows:
         drift, exact = row["energy_drift_relative"], row["headline_exact"]
         lines.append(
@@ -179,11 +172,4 @@ def table(rows: list[dict[str, Any]]) -> str:
                 "" if exact is None else f"{exact:.6g}",
             )
         )
-    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    left = (0, 8)
-    return "\n".join(
-        "  ".join(
-            cell.ljust(w) if i in left else cell.rjust(w) for i, (cell, w) in enumerate(zip(line, widths))
-        ).rstrip()
-        for line in lines
-    )
+    return "\n".join(align(lines, left=(0, 8)))

@@ -159,6 +159,8 @@ class Picture:
         seen = self.camera.pixels(np.array([(x - lens.width / 2, y + half)]))[0]
         side = lens.width * self.camera.scale
         frame = pygame.Rect(round(seen[0]), round(seen[1]), round(side), round(side * half * 2 / lens.width))
+        least = 8 * FINE - frame.width
+        frame = frame.inflate(max(0, least), max(0, least))
         pygame.draw.rect(target, INK, frame, FINE)
         target.set_clip(camera.area)
         target.fill(PAPER)
@@ -188,7 +190,8 @@ class Picture:
 
     def _header(self) -> None:
         run, scene = self.run, self.run.scene
-        engine = "area contact" if run.engine == "area" else "Chipmunk's own response"
+        law = " (energy law)" if scene.attach.get("law") == "energy" else ""
+        engine = f"area contact{law}" if run.engine == "area" else "Chipmunk's own response"
         self._text(scene.title, (24, 12), 22, INK)
         how = f"As Chipmunk runs it: {scene.chipmunk}."
         self._text(scene.shows if run.engine == "area" else how, (24, 37), 14, tint(INK, 0.75))

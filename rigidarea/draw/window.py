@@ -22,7 +22,9 @@ def show(run: Run) -> None:
         pygame.display.init()
         screen = pygame.display.set_mode(SIZE)
     except pygame.error as error:
-        raise OSError(f"no window can be opened here ({error}); without --window files are written") from error
+        raise OSError(
+            f"no window can be opened here ({error}); without --window files are written"
+        ) from error
     if pygame.display.get_driver() in ("dummy", "offscreen") and "SDL_VIDEODRIVER" not in os.environ:
         pygame.display.quit()
         raise OSError("no window can be opened here: there is no display; without --window files are written")
