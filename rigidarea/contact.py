@@ -68,10 +68,8 @@ class AreaContact:
         self._error: BaseException | None = None
         self._warned = False
         self._memory: dict[tuple[int, int], Any] = {}
-        #: Most steps of one frame; where it binds a StepLimitWarning is given, once.
-        self.max_steps = 1000
-        #: Largest phase of the stiffest contact in one step (radians), see `stepping.PHASE`.
-        self.phase = stepping.PHASE
+        self._max_steps = 1000
+        self._phase = stepping.PHASE
         self._install(space)
 
     # --- attaching ---
@@ -150,12 +148,13 @@ class AreaContact:
         self._space = None
 
     def _check_hooked(self) -> None:
-        assert self._space is not None
-        if self._handler.pre_solve is not self._hook:
-            raise RuntimeError(
-                "the space's global pre_solve was replaced after attach(): area contact is off. Register callbacks "
-                "for a collision type (on_collision(type, None, ...)) instead of for all"
-            )
+        assert self.space is not None  # says so if detached
+        for phase, own in (("pre_solve", self._hook), ("separate", self._hook.separate)):
+            if getattr(self._handler, phase) != own:
+                raise RuntimeError(
+                    f"the space's global {phase} was replaced after attach(): area contact needs it. Register "
+                    "callbacks for a collision type (on_collision(type, None, ...)) instead of for all"
+                )
 
     def _adopt(self, space: pymunk.Space) -> None:
         """Take over a copy of the attached space, with what its contacts remembered."""
@@ -246,6 +245,26 @@ class AreaContact:
     def rest_speed(self, value: float) -> None:
         self._state["rest_speed"] = self._settings["rest_speed"] = _not_negative(value, "rest_speed")
 
+    @property
+    def max_steps(self) -> int:
+        """Most steps of one frame (default 1000); where it binds, a StepLimitWarning is given, once."""
+        return self._max_steps
+
+    @max_steps.setter
+    def max_steps(self, value: int) -> None:
+        if not isinstance(value, int | np.integer) or value < 1:
+            raise ValueError(f"max_steps must be a whole number >= 1, got {value!r}")
+        self._max_steps = int(value)
+
+    @property
+    def phase(self) -> float:
+        """Largest phase of the stiffest contact in one step (radians); smaller is finer. See `stepping.PHASE`."""
+        return self._phase
+
+    @phase.setter
+    def phase(self, value: float) -> None:
+        self._phase = positive(value, "phase")
+
     # --- stepping ---
 
     def step(self, dt: float) -> int:
@@ -272,18 +291,18 @@ class AreaContact:
         self._check_hooked()
         self._register_shapes()
         frequency = self._frequency()
-        n = max(1, math.ceil(dt * frequency / self.phase))
-        if n > self.max_steps:
+        n = max(1, math.ceil(dt * frequency / self._phase))
+        if n > self._max_steps:
             if not self._warned:
                 self._warned = True
                 warnings.warn(
                     f"a frame of {dt:g} needs {n} steps (stiffest contact {frequency:.4g} rad per unit time) and "
-                    f"max_steps allows {self.max_steps}: contacts may be inaccurate or unstable. Lower the "
+                    f"max_steps allows {self._max_steps}: contacts may be inaccurate or unstable. Lower the "
                     "stiffness, or raise max_steps",
                     StepLimitWarning,
                     stacklevel=3,
                 )
-            n = self.max_steps
+            n = self._max_steps
         return n
 
     def _frequency(self) -> float:
@@ -451,7 +470,12 @@ class AreaContact:
             memory = self._remember()
             if self.stiffness > 0.0:  # what was chosen stays chosen
                 settings |= {name: float(self._state[name]) for name in ("stiffness", "rest_speed", "length")}
-        return {"_settings": settings, "max_steps": self.max_steps, "phase": self.phase, "_memory": memory}
+        return {
+            "_settings": settings,
+            "_max_steps": self._max_steps,
+            "_phase": self._phase,
+            "_memory": memory,
+        }
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)

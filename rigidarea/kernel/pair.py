@@ -354,6 +354,7 @@ def pair_pull(
     fy = 0.0
     moment_a = 0.0
     moment_b = 0.0
+    finite = True
     for k in range(n):
         loop = loops[k]
         area = loop.area
@@ -431,12 +432,13 @@ def pair_pull(
         pull = region_force(
             region, law, a, b, surface.friction, surface.elasticity, surface.vx, surface.vy, dt, born
         )
+        finite = finite and math.isfinite(region.speed + region.slip)
         fx += pull.fx
         fy += pull.fy
         moment_a += pull.moment_a
         moment_b += pull.moment_b
     _free_regions(regions, counters, old)
     pair.head = kept
-    if not math.isfinite(fx + fy + moment_a + moment_b):
+    if not (finite and math.isfinite(fx + fy + moment_a + moment_b)):
         return NOT_FINITE, NO_PULL
     return DONE, Pull(fx, fy, moment_a, moment_b)
