@@ -17,8 +17,12 @@ MODES = ("rigid", "compliant", "modal")
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``case``; ``--out`` and ``--json`` belong to every command and are added by the caller."""
     parser.add_argument("name", choices=NAMES, help="which of the paper's examples")
-    parser.add_argument("--mode", choices=MODES, help="level of model (default: rigid for pin-joint, else compliant)")
-    parser.add_argument("--mesh", type=float, metavar="MM", help="mesh size in millimetres (pin-joint, geneva, gearbox)")
+    parser.add_argument(
+        "--mode", choices=MODES, help="level of model (default: rigid for pin-joint, else compliant)"
+    )
+    parser.add_argument(
+        "--mesh", type=float, metavar="MM", help="mesh size in millimetres (pin-joint, geneva, gearbox)"
+    )
     parser.add_argument("--contact", choices=("area", "sts"), default="area", help="contact evaluation")
 
 
@@ -38,7 +42,9 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     name, cache = args.name, cache_directory()
     if name in ("hertz", "patch"):
         if args.mode is not None or args.mesh is not None or args.contact != "area":
-            raise ValueError(f"case {name} runs all its variants at once: expected no --mode, --mesh or --contact")
+            raise ValueError(
+                f"case {name} runs all its variants at once: expected no --mode, --mesh or --contact"
+            )
         if name == "hertz":
             from rigidarea.cases import hertz
 

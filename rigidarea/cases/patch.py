@@ -107,10 +107,16 @@ def press(gap: float, mesh: str) -> dict[str, Any]:
         u = np.array([-r["ny"], r["nx"]])
         local = np.array([u @ middle, -(u[1] * middle[0] - u[0] * middle[1])])
         alpha = nodal.literal_alpha(normal, weight, poly[k][1:-1], local, np.array([0.0, up * r["force"]]))
-        inner = (depth > 0) & (np.abs(normal[:, 1]) > 0.99)  # the face: corner and side nodes have other normals
+        inner = (depth > 0) & (
+            np.abs(normal[:, 1]) > 0.99
+        )  # the face: corner and side nodes have other normals
         literal.append(float((alpha * depth[inner]).mean()))
     row["master_slave_ratio_literal"] = literal[1] / literal[0]
     row["stress_spread_relative"] = stress_spread(slave, wa.point_load, r["force"])
+    wa.position[:], wb.position[:] = (
+        slave + pose_a[:2],
+        master,
+    )  # the figures draw all points, not the near ones
     row["state"] = (wa, wb)
     return row
 
@@ -153,7 +159,7 @@ def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
     for ax, row, (wa, wb) in zip(axes.ravel(), rows, states, strict=True):
         for w, colour, name in ((wa, report.RED, "slave"), (wb, report.BLUE, "master")):
             p = w.touched[: w.touched[-1]]
-            shape = np.vstack([w.position, w.position[:1]]) if w is wa else w.position
+            shape = np.vstack([w.position, w.position[:1]])
             ax.plot(1e3 * shape[:, 0], 1e3 * shape[:, 1], ".-", ms=4, lw=0.8, color=colour)
             ax.quiver(1e3 * w.position[p, 0], 1e3 * w.position[p, 1], w.point_load[p, 0], w.point_load[p, 1],
                       color=colour, width=0.004, scale=7 * np.abs(w.point_load).max(), label=name)  # fmt: skip
@@ -170,6 +176,11 @@ def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
             i = np.flatnonzero(w.pressure > 0)
             ax.plot(1e3 * w.position[i, 0], 1e-3 * w.pressure[i], marker, color=colour, fillstyle="none",
                     label=f"{name}, {row['mesh']}")  # fmt: skip
-    ax.set(xlabel="x (mm)", ylabel="pressure (kN/m)", title="gap 2 mm: one pressure, both bodies, all meshes", ylim=(0, None))
+    ax.set(
+        xlabel="x (mm)",
+        ylabel="pressure (kN/m)",
+        title="gap 2 mm: one pressure, both bodies, all meshes",
+        ylim=(0, None),
+    )
     ax.legend(ncol=3, fontsize=8)
     report.save(fig, out, "patch_fig12")

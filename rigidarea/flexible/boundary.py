@@ -149,7 +149,15 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: in
     pose is (x, y, cos θ, sin θ). Displacements are u = Φ q + C f of the carrying edge's two FE nodes; f are the node
     loads of the evaluation before. One call places a run of points: handing over the tuples costs more than a point.
     """
-    points, following, low, high, share, modes, flex = b.points, b.next, b.low, b.high, b.share, b.modes, b.flexibility
+    points, following, low, high, share, modes, flex = (
+        b.points,
+        b.next,
+        b.low,
+        b.high,
+        b.share,
+        b.modes,
+        b.flexibility,
+    )
     position, position_stamp = w.position, w.position_stamp
     u, u_stamp, load, loaded, hub = w.displacement, w.displacement_stamp, w.node_load, w.loaded, w.hub_load
     n_modes, static = modes.shape[1], flex.shape[0] > 0

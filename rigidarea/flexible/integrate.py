@@ -23,9 +23,8 @@ from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal, segment
-from rigidarea.flexible.boundary import Boundary, Work, build, clear_loads, to_nodes, workspace
+from rigidarea.flexible.boundary import Boundary, Work, clear_loads, to_nodes, workspace
 from rigidarea.flexible.frame import inertia_forces
-from rigidarea.flexible.nodal import Scratch
 from rigidarea.flexible.region import MANY, SLICED, TORN
 
 Array = NDArray[np.float64]
@@ -237,7 +236,11 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
         for i in (ia, ib):
             d = np.hypot(buf.pose[i, 0] - buf.searched[i, 0], buf.pose[i, 1] - buf.searched[i, 1])
             turn = np.hypot(buf.pose[i, 2] - buf.searched[i, 2], buf.pose[i, 3] - buf.searched[i, 3])
-            moved += d + turn * bodies[i].radius[0] + turn * np.hypot(bodies[i].centre[0, 0], bodies[i].centre[0, 1])
+            moved += (
+                d
+                + turn * bodies[i].radius[0]
+                + turn * np.hypot(bodies[i].centre[0, 0], bodies[i].centre[0, 1])
+            )
         if buf.count[0] < 0 or moved > 0.5 * st.margin or len(pairs) > 1:
             reach = st.margin + (st.q if st.sts else 0.0)
             buf.count[0] = nodal.search(a, pa, b, pb, reach, s)
@@ -376,7 +379,10 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                 f = bd.modes[-3, j] * local_x + bd.modes[-2, j] * local_y + bd.modes[-1, j] * hub_moment
                 for n in range(w.loaded[-1]):
                     node = w.loaded[n]
-                    f += bd.modes[2 * node, j] * w.node_load[node, 0] + bd.modes[2 * node + 1, j] * w.node_load[node, 1]
+                    f += (
+                        bd.modes[2 * node, j] * w.node_load[node, 0]
+                        + bd.modes[2 * node + 1, j] * w.node_load[node, 1]
+                    )
                 r = buf.modal_residual[i] + sy.viscous[i] * state.dq[i] + sy.square[i] * state.q[i] - f
                 buf.modal_residual[i] = r
                 reference = max(reference, abs(sy.square[i] * state.q[i]) * np.sqrt(sy.mass[b]))
@@ -517,7 +523,19 @@ def _run(bodies, works, sy, couplings, state, saved, pairs, st, s, buf, t0, h, s
             code = 0
             used = 0
             for part in range(parts):
-                code = _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t0 + h * (n + part / parts), h / parts)
+                code = _step(
+                    bodies,
+                    works,
+                    sy,
+                    couplings,
+                    state,
+                    pairs,
+                    st,
+                    s,
+                    buf,
+                    t0 + h * (n + part / parts),
+                    h / parts,
+                )
                 if code < 0:
                     break
                 used += code
@@ -609,7 +627,9 @@ class Simulation:
         count = [len(b.frequency) for b in bodies]
         for i, b in enumerate(bodies):
             if b.boundary.modes.shape[1] != count[i]:
-                raise ValueError(f"body {i}: expected {b.boundary.modes.shape[1]} frequencies, got {count[i]}")
+                raise ValueError(
+                    f"body {i}: expected {b.boundary.modes.shape[1]} frequencies, got {count[i]}"
+                )
         first = np.concatenate([[0], np.cumsum(count)])
         omega = np.concatenate([np.asarray(b.frequency, float) for b in bodies])
         zeta = np.repeat([b.damping for b in bodies], count)

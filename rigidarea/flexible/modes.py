@@ -185,7 +185,9 @@ class _Solver:
         self._row, self._column = factors.perm_r, factors.perm_c
         lower, upper = factors.L.tocsc(), factors.U.tocsc()
         self._factors = tuple(
-            part for f in (lower, upper) for part in (f.indptr.astype(np.int64), f.indices.astype(np.int64), f.data)
+            part
+            for f in (lower, upper)
+            for part in (f.indptr.astype(np.int64), f.indices.astype(np.int64), f.data)
         )
 
     def solve(self, rhs: Array) -> Array:

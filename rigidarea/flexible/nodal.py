@@ -242,7 +242,9 @@ def scratch(points: int) -> Scratch:
 
 
 @njit(cache=True)
-def _turn(r: NDArray[np.void], x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float) -> float:
+def _turn(
+    r: NDArray[np.void], x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float
+) -> float:
     """Direction of the force by Eq. 13-15, and the arcs in axes across and along it; returns x of the centroid there.
 
     An edge's normal times its length is its chord turned by a quarter, so with heights b (arc of A) and t (arc of B) over

@@ -7,7 +7,9 @@ def test_patch(tmp_path):
     rows = patch.run(tmp_path)["results"]
     assert [(r["gap_mm"], r["mesh"]) for r in rows] == [(g, m) for g in (2.0, 6.0) for m in patch.MESHES]
     for r in rows:
-        assert r["pressure_spread_relative"] < 1e-9  # target 1e-6; left are orientation tests at 1e-16 over 2e-3
+        assert (
+            r["pressure_spread_relative"] < 1e-9
+        )  # target 1e-6; left are orientation tests at 1e-16 over 2e-3
         assert abs(r["master_slave_ratio"] - 1) < 1e-9  # target 1e-3
         assert r["force_balance_relative"] < 1e-12
         assert r["moment_balance_relative"] < 1e-12

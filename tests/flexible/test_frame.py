@@ -12,7 +12,9 @@ from rigidarea.flexible.modes import free_modes, reduce, rigid_modes
 def test_against_brute_force():
     rng = np.random.default_rng(1)
     t = 2 * np.pi * np.arange(14) / 14
-    mesh = triangulate([np.column_stack([(1 + 0.3 * np.cos(2 * t)) * np.cos(t), 0.7 * np.sin(t) + 0.1 * np.cos(3 * t)])])
+    mesh = triangulate(
+        [np.column_stack([(1 + 0.3 * np.cos(2 * t)) * np.cos(t), 0.7 * np.sin(t) + 0.1 * np.cos(3 * t)])]
+    )
     mat = Material(10.0, 0.3, 2.0)
     mass = lumped_mass(mesh, mat)
     rigid, centre, inertia = rigid_modes(mesh.points, mass)
@@ -22,7 +24,9 @@ def test_against_brute_force():
     x, m2, turn = (mesh.points - centre).ravel(), np.repeat(mass, 2), np.array([[0.0, -1.0], [1.0, 0.0]])
 
     def rotate(matrix, vectors):
-        return np.einsum("ij,nj...->ni...", matrix, vectors.reshape(-1, 2, *vectors.shape[1:])).reshape(vectors.shape)
+        return np.einsum("ij,nj...->ni...", matrix, vectors.reshape(-1, 2, *vectors.shape[1:])).reshape(
+            vectors.shape
+        )
 
     theta, omega, alpha = 0.7, 1.3, -0.4
     q, dq, ddq = 0.2 * rng.standard_normal((3, 5))

@@ -81,7 +81,7 @@ def test_cantilever_converges():
         mesh = triangulate([outline], growth=0.0)
         # the clamped end as a ring of its own: split the index arrays
         left = np.flatnonzero(mesh.points[: mesh.n_boundary, 0] < 1e-12)
-        tip = np.flatnonzero((mesh.points[: mesh.n_boundary, 0] > length - 1e-12))
+        tip = np.flatnonzero(mesh.points[: mesh.n_boundary, 0] > length - 1e-12)
         split = type(mesh)(mesh.points, mesh.triangles, (mesh.rings[0], left))
         body = reduce(split, mat, clamped=1, modes=3)
         c = body.flexibility + (body.modes / body.frequency**2) @ body.modes.T

@@ -1,0 +1,67 @@
+"""The rigid level of a mechanism, through the pymunk hook: a driver that turns as told, and a wheel on a pivot.
+
+Leaves the same ``Record`` as the flexible stepper, so that a case measures both alike.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pymunk
+
+import rigidarea
+from rigidarea.flexible.integrate import REGIONS_KEPT, Record
+
+
+def turn(
+    driver: rigidarea.Outline,
+    wheel: rigidarea.Outline,
+    at: tuple[float, float],
+    density: float,
+    angles: tuple[float, float],
+    speed: Callable[[float], float],
+    stiffness: float,
+    damper: float,
+    duration: float,
+    h: float,
+) -> Record:
+    """Steps ``driver`` (about the origin) at ``speed(t)`` against ``wheel``, pivoted at ``at``, with a torsional damper.
+
+    density: mass an area. angles: of driver and wheel at t = 0. Frictionless, undamped contact: F = stiffness · A.
+    """
+    space = pymunk.Space()
+    crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    crank.angle = angles[0]
+    driven = wheel.body(density=density)
+    driven.position, driven.angle = at, angles[1]
+    for outline, body in ((driver, crank), (wheel, driven)):
+        shape = outline.add_to(body)
+        shape.elasticity, shape.friction = 1.0, 0.0
+        space.add(body, shape)
+    pivot = pymunk.PivotJoint(space.static_body, driven, at)
+    pivot.collide_bodies = True
+    space.add(pivot)
+    contact = rigidarea.attach(space, stiffness=stiffness)
+    n = round(duration / h)
+    x, v = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))
+    force, regions = np.zeros((n, 2)), np.zeros((n, REGIONS_KEPT, 5))
+    for i in range(n):
+        crank.angular_velocity = speed(
+            (i + 0.5) * h
+        )  # the middle of the step: the angle is then exact for a ramp
+        driven.torque = -damper * driven.angular_velocity
+        space.step(h)
+        x[i] = (*crank.position, crank.angle), (*driven.position, driven.angle)
+        v[i] = (0.0, 0.0, crank.angular_velocity), (*driven.velocity, driven.angular_velocity)
+        for k, r in enumerate(contact.regions[:REGIONS_KEPT]):
+            sign = 1.0 if r["body_b"] is driven else -1.0
+            regions[i, k] = r["force"], *(sign * r["direction"]), *r["centroid"]
+            force[i] += sign * r["force"] * r["direction"]
+    contact.detach()
+    kinetic = 0.5 * driven.moment * v[:, 1, 2] ** 2
+    one, none = np.ones(n), np.zeros(n)
+    return Record(
+        h * np.arange(1, n + 1), x, v, x[:, :, 2], v[:, :, 2], force, regions, one, none, none, kinetic,
+        np.zeros(0), np.zeros(0), n,
+    )  # fmt: skip
