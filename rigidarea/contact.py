@@ -10,16 +10,15 @@ from typing import Any
 
 import numpy as np
 import pymunk
-import pymunk.batch
 from numba import config
 from pymunk._chipmunk_cffi import ffi, lib
 
 from . import hook, stepping
-from .chipmunk import LayoutError, address_of, layout
+from .chipmunk import LayoutError, layout
 from .energy import stored_energy
 from .kernel.force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
-from .kernel.pair import FREE_PAIRS, end_pair, new_pair
 from .outline import Outline, positive
+from .pairs import Memory, Pairs
 from .store import Store, load_law
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
@@ -45,8 +44,6 @@ REGIONS = np.dtype(
 )
 
 _epochs = itertools.count(1)
-_Fields = pymunk.batch.BodyFields
-_STATE = _Fields.POSITION | _Fields.ANGLE | _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
 
 
 class SimulationError(RuntimeError):
@@ -67,7 +64,7 @@ class AreaContact:
         self._settings = settings
         self._error: BaseException | None = None
         self._warned = False
-        self._memory: dict[tuple[int, int], Any] = {}
+        self._memory: Memory = {}
         self._max_steps = 1000
         self._phase = stepping.PHASE
         self._install(space)
@@ -81,9 +78,10 @@ class AreaContact:
             )
         self._space: pymunk.Space | None = space
         self._store = Store()
+        self._pairs = Pairs(space, self._store, self._memory)
         self._shapes: dict[int, pymunk.Shape] = {}
         self._seen_ids = -1
-        self._buffers = pymunk.batch.Buffer(), pymunk.batch.Buffer()
+        self._watch = stepping.Watch(space)
         self._state = state = self._store.state[0]
         settings = self._settings
         state["law"] = LAWS[settings["law"]]
@@ -276,13 +274,11 @@ class AreaContact:
         """
         n = self.steps(dt)
         space = self.space
-        good = self._snapshot(0)
+        self._watch.look()
         for i in range(n):
             space.step(dt / n)
-            now = self._snapshot(1 - i % 2)
-            if not stepping.finite(now):
-                self._put_back(good, now, i, n)
-            good = now
+            if not self._watch.look():
+                raise SimulationError(f"{self._watch.put_back()}, after step {i + 1} of {n} of this frame")
         return n
 
     def steps(self, dt: float) -> int:
@@ -310,34 +306,6 @@ class AreaContact:
         stamp = lib.cpSpaceGetTimestamp(self.space._space)
         shapes = len(store.known_shapes)
         return stepping.highest_frequency(store.pool, store.tables, shapes, load_law(self._state), stamp)
-
-    def _snapshot(self, which: int) -> np.ndarray:
-        """State (bodies, 6) of all bodies in one of two buffers: a view, good until that buffer is used again."""
-        buffer = self._buffers[which]
-        buffer.clear()
-        pymunk.batch.get_space_bodies(self.space, _STATE, buffer)
-        return np.frombuffer(buffer.float_buf(), dtype=np.float64).reshape(-1, 6)
-
-    def _put_back(self, good: np.ndarray, now: np.ndarray, i: int, n: int) -> None:
-        found: list[Any] = []
-        handle = ffi.new_handle(found)
-        lib.cpSpaceEachBody(self.space._space, lib.ext_cpSpaceBodyIteratorFunc, handle)
-        bodies = [ffi.from_handle(lib.cpBodyGetUserData(body)) for body in found]
-        known = list(self.space.bodies)
-        names = [
-            f"bodies[{known.index(body)}]" if body in known else "a body"
-            for body, row in zip(bodies, now)
-            if not np.isfinite(row).all()
-        ]
-        what = "bodies were added or removed in that step, the state is as it left them"
-        if len(good) == len(now):
-            what = "all bodies were put back to the step before"
-            for body, row in zip(bodies, good):
-                body.angle, body.position = row[2], (row[0], row[1])
-                body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
-        raise SimulationError(
-            f"the state of {', '.join(names[:3])} is not finite after step {i + 1} of {n} of this frame; {what}"
-        )
 
     # --- what it shows ---
 
@@ -379,9 +347,7 @@ class AreaContact:
         if request == hook.NEW_SHAPE:
             self._register_shapes()
         elif request == hook.NEW_PAIR:
-            if self._store.tables.counters[FREE_PAIRS] == 0:
-                self._store.grow_pairs()
-            self._recall(arbiter)
+            self._pairs.prepare(arbiter)
         elif request == hook.MORE_WORK:
             self._store.grow_work()
         elif request == hook.MORE_REGIONS:
@@ -398,76 +364,12 @@ class AreaContact:
                 f"{lib.cpSpaceGetTimestamp(space._space)} of the space; it was not applied"
             )
 
-    def _pair_of(self, arbiter: pymunk.Arbiter) -> int:
-        """The pair's number in the tables, for the Python hook: kept in the arbiter, as machine code does."""
-        epoch = int(self._state["epoch"])
-        memory = address_of(arbiter._arbiter.data)
-        if memory >> 32 != epoch:
-            if self._store.tables.counters[FREE_PAIRS] == 0:
-                self._store.grow_pairs()
-            self._recall(arbiter)
-            memory = address_of(arbiter._arbiter.data)
-        if memory >> 32 != epoch:
-            a, b = hook.pair_of_shapes(arbiter)
-            pair = int(new_pair(self._store.tables, a._hashid, b._hashid))
-            memory = (epoch << 32) | pair
-            arbiter._arbiter.data = ffi.cast("void *", memory)
-        return memory & 0xFFFFFFFF
-
-    def _forget(self, arbiter: pymunk.Arbiter) -> None:
-        memory = address_of(arbiter._arbiter.data)
-        if memory >> 32 == int(self._state["epoch"]):
-            end_pair(self._store.tables, memory & 0xFFFFFFFF)
-        arbiter._arbiter.data = ffi.NULL
-
     # --- copies ---
-
-    def _remember(self) -> dict[tuple[int, int], Any]:
-        """What the contacts remember, by the two shapes' places in space.shapes: for a copy of the space."""
-        place = {shape._hashid: i for i, shape in enumerate(self.space.shapes)}
-        tables = self._store.tables
-        memory: dict[tuple[int, int], Any] = {}
-        for pair in tables.pairs:
-            key = place.get(int(pair["shape_a"])), place.get(int(pair["shape_b"]))
-            if pair["shape_a"] >= 0 and None not in key:
-                rows = []
-                r = int(pair["head"])
-                while r >= 0:
-                    rows.append(tables.regions[r].copy())
-                    r = int(tables.regions[r]["next"])
-                memory[key] = (int(pair["side_a"]), int(pair["side_b"]), rows)  # type: ignore[index]
-        return memory
-
-    def _recall(self, arbiter: pymunk.Arbiter) -> None:
-        """In a copied space: give a pair that the original knew its memory back."""
-        if not self._memory:
-            self._state["restoring"] = 0
-            return
-        shapes = list(self.space.shapes)
-        a, b = hook.pair_of_shapes(arbiter)
-        found = self._memory.pop((shapes.index(a), shapes.index(b)), None)
-        if found is None:
-            return
-        store = self._store
-        while len(found[2]) > store.tables.counters[1]:
-            store.grow_regions()
-        number = int(new_pair(store.tables, a._hashid, b._hashid))
-        pair = store.tables.pairs[number]
-        pair["side_a"], pair["side_b"] = found[:2]
-        for row in reversed(found[2]):
-            r = int(store.tables.counters[0])
-            store.tables.counters[0] = store.tables.regions[r]["next"]
-            store.tables.counters[1] -= 1
-            store.tables.regions[r] = row
-            store.tables.regions[r]["pair"] = number
-            store.tables.regions[r]["next"] = pair["head"]
-            pair["head"] = r
-        arbiter._arbiter.data = ffi.cast("void *", (int(self._state["epoch"]) << 32) | number)
 
     def __getstate__(self) -> dict[str, Any]:
         settings, memory = dict(self._settings), self._memory
         if self._space is not None:
-            memory = self._remember()
+            memory = self._pairs.remember()
             if self.stiffness > 0.0:  # what was chosen stays chosen
                 settings |= {name: float(self._state[name]) for name in ("stiffness", "rest_speed", "length")}
         return {
@@ -500,7 +402,7 @@ class Hook:
                 contact._serve(request, arbiter)
                 contact._state["request"] = hook.NOTHING
             else:
-                hook.pre_solve(arbiter, space, contact._store, contact._pair_of, contact._serve)
+                hook.pre_solve(arbiter, space, contact._store, contact._pairs.of, contact._serve)
         except Exception as error:  # cffi would print it and go on: keep it, raise it after the step
             if contact._error is None:
                 contact._error = error
@@ -508,7 +410,7 @@ class Hook:
 
     def separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         if self.contact._space is space:
-            self.contact._forget(arbiter)
+            self.contact._pairs.end(arbiter)
 
 
 def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:

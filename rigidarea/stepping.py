@@ -9,9 +9,12 @@ only conforming concave outlines have, are taken from the last step as they are 
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import pymunk
+import pymunk.batch
+from pymunk._chipmunk_cffi import ffi, lib
 
 from .kernel.force import LAW_AREA, Law
 from .kernel.jit import njit
@@ -80,6 +83,44 @@ def choose_rest_speed(space: pymunk.Space, sizes: dict[pymunk.Body, float], stif
     return REST_SPEEDS * gravity * min(softest, default=0.0)
 
 
-def finite(numbers: np.ndarray) -> bool:
-    """Whether all are finite: a sum is not, if one is not."""
-    return math.isfinite(float(numbers.sum()))
+_Fields = pymunk.batch.BodyFields
+_STATE = _Fields.POSITION | _Fields.ANGLE | _Fields.VELOCITY | _Fields.ANGULAR_VELOCITY
+
+
+class Watch:
+    """Looks at the state of all bodies after every step, and keeps the last good one: two buffers in turn, no copy."""
+
+    def __init__(self, space: pymunk.Space) -> None:
+        self._space = space
+        self._buffers = [pymunk.batch.Buffer(), pymunk.batch.Buffer()]
+
+    def look(self) -> bool:
+        """Take the present state; whether it is finite."""
+        self._buffers.reverse()
+        self._buffers[0].clear()
+        pymunk.batch.get_space_bodies(self._space, _STATE, self._buffers[0])
+        return math.isfinite(float(self._rows(0).sum()))  # a sum is not finite if one number is not
+
+    def put_back(self) -> str:
+        """Put all bodies back to the state before the last, and say which was not finite."""
+        now, good = self._rows(0), self._rows(1)
+        found: list[Any] = []
+        handle = ffi.new_handle(found)
+        lib.cpSpaceEachBody(self._space._space, lib.ext_cpSpaceBodyIteratorFunc, handle)
+        bodies = [ffi.from_handle(lib.cpBodyGetUserData(body)) for body in found]
+        known = list(self._space.bodies)
+        names = [
+            f"bodies[{known.index(body)}]" if body in known else "a body"
+            for body, row in zip(bodies, now)
+            if not np.isfinite(row).all()
+        ]
+        what = "bodies came or went in that step, so the state is as it left them"
+        if len(good) == len(now):
+            what = "all bodies were put back to the step before"
+            for body, row in zip(bodies, good):
+                body.angle, body.position = row[2], (row[0], row[1])
+                body.velocity, body.angular_velocity = (row[3], row[4]), row[5]
+        return f"the state of {', '.join(names[:3])} is not finite ({what})"
+
+    def _rows(self, which: int) -> np.ndarray:
+        return np.frombuffer(self._buffers[which].float_buf(), dtype=np.float64).reshape(-1, 6)
