@@ -277,16 +277,20 @@ def test_a_dashpot_never_reverses_the_speed_within_a_step(kernel: Any) -> None:
 
 
 def test_couple_of_a_resting_face(kernel: Any) -> None:
-    """Against the turning of one face on the other, at most F L / 6; none in an impact."""
-    couples = [
-        contact(kernel, resting=1, elasticity=0.5, turning=t).region["couple"]
-        for t in (-1e3, -1e-3, 0, 1e-3, 1e3)
-    ]
-    assert couples[2] == 0 and couples[0] == -couples[4] and couples[1] == -couples[3]
-    assert couples[4] == pytest.approx(200 * 0.5 / 6)
-    c = 2 * kernel.force.damping_ratio(0.5) * math.sqrt(1e4 * 0.5 / (0.5 + 0.3**2 * 2))
-    assert couples[3] == pytest.approx(c * 0.5**2 * 0.5 / 6 * 1e-3, rel=1e-6)  # bed c L^2 / 12, times turning
-    assert contact(kernel, resting=0, elasticity=0.5, turning=1e3).region["couple"] == 0
+    """Against the turning of one straight face on the other, at most F L / 6; none on curves, none in an impact."""
+
+    def couple(w: float, flat: float = 0.5, resting: int = 1) -> float:
+        got = contact(kernel, a=dict(w=w), x=0.0, resting=resting, elasticity=0.5, flat=flat)
+        return float(got.region["couple"])
+
+    assert couple(0.0) == 0 and couple(1e3) == -couple(-1e3) and couple(1e-3) == -couple(-1e-3)
+    assert couple(1e3) == pytest.approx(200 * 0.5 / 6)  # more would need the pressure to pull at one end
+    c = 2 * kernel.force.damping_ratio(0.5) * math.sqrt(1e4 * 0.5 / 0.5)
+    # a bed of dashpots, c in all, spread over the chord: second moment of its straight stretch
+    assert couple(1e-3) == pytest.approx(c * 0.5**2 / 12 * 1e-3, rel=1e-6)
+    assert couple(1e-3, flat=0.25) == pytest.approx(c / 0.5 * 0.25**3 / 12 * 1e-3, rel=1e-6)
+    assert couple(1e3, flat=0.0) == 0
+    assert couple(1e3, resting=0) == 0
 
 
 def test_friction_spring_then_cap(kernel: Any) -> None:
@@ -359,7 +363,7 @@ motions = st.builds(
 regions = st.fixed_dictionaries(
     dict(
         area=st.floats(1e-12, 1), x=number, y=number, chord=st.floats(1e-6, 3), spring=number, damping=positive,
-        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive, speed=number, turning=number,
+        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive, speed=number, flat=st.floats(0, 3),
         resting=st.integers(0, 1), opened=st.integers(0, 1),
     )
 )  # fmt: skip
@@ -409,8 +413,7 @@ def test_a_and_b_are_alike(kernel: Any, a: Any, b: Any, region: Any, args: Any, 
     """Exchanged, with the direction reversed: the same force the other way round."""
     one = scene(kernel, a, b, region, args, angle)
     other_args = args | dict(surface_x=-args["surface_x"], surface_y=-args["surface_y"])
-    other_region = region | dict(turning=-region["turning"])
-    two = scene(kernel, b, a, other_region, other_args, angle + math.pi)
+    two = scene(kernel, b, a, region, other_args, angle + math.pi)
     scale = 1 + np.abs(one.pull).max()
     # a speed within rounding of 0 or of the rest speed may go either way
     if one.region["resting"] == two.region["resting"] and one.region["opened"] == two.region["opened"]:
