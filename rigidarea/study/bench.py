@@ -158,7 +158,7 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
         "disc in ring": (circle(0.45, tolerance=1e-5), ring(0.5, 0.6, tolerance=1e-5), (0.0, 0.0505, 0.0)),
         "gears": (*coarse, mesh),
         "fine gears": (*fine, mesh),
-        "geneva": (driver, parts.wheel, (0.05, 0.0, parts.wheel_angle(crank) + 5e-3)),
+        "geneva": (driver, wheel, (0.05, 0.0, turned)),
         "1000-gons": (_gon(1000), _gon(1000), (1.99, 0.0, 0.0)),
     }
 

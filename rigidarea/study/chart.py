@@ -19,7 +19,9 @@ from .scene import Scene, get_scene, scenes
 from .sweep import Task, key, run_tasks
 from .timing import median_times, scene_job
 
-REPEATS, QUICK_REPEATS = 5, 3
+REPEATS, QUICK_REPEATS = 5, 2
+PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
+"""Wall time (s) after which a run is not repeated: its noise is small beside it."""
 
 
 def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
@@ -54,7 +56,9 @@ def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
     return rows
 
 
-def costs(tasks: Sequence[Task], repeats: int, store: Path | None) -> list[float]:
+def costs(
+    tasks: Sequence[Task], repeats: int, store: Path | None, patience_s: float = PATIENCE_S
+) -> list[float]:
     """Wall time per simulated second of every task, scene by scene, all settings of a scene interleaved."""
     known = {key(row["task"]): row["cost_s_per_s"] for row in read_rows(store)} if store else {}
     missing = [task for task in tasks if key(task) not in known]
@@ -63,7 +67,7 @@ def costs(tasks: Sequence[Task], repeats: int, store: Path | None) -> list[float
         scene: Scene = get_scene(name)
         here = [task for task in missing if task["scene"] == name]
         timers = [scene_job(scene, task["peer"], task["settings"]) for task in here]
-        found = [seconds / scene.duration for seconds in median_times(timers, repeats)]
+        found = [seconds / scene.duration for seconds in median_times(timers, repeats, patience_s)]
         known.update({key(task): cost for task, cost in zip(here, found, strict=True)})
         if store:
             append_rows(store, [{"task": t, "cost_s_per_s": c} for t, c in zip(here, found, strict=True)])
@@ -123,7 +127,7 @@ def chart(
         for store in stores:
             store.unlink(missing_ok=True)
     results = run_tasks(evaluate, tasks, stores[0], scheduler, workers, title="errors")
-    seconds = costs(tasks, rounds, stores[1])
+    seconds = costs(tasks, rounds, stores[1], QUICK_PATIENCE_S if quick else PATIENCE_S)
     rows = []
     for task, result, cost in zip(tasks, results, seconds, strict=True):
         scene = get_scene(task["scene"])

@@ -51,6 +51,22 @@ def add_commands(subparsers: Any) -> None:
     _sweep(atlas)
     atlas.add_argument("--map", action="append", default=[], metavar="NAME", help="only this (repeatable)")
     atlas.set_defaults(run=_atlas)
+    compare = subparsers.add_parser("compare", help="rigid, compliant and modal on the same scenes")
+    compare.add_argument("scene", nargs="*", metavar="SCENE", help="scenes (default: all)")
+    _common(compare, "compare")
+    compare.set_defaults(run=_compare)
+
+
+def _compare(arguments: argparse.Namespace) -> int:
+    from . import compare, draw_compare
+    from .records import write_csv, write_json
+
+    report, traces = compare.compare(arguments.scene, arguments.out / "cache")
+    write_json(arguments.out / "compare.json", report)
+    write_csv(arguments.out / "compare.csv", report["results"])
+    draw_compare.levels(report, traces, arguments.out)
+    write_json(arguments.json, report)
+    return 0
 
 
 def _atlas(arguments: argparse.Namespace) -> int:

@@ -45,7 +45,6 @@ def median_times(
     jobs: Sequence[Callable[[], float]],
     repeats: int,
     patience_s: float = 1.0,
-    after: Callable[[], None] | None = None,
 ) -> list[float]:
     """The median over `repeats` rounds of what each job returns (s), every round running all jobs once.
 
@@ -58,8 +57,6 @@ def median_times(
             for job, found in zip(jobs, times, strict=True):
                 if not found or sum(found) < patience_s:
                     found.append(job())
-                    if after:
-                        after()
     return [statistics.median(found) for found in times]
 
 

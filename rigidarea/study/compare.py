@@ -1,0 +1,230 @@
+"""Rigid, compliant and modal on the same scene: traces over each other, what each leaves out, what each
+costs.
+
+The mechanisms are those of `rigidarea.cases`; a cantilever hit by a ball is added, in which the contact
+lasts about half a period of the beam's first mode, so that statics cannot be enough.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from .records import Progress, Row, report
+from .scene import Array
+from .timing import one_core
+
+LEVELS = ("rigid", "compliant", "modal")
+
+Made = tuple[Any, float, float]
+"""(simulation, duration (s), step (s))."""
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A scene at three levels.
+
+    `make(level, cache)` builds it; `trace(record)` is the quantity drawn (with `label`), over `window` (s);
+    `exact(record)` is an error against an exact answer called `exact_name`, where there is one.
+    """
+
+    name: str
+    title: str
+    label: str
+    make: Callable[[str, Path | None], Made]
+    trace: Callable[[Any], Array]
+    window: tuple[float, float]
+    exact_name: str = ""
+    exact: Callable[[Any], float] | None = None
+
+
+def _pin_joint() -> Comparison:
+    from ..cases import pin_joint as case
+
+    def period(record: Any) -> float:
+        y, force = record.x[:, 0, 1], -record.force[:, 1]
+        level = y + record.v[:, 0, 1] ** 2 / (2 * case.GRAVITY)
+        return float(
+            abs(case.measure(record.t, y, force, level)["period_ms"] / case.exact()["period_ms"] - 1)
+        )
+
+    fall = math.sqrt(2 * (case.JOURNAL - case.PIN) / case.GRAVITY)
+    return Comparison(
+        "pin_joint",
+        "pin dropped in its journal",
+        "contact force (N)",
+        lambda level, cache: (case.simulation(1.0, level, "area", cache=cache), 0.3, case.STEP),
+        lambda record: -record.force[:, 1],
+        (fall - 5e-4, fall + 2.5e-3),
+        "period against the rigid bodies' exact one, relative",
+        period,
+    )
+
+
+def _geneva() -> Comparison:
+    from ..cases import geneva as case
+
+    start: dict[str, float] = {}
+
+    def make(level: str, cache: Path | None) -> Made:
+        simulation, start["angle"] = case.simulation(level, cache=cache)
+        return simulation, 1.0, case.STEP
+
+    def off(record: Any) -> Array:
+        crank = start["angle"] + case.SPEED * record.t
+        entry = np.pi / 2 - np.pi / 6
+        exact = case.ideal(6, np.clip(crank, case.first_touch(6), entry)) + np.pi / 6
+        return np.degrees(-(record.hub[:, 1] - record.hub[0, 1]) - exact)
+
+    return Comparison(
+        "geneva",
+        "Geneva drive, first index",
+        "wheel angle less the exact one (degrees)",
+        make,
+        off,
+        (0.0, 0.8),
+        "rms angle error in engagement / index angle",
+        lambda record: case.measure(record, start["angle"], 6)["rms_percent"] / 100,
+    )
+
+
+def _gearbox() -> Comparison:
+    from ..cases import gearbox as case
+
+    def transmission(record: Any) -> Array:
+        turned = record.hub - record.hub[0]
+        radius = 0.5 * case.MODULE * case.TEETH[1]
+        return 1e6 * radius * (turned[:, 1] + turned[:, 0] * case.IDEAL)
+
+    return Comparison(
+        "gearbox",
+        "gearbox 23 : 57",
+        "transmission error (µm)",
+        lambda level, cache: (case.simulation(level, 0.6, cache=cache), 0.3, case.STEP),
+        transmission,
+        (0.27, 0.28),
+        "rms error of the ratio, relative",
+        lambda record: case.measure(record)["ratio_rmse_percent"] / 100,
+    )
+
+
+LENGTH, HEIGHT, THICK, BALL, SPEED = 0.15, 0.006, 0.005, 0.008, 1.0
+"""Cantilever's length, height and thickness, ball's radius (m); the ball's speed (m/s)."""
+
+
+def _cantilever() -> Comparison:
+    from ..flexible.body import elastic_body
+    from ..flexible.element import Material
+    from ..flexible.integrate import Simulation
+    from .scene import full_circle
+
+    steel = Material(207e9, 0.29, 7800.0, THICK)
+    size, gap = 1e-3, 1e-4
+
+    def make(level: str, cache: Path | None) -> Made:
+        block, half = 0.03, HEIGHT / 2
+        corners = [(-block, -0.015), (0, -0.015), (0, -half), (LENGTH, -half)]
+        outer = np.array(corners + [(x, -y) for x, y in reversed(corners)])
+        hole = full_circle(0.008, 1e-6)[::-1] - (0.015, 0.0)
+        # held by its hole: pinned there, and its angle driven to stay 0
+        hold: dict[str, Any] = {"hub": 1, "anchor": (-0.015, 0.0), "drive": (0.0, 0.0, 0.0)}
+        beam, _ = elastic_body([outer, hole], size, steel, level, modes=30, cache=cache, **hold)
+        at = (LENGTH - BALL, half + BALL + gap)
+        ball, _ = elastic_body(
+            [full_circle(BALL, 1e-6)], size, steel, level, refine=8, modes=10, position=at, velocity=(0.0, -SPEED, 0.0),
+            cache=cache,
+        )  # fmt: skip
+        return Simulation([ball, beam], k=1e10, margin=2e-4, rho=0.8), 8e-3, 2e-6
+
+    return Comparison(
+        "cantilever",
+        "ball on a cantilever's tip",
+        "speed of the ball (m/s)",
+        make,
+        lambda record: record.v[:, 0, 1],
+        (0.0, 8e-3),
+    )
+
+
+COMPARISONS: dict[str, Callable[[], Comparison]] = {
+    "pin_joint": _pin_joint,
+    "geneva": _geneva,
+    "gearbox": _gearbox,
+    "cantilever": _cantilever,
+}
+
+
+def compare(names: Sequence[str] = (), cache: Path | None = None, repeats: int = 3) -> tuple[Row, Row]:
+    """Run every scene at every level: (report, traces).
+
+    Rows: scene, level, cost_s_per_s, setup_s, failed (why a run stopped early), departure (rms difference of the trace from the modal level's
+    in the window, over the rms of that trace), error and error_name (against an exact answer, null where
+    there is none). Traces: {scene: {level: (times, values)}} for the picture.
+    """
+    chosen = list(names) or list(COMPARISONS)
+    for name in chosen:
+        if name not in COMPARISONS:
+            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(COMPARISONS)}")
+    rows: list[Row] = []
+    traces: Row = {}
+    progress = Progress("compare", len(chosen) * len(LEVELS))
+    for name in chosen:
+        described = COMPARISONS[name]()
+        found: dict[str, tuple[Array, Array]] = {}
+        here = []
+        for level in LEVELS:
+            row, record = _level(described, level, cache, repeats)
+            found[level] = (record.t, described.trace(record))
+            here.append(row)
+            progress.step(f"{name} {level}")
+        inside = (found["modal"][0] >= described.window[0]) & (found["modal"][0] <= described.window[1])
+        reference = found["modal"][1][inside]
+        scale = float(np.sqrt(np.mean(reference**2))) or 1.0
+        for row in here:
+            values = found[row["level"]][1]
+            row["departure"] = None
+            if not row["failed"]:
+                row["departure"] = float(np.sqrt(np.mean((values[inside] - reference) ** 2))) / scale
+        rows += here
+        traces[name] = {
+            "title": described.title,
+            "label": described.label,
+            "window": described.window,
+            "levels": found,
+        }
+    return report("compare", {"scenes": chosen, "repeats": repeats}, rows), traces
+
+
+def _level(described: Comparison, level: str, cache: Path | None, repeats: int) -> tuple[Row, Any]:
+    """One level: its row without the departure, and the record of the run."""
+    begin = time.perf_counter()
+    simulation, duration, step = described.make(level, cache)
+    setup = time.perf_counter() - begin
+    seconds: list[float] = []
+    failed = ""
+    with one_core():
+        for _ in range(1 + repeats):  # the first compiles, or loads what was compiled
+            begin = time.perf_counter()
+            try:
+                record = simulation.run(duration, step)
+            except RuntimeError as error:  # it did not converge: what was computed until then is kept
+                record, failed = simulation.record, str(error)
+                break
+            seconds.append(time.perf_counter() - begin)
+            simulation, duration, step = described.make(level, cache)
+    row = {
+        "scene": described.name,
+        "level": level,
+        "cost_s_per_s": None if failed else float(np.median(seconds[1:])) / duration,
+        "setup_s": setup,
+        "error": described.exact(record) if described.exact and not failed else None,
+        "error_name": described.exact_name,
+        "failed": failed,
+    }
+    return row, record
