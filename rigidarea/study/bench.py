@@ -149,6 +149,8 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
     parts = geneva.drive()
     crank = 0.3
     driver = Outline(parts.pin.rotated(crank).rings[0])
+    wheel: Outline = parts.wheel
+    turned: float = parts.wheel_angle(crank) + 5e-3
     return {
         "boxes": (box(1, 1), box(1, 1), (0.3, 0.98, 0.1)),
         "box, slab": (box(1, 1), box(100, 1), (0.3, -0.99, 0.0)),
@@ -156,8 +158,8 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
         "64-gons": (_gon(64), _gon(64), (1.98, 0.05, 0.1)),
         "discs": (circle(0.5), circle(0.5), (0.99, 0.05, 0.0)),
         "disc in ring": (circle(0.45, tolerance=1e-5), ring(0.5, 0.6, tolerance=1e-5), (0.0, 0.0505, 0.0)),
-        "gears": (*coarse, mesh),
-        "fine gears": (*fine, mesh),
+        "gears": (coarse[0], coarse[1], mesh),
+        "fine gears": (fine[0], fine[1], mesh),
         "geneva": (driver, wheel, (0.05, 0.0, turned)),
         "1000-gons": (_gon(1000), _gon(1000), (1.99, 0.0, 0.0)),
     }

@@ -163,9 +163,9 @@ COMPARISONS: dict[str, Callable[[], Comparison]] = {
 def compare(names: Sequence[str] = (), cache: Path | None = None, repeats: int = 3) -> tuple[Row, Row]:
     """Run every scene at every level: (report, traces).
 
-    Rows: scene, level, cost_s_per_s, setup_s, failed (why a run stopped early), departure (rms difference of the trace from the modal level's
-    in the window, over the rms of that trace), error and error_name (against an exact answer, null where
-    there is none). Traces: {scene: {level: (times, values)}} for the picture.
+    Rows: scene, level, cost_s_per_s, setup_s, failed (why a run stopped early), departure (rms difference of
+    the trace from the modal level's in the window, over the rms of that trace), error and error_name (against
+    an exact answer, null where there is none). Traces: what the picture needs, by scene.
     """
     chosen = list(names) or list(COMPARISONS)
     for name in chosen:

@@ -32,7 +32,7 @@ def levels(report: Row, traces: Row, out: Path) -> list[Path]:
                 label += f", {100 * row['departure']:.2g} % off modal"
             ax.plot(1e3 * t[inside], values[inside], color=tint, ls=style, lw=width, label=label)
         ax.set(title=described["title"], xlabel="time (ms)", ylabel=described["label"])
-        ax.legend(fontsize=8)
+        ax.legend(fontsize=8, frameon=True, framealpha=0.9, edgecolor="none")
     for ax in axes.flat[len(traces) :]:
         ax.set_axis_off()
     return save(figure, out, "compare")
