@@ -1,15 +1,16 @@
 """An ordinary gearbox of two involute spur gears (the paper's section 3.5, Fig. 22–28, Table 6).
 
-Left open by the paper and chosen here: tooth heights (addendum 1, dedendum 1.25 modules, ISO 53 profile A root), bores (16
-and 30 mm), no backlash, no structural damping, step 80 µs (its Fig. 28), ρ∞ = 0.8. k = 6×10⁸ N/m² without the thickness: F = k A. E is
-207×10⁹ Pa as its Table 5 prints.
+Left open by the paper and chosen here: tooth heights (addendum 1, dedendum 1.25 modules, ISO 53 profile A root),
+bores (16 and 30 mm), no backlash, no structural damping, step 80 µs (its Fig. 28), ρ∞ = 0.8. k = 6×10⁸ N/m²
+without the thickness: F = k A. E is 207×10⁹ Pa as its Table 5 prints.
 
 With this k the teeth overlap by 0.1 to 0.2 mm, a hundred times what steel would yield: the ripple of the ratio is the
-contact spring's, excited by two or three pairs sharing the load, and depends on k, inertia and addendum much more than
-on the mesh (``variants``). Standard teeth (contact ratio 1.684) give 1.2 % whatever the mesh, the scheme, or the
+contact spring's, excited by two or three pairs sharing the load, and depends on k, inertia and addendum much more
+than on the mesh (``variants``). Standard teeth (contact ratio 1.684) give 1.2 % whatever the mesh, the scheme, or the
 code path (the pymunk hook gives the same); teeth taller by a fifth, with the contact ratio of 1.98 that the
-paper states, give 0.28 %, its plateau (``meshes_tall_teeth``). The contact ratio is therefore also measured nearly without load, where it must be the
-analytic one, and the stiffness of the teeth by FE statics with stiff contact against ISO 6336-1.
+paper states, give 0.28 %, its plateau (``meshes_tall_teeth``). The contact ratio is therefore also measured nearly
+without load, where it must be the analytic one, and the stiffness of the teeth by FE statics with stiff contact
+against ISO 6336-1.
 """
 
 from __future__ import annotations
@@ -40,12 +41,15 @@ BORES = (8e-3, 15e-3)
 CENTRES = MODULE * sum(TEETH) / 2
 IDEAL = TEETH[0] / TEETH[1]
 MESHES = (1.2, 0.9, 0.6, 0.45, 0.3)
-PAPER = {
+PAPER: dict[str, Any] = {
     "mean_ratio": 0.4035,
-    "table_6": {"mesh_mm": MESHES, "rmse_percent": [1.1388, 0.6208, 0.3137, 0.2767, 0.2753],
-                "wall_s": [48.89, 62.32, 100.28, 146.67, 219.66]},
+    "table_6": {
+        "mesh_mm": MESHES,
+        "rmse_percent": [1.1388, 0.6208, 0.3137, 0.2767, 0.2753],
+        "wall_s": [48.89, 62.32, 100.28, 146.67, 219.66],
+    },
     "contact_ratio": 1.9818,
-}  # fmt: skip
+}
 
 
 def analytic_contact_ratio(addendum: float = 1.0) -> float:
@@ -74,19 +78,34 @@ def outlines(addendum: float = 1.0, tolerance: float = 1e-7) -> tuple[Any, Any]:
 
 
 def simulation(
-    mode: str, mesh_mm: float, contact: str = "area", *, k: float = K, damper: float = DAMPER, addendum: float = 1.0,
+    mode: str,
+    mesh_mm: float,
+    contact: str = "area",
+    *,
+    k: float = K,
+    damper: float = DAMPER,
+    addendum: float = 1.0,
     q: float = 1.0,
-    refine: int = REFINE, modes: int = 40, cache: Path | None = None,
-) -> Simulation:  # fmt: skip
+    refine: int = REFINE,
+    modes: int = 40,
+    cache: Path | None = None,
+) -> Simulation:
     """The gearbox, teeth centred in mesh at rest."""
     pinion, wheel = outlines(addendum)
     keys: dict[str, Any] = {"hub": 1, "refine": refine, "modes": modes, "cache": cache}
     size = 1e-3 * mesh_mm
     a, _ = elastic_body(pinion.rings, size, STEEL, mode, anchor=(0.0, 0.0), drive=(0.0, SPEED, RAMP), **keys)
     b, _ = elastic_body(
-        wheel.rings, size, STEEL, mode, anchor=(CENTRES, 0.0), position=(CENTRES, 0.0),
-        angle=np.pi + np.pi / TEETH[1], damper=damper, **keys,
-    )  # fmt: skip
+        wheel.rings,
+        size,
+        STEEL,
+        mode,
+        anchor=(CENTRES, 0.0),
+        position=(CENTRES, 0.0),
+        angle=np.pi + np.pi / TEETH[1],
+        damper=damper,
+        **keys,
+    )
     return Simulation([a, b], [(0, 1)], k=k, q=q, contact=contact, reach=5e-4, margin=3e-4, rho=RHO)
 
 
@@ -96,13 +115,22 @@ def through_hook(duration: float) -> Record:
 
     pinion, wheel = outlines()
     return turn(
-        pinion, wheel, (CENTRES, 0.0), STEEL.density * THICKNESS, (0.0, np.pi + np.pi / TEETH[1]),
-        lambda t: SPEED * min(t / RAMP, 1.0), K, DAMPER, duration, STEP,
-    )  # fmt: skip
+        pinion,
+        wheel,
+        (CENTRES, 0.0),
+        STEEL.density * THICKNESS,
+        (0.0, np.pi + np.pi / TEETH[1]),
+        lambda t: SPEED * min(t / RAMP, 1.0),
+        K,
+        DAMPER,
+        duration,
+        STEP,
+    )
 
 
 def measure(r: Record) -> dict[str, Any]:
-    """Steady state, from the end of the ramp: ratio (Eq. 42), pressure angle, pairs in contact, transmission error."""
+    """Steady state, from the end of the ramp: ratio (Eq. 42), pressure angle, pairs in contact, transmission
+    error."""
     steady = r.t >= RAMP
     ratio = -r.hub_rate[steady, 1] / r.hub_rate[steady, 0]
     force = r.force[steady]
@@ -132,7 +160,8 @@ def measure(r: Record) -> dict[str, Any]:
 def light_load(points: int = 200, depth: float = 1e-8) -> dict[str, Any]:
     """Rigid gears turned through two pitches under a vanishing load: contact ratio, load sharing, kinematic error.
 
-    At each pinion angle the wheel is turned until the force reaches that of one pair pressed in by ``depth`` (length).
+    At each pinion angle the wheel is turned until the force reaches that of one pair pressed in by ``depth``
+    (length).
     """
     from scipy.optimize import brentq
 
@@ -163,20 +192,32 @@ def light_load(points: int = 200, depth: float = 1e-8) -> dict[str, Any]:
     angles = pitch * np.arange(points) / points
     for phi in angles:
         start = np.pi + np.pi / TEETH[1] - phi * IDEAL
-        turn = brentq(lambda x, phi=phi, start=start: evaluate(phi, start + x).sum() - wanted, -4e-6 / base, 8e-6 / base, xtol=1e-14)  # fmt: skip
+        turn = brentq(
+            lambda x, phi=phi, start=start: evaluate(phi, start + x).sum() - wanted,
+            -4e-6 / base,
+            8e-6 / base,
+            xtol=1e-14,
+        )
         f = evaluate(phi, start + turn)
         pairs.append(int((f > 1e-9 * f.sum()).sum()))
         share.append(float(f.max() / f.sum()))
         error.append(turn * base)
-    return {"contact_ratio": float(np.mean(pairs)), "largest_share_mean": float(np.mean(share)),
-            "single_pair_fraction": float(np.mean(np.array(pairs) == 1)), "kinematic_error_um": 1e6 * float(np.ptp(error)),
-            "angle": angles, "share": share, "pairs": pairs}  # fmt: skip
+    return {
+        "contact_ratio": float(np.mean(pairs)),
+        "largest_share_mean": float(np.mean(share)),
+        "single_pair_fraction": float(np.mean(np.array(pairs) == 1)),
+        "kinematic_error_um": 1e6 * float(np.ptp(error)),
+        "angle": angles,
+        "share": share,
+        "pairs": pairs,
+    }
 
 
 def mesh_stiffness(
     mesh_mm: float = 0.6, load: float = 100e3, points: int = 8, cache: Path | None = None
 ) -> dict[str, Any]:
-    """FE statics with stiff contact: mean transmission error under ``load`` (force a width) against ISO 6336-1 method B.
+    """FE statics with stiff contact: mean transmission error under ``load`` (force a width) against ISO 6336-1
+    method B.
 
     c' = 0.8/q' with q' = 0.04723 + 0.15551/z₁ + 0.25791/z₂ mm µm/N for standard teeth on solid discs, and
     c_γ = c' (0.75 ε_α + 0.25); the basic-rack factor of a dedendum of 1.25 modules is 0.975.
@@ -216,8 +257,15 @@ def mesh_stiffness(
     single = 0.8 / (0.04723 + 0.15551 / TEETH[0] + 0.25791 / TEETH[1]) * 0.975
     iso = single * (0.75 * analytic_contact_ratio() + 0.25)
     fe = 1e-9 * load / float(np.mean(error))
-    return {"fe_single_n_per_mm_um": 1e-9 * load / max(error), "iso_6336_single_n_per_mm_um": single, "fe_n_per_mm_um": fe, "iso_6336_n_per_mm_um": iso, "difference_percent": 100 * (fe / iso - 1),
-            "transmission_error_static_um": 1e6 * float(np.ptp(error)), "error_um": [1e6 * float(e) for e in error]}  # fmt: skip
+    return {
+        "fe_single_n_per_mm_um": 1e-9 * load / max(error),
+        "iso_6336_single_n_per_mm_um": single,
+        "fe_n_per_mm_um": fe,
+        "iso_6336_n_per_mm_um": iso,
+        "difference_percent": 100 * (fe / iso - 1),
+        "transmission_error_static_um": 1e6 * float(np.ptp(error)),
+        "error_um": [1e6 * float(e) for e in error],
+    }
 
 
 def timed(sim: Simulation, duration: float, h: float) -> tuple[Record, dict[str, float]]:
@@ -228,9 +276,14 @@ def timed(sim: Simulation, duration: float, h: float) -> tuple[Record, dict[str,
 
 
 def run(
-    mode: str = "compliant", mesh_mm: float = 0.6, contact: str = "area", out: Path | None = None,
-    cache: Path | None = None, duration: float = 0.5, sweeps: bool = True,
-) -> dict[str, Any]:  # fmt: skip
+    mode: str = "compliant",
+    mesh_mm: float = 0.6,
+    contact: str = "area",
+    out: Path | None = None,
+    cache: Path | None = None,
+    duration: float = 0.5,
+    sweeps: bool = True,
+) -> dict[str, Any]:
     """One gearbox run, then the paper's sweeps over mesh, step and damper, each beside the paper's numbers."""
     clock = report.Clock()
     sim = simulation(mode, mesh_mm, contact, cache=cache)
@@ -269,13 +322,24 @@ def run(
         results["meshes_tall_teeth"] = rows
         report.say("gearbox: fine profile, variants, steps, damper")
         variants = []
-        for name, keys in (
-            ("fine profile", {}), ("q = 2", {"q": 2.0}), ("k / 4", {"k": K / 4}), ("4 k", {"k": 4 * K}), ("addendum 1.1", {"addendum": 1.1}),
-            ("addendum 1.2", {"addendum": 1.2}), ("damper / 2", {"damper": DAMPER / 2}),
-        ):  # fmt: skip
+        changes: tuple[tuple[str, dict[str, Any]], ...] = (
+            ("fine profile", {}),
+            ("q = 2", {"q": 2.0}),
+            ("k / 4", {"k": K / 4}),
+            ("4 k", {"k": 4 * K}),
+            ("addendum 1.1", {"addendum": 1.1}),
+            ("addendum 1.2", {"addendum": 1.2}),
+            ("damper / 2", {"damper": DAMPER / 2}),
+        )
+        for name, keys in changes:
             record, _ = timed(simulation("rigid", 0.6, contact, refine=10, **keys), duration, STEP)
-            variants.append({"variant": name, "contact_ratio_analytic": analytic_contact_ratio(keys.get("addendum", 1.0)),
-                             **measure(record)})  # fmt: skip
+            variants.append(
+                {
+                    "variant": name,
+                    "contact_ratio_analytic": analytic_contact_ratio(keys.get("addendum", 1.0)),
+                    **measure(record),
+                }
+            )
         results["variants"] = variants
         steps = []
         for h in (1e-5, 2e-5, 5e-5, 8e-5, 1e-4, 2e-4, 4e-4):
@@ -286,8 +350,7 @@ def run(
                 steps.append({"step_s": h, "failed": str(error)})
                 continue
             # a tooth pair is in contact for contact-ratio pitches; the contact spring's own period is 6 to 7 ms
-            steps.append({"step_s": h, **seconds, **measure(record),
-                          "under_resolved": bool(h > RESOLVED)})  # fmt: skip
+            steps.append({"step_s": h, **seconds, **measure(record), "under_resolved": bool(h > RESOLVED)})
             if h in (5e-5, 8e-5):
                 curves[f"iterations {h:g}"] = record
         results["steps"] = steps
@@ -304,8 +367,18 @@ def run(
         results["mesh_stiffness"] = mesh_stiffness(cache=cache)
     if out is not None:
         _figures(out, results, curves, sim)
-    settings = {"mode": mode, "mesh_mm": mesh_mm, "contact": contact, "k": K, "damper": DAMPER, "step_s": STEP, "rho": RHO,
-                "addendum_modules": 1.0, "dedendum_modules": 1.25, "bores_m": BORES}  # fmt: skip
+    settings = {
+        "mode": mode,
+        "mesh_mm": mesh_mm,
+        "contact": contact,
+        "k": K,
+        "damper": DAMPER,
+        "step_s": STEP,
+        "rho": RHO,
+        "addendum_modules": 1.0,
+        "dedendum_modules": 1.25,
+        "bores_m": BORES,
+    }
     return report.result("gearbox", settings, results, PAPER, clock, duration)
 
 
@@ -345,11 +418,21 @@ def _figures(out: Path, results: dict[str, Any], curves: dict[str, Any], sim: Si
     for f, nx, ny, x, y in r.regions[-1]:
         if f > 0:
             for sign, colour in ((1, report.BLUE), (-1, report.RED)):
-                ax.annotate("", (1e3 * x + sign * 0.05 * f * nx, 1e3 * y + sign * 0.05 * f * ny), (1e3 * x, 1e3 * y),
-                            arrowprops={"arrowstyle": "->", "color": colour, "lw": 2})  # fmt: skip
+                ax.annotate(
+                    "",
+                    (1e3 * x + sign * 0.05 * f * nx, 1e3 * y + sign * 0.05 * f * ny),
+                    (1e3 * x, 1e3 * y),
+                    arrowprops={"arrowstyle": "->", "color": colour, "lw": 2},
+                )
             ax.text(1e3 * x + 0.5, 1e3 * y, f"{f:.0f} N", fontsize=8)
-    ax.set(xlim=(12, 34), ylim=(-9, 9), aspect="equal", xlabel="x (mm)", ylabel="y (mm)",
-           title="contact forces: blue on the wheel, red on the pinion (1 mm = 20 N)")  # fmt: skip
+    ax.set(
+        xlim=(12, 34),
+        ylim=(-9, 9),
+        aspect="equal",
+        xlabel="x (mm)",
+        ylabel="y (mm)",
+        title="contact forces: blue on the wheel, red on the pinion (1 mm = 20 N)",
+    )
     report.save(fig, out, "gearbox_fig23")
     fig, ax = report.figure(9, 4)
     light = curves["light"]
@@ -360,10 +443,19 @@ def _figures(out: Path, results: dict[str, Any], curves: dict[str, Any], sim: Si
         color=report.BLUE,
         label="pairs",
     )
-    ax.plot(np.array(light["angle"]) * TEETH[0] / (2 * np.pi), light["share"], ".-", color=report.ORANGE,
-            label="largest share of the load")  # fmt: skip
-    ax.set(xlabel="pinion angle (pitches)", ylabel="pairs, share", title=f"light load: contact ratio {light['contact_ratio']:.3f},"
-           f" analytic {results['contact_ratio_analytic']:.3f}")  # fmt: skip
+    ax.plot(
+        np.array(light["angle"]) * TEETH[0] / (2 * np.pi),
+        light["share"],
+        ".-",
+        color=report.ORANGE,
+        label="largest share of the load",
+    )
+    ax.set(
+        xlabel="pinion angle (pitches)",
+        ylabel="pairs, share",
+        title=f"light load: contact ratio {light['contact_ratio']:.3f},"
+        f" analytic {results['contact_ratio_analytic']:.3f}",
+    )
     ax.legend()
     report.save(fig, out, "gearbox_load_sharing")
     if "meshes" not in results:
@@ -388,8 +480,13 @@ def _figures(out: Path, results: dict[str, Any], curves: dict[str, Any], sim: Si
         report.BLACK,
     )
     tall = results["meshes_tall_teeth"]
-    ax.plot([m["mesh_mm"] for m in tall], [m["ratio_rmse_percent"] for m in tall], "^-", color=report.RED,
-            label=f"ours, contact ratio 1.98 (addendum {tall[0]['addendum_modules']:.2f} m)")  # fmt: skip
+    ax.plot(
+        [m["mesh_mm"] for m in tall],
+        [m["ratio_rmse_percent"] for m in tall],
+        "^-",
+        color=report.RED,
+        label=f"ours, contact ratio 1.98 (addendum {tall[0]['addendum_modules']:.2f} m)",
+    )
     for v, colour in zip(results["variants"], palette, strict=False):
         if v["ratio_rmse_percent"] > 3:
             continue  # teeth that lift off: off the scale

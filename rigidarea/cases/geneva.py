@@ -1,12 +1,12 @@
 """A Geneva mechanism (the paper's section 3.4, Fig. 15–20, Tables 3 and 4).
 
-Left open by the paper and chosen here: the crank's start angle (so that first contact is due at the paper's 0.0329 s),
-the wheel's rim (no locking arc takes part in the contact: as in the paper, the damper alone holds the wheel), a bore
-of 8 mm, step 0.2 ms, ρ∞ = 0.8, no structural damping. The driver is its pin, an elastic disc on a rigid crank. E is
-207×10⁸ Pa as its Table 4 prints; k = 6×10⁸ N/m² without the thickness.
+Left open by the paper and chosen here: the crank's start angle (so that first contact is due at the paper's 0.0329
+s), the wheel's rim (no locking arc takes part in the contact: as in the paper, the damper alone holds the wheel),
+a bore of 8 mm, step 0.2 ms, ρ∞ = 0.8, no structural damping. The driver is its pin, an elastic disc on a rigid
+crank. E is 207×10⁸ Pa as its Table 4 prints; k = 6×10⁸ N/m² without the thickness.
 
-Eq. 41 divides by 1/φ_eff, which is no number: errors are given as a part of the index angle 2π/n, and beside it as a part
-of the mean |φ_eff|.
+Eq. 41 divides by 1/φ_eff, which is no number: errors are given as a part of the index angle 2π/n, and beside it as
+a part of the mean |φ_eff|.
 """
 
 from __future__ import annotations
@@ -32,7 +32,12 @@ K, DAMPER, SPEED, STEP, RHO = 6e8, 0.1, np.pi, 2e-4, 0.8
 DUE = 0.0329  # s, the paper's time of first contact
 MESH = 1.0  # mm
 REFINE = 16  # contact points a mesh edge: on the pin a sagitta of 0.1 µm
-PAPER = {"rms_percent": 1.13, "contact_due_s": 0.0329, "contact_s": 0.0414, "contact_delay_ms": 8.5}
+PAPER: dict[str, Any] = {
+    "rms_percent": 1.13,
+    "contact_due_s": 0.0329,
+    "contact_s": 0.0414,
+    "contact_delay_ms": 8.5,
+}
 
 
 def ideal(slots: int, theta: Array) -> Array:
@@ -49,13 +54,18 @@ def first_touch(slots: int) -> float:
 
     entry = 0.5 * np.pi - np.pi / slots
     rest = -np.pi / slots
-    return float(brentq(lambda x: ideal(slots, np.array(x)) - rest, -entry, -0.5 * entry, xtol=1e-14))
+    return float(brentq(lambda x: float(ideal(slots, np.array(x))) - rest, -entry, -0.5 * entry, xtol=1e-14))
 
 
 def simulation(
-    mode: str, mesh_mm: float = MESH, contact: str = "area", slots: int = 6, refine: int = REFINE, k: float = K,
+    mode: str,
+    mesh_mm: float = MESH,
+    contact: str = "area",
+    slots: int = 6,
+    refine: int = REFINE,
+    k: float = K,
     cache: Path | None = None,
-) -> tuple[Simulation, float]:  # fmt: skip
+) -> tuple[Simulation, float]:
     """The mechanism at rest, and the crank's start angle."""
     drive = geneva(slots, CENTRES, PIN, CLEARANCE, bore=0.004, tolerance=2e-8)
     r = drive.crank_radius
@@ -65,14 +75,30 @@ def simulation(
     size = 1e-3 * mesh_mm
     at = (r * np.cos(start), r * np.sin(start))
     pin, _ = elastic_body(
-        [pin_ring], size, STEEL, mode, position=at, angle=start, anchor=(0.0, 0.0), drive=(start, SPEED, 0.0),
-        velocity=(-SPEED * at[1], SPEED * at[0], SPEED), **keys,
-    )  # fmt: skip
+        [pin_ring],
+        size,
+        STEEL,
+        mode,
+        position=at,
+        angle=start,
+        anchor=(0.0, 0.0),
+        drive=(start, SPEED, 0.0),
+        velocity=(-SPEED * at[1], SPEED * at[0], SPEED),
+        **keys,
+    )
     pin.hub = (-r, 0.0)  # the crank's axis: the pin's frame is carried rigidly
     wheel, _ = elastic_body(
-        drive.wheel.rings, size, STEEL, mode, hub=1, anchor=(CENTRES, 0.0), position=(CENTRES, 0.0),
-        angle=drive.wheel_angle(-drive.entry_angle), damper=DAMPER, **keys,
-    )  # fmt: skip
+        drive.wheel.rings,
+        size,
+        STEEL,
+        mode,
+        hub=1,
+        anchor=(CENTRES, 0.0),
+        position=(CENTRES, 0.0),
+        angle=drive.wheel_angle(-drive.entry_angle),
+        damper=DAMPER,
+        **keys,
+    )
     return Simulation([pin, wheel], [(0, 1)], k=k, contact=contact, reach=2e-4, margin=2e-4, rho=RHO), start
 
 
@@ -83,9 +109,17 @@ def through_hook(duration: float, slots: int = 6) -> Record:
     drive = geneva(slots, CENTRES, PIN, CLEARANCE, bore=0.004, tolerance=2e-8)
     start = first_touch(slots) - SPEED * DUE
     return turn(
-        drive.pin, drive.wheel, (CENTRES, 0.0), STEEL.density * THICKNESS, (start, drive.wheel_angle(-drive.entry_angle)),
-        lambda t: SPEED, K, DAMPER, duration, STEP,
-    )  # fmt: skip
+        drive.pin,
+        drive.wheel,
+        (CENTRES, 0.0),
+        STEEL.density * THICKNESS,
+        (start, drive.wheel_angle(-drive.entry_angle)),
+        lambda t: SPEED,
+        K,
+        DAMPER,
+        duration,
+        STEP,
+    )
 
 
 def measure(r: Record, start: float, slots: int) -> dict[str, Any]:
@@ -132,9 +166,13 @@ def measure(r: Record, start: float, slots: int) -> dict[str, Any]:
 
 
 def run(
-    mode: str = "compliant", mesh_mm: float = MESH, contact: str = "area", out: Path | None = None,
-    cache: Path | None = None, duration: float = 10.0,
-) -> dict[str, Any]:  # fmt: skip
+    mode: str = "compliant",
+    mesh_mm: float = MESH,
+    contact: str = "area",
+    out: Path | None = None,
+    cache: Path | None = None,
+    duration: float = 10.0,
+) -> dict[str, Any]:
     """Six slots over 10 s; then 4, 5 and 8 slots, stiffer contacts, and the sweep of steps (1 s each)."""
     clock = report.Clock()
     sim, start = simulation(mode, mesh_mm, contact, cache=cache)
@@ -162,15 +200,31 @@ def run(
             steps.append({"step_s": h, "failed": str(error)})
             continue
         # at first touch the pin closes the play within a few ms: fewer than ten steps do not resolve it
-        steps.append({"step_s": h, "run_s": time.perf_counter() - begin, "under_resolved": bool(h > RESOLVED),
-                      "steps_halved": int(record.halved.sum()), **measure(record, a, 6)})  # fmt: skip
+        steps.append(
+            {
+                "step_s": h,
+                "run_s": time.perf_counter() - begin,
+                "under_resolved": bool(h > RESOLVED),
+                "steps_halved": int(record.halved.sum()),
+                **measure(record, a, 6),
+            }
+        )
         if h in (2e-4, 5e-4, 8e-4):
             histories[h] = record
     results["steps"] = steps
     if out is not None:
         _figures(out, r, start, sim, results, histories)
-    settings = {"mode": mode, "mesh_mm": mesh_mm, "contact": contact, "k": K, "damper": DAMPER, "step_s": STEP, "rho": RHO,
-                "start_angle_deg": float(np.degrees(start)), "refine": REFINE}  # fmt: skip
+    settings = {
+        "mode": mode,
+        "mesh_mm": mesh_mm,
+        "contact": contact,
+        "k": K,
+        "damper": DAMPER,
+        "step_s": STEP,
+        "rho": RHO,
+        "start_angle_deg": float(np.degrees(start)),
+        "refine": REFINE,
+    }
     return report.result("geneva", settings, results, PAPER, clock, duration)
 
 
@@ -219,8 +273,16 @@ def _figures(
         first_ring = np.append(first_ring, first_ring[0])
         ax.plot(1e3 * p[first_ring, 0], 1e3 * p[first_ring, 1], "-", lw=1, color=colour)
         on = w.touched[: w.touched[-1]]
-        ax.quiver(1e3 * w.position[on, 0], 1e3 * w.position[on, 1], w.point_load[on, 0], w.point_load[on, 1], color=colour,
-                  width=0.003, label=name, scale=6 * np.abs(w.point_load).max())  # fmt: skip
+        ax.quiver(
+            1e3 * w.position[on, 0],
+            1e3 * w.position[on, 1],
+            w.point_load[on, 0],
+            w.point_load[on, 1],
+            color=colour,
+            width=0.003,
+            label=name,
+            scale=6 * np.abs(w.point_load).max(),
+        )
     x, y = 1e3 * s.state.x[0, :2]
     ax.set(
         xlim=(x - 5, x + 5),

@@ -32,7 +32,12 @@ Array = NDArray[np.float64]
 RADIUS, YOUNG, POISSON, FORCE = 8.0, 200.0, 0.3, 10.0
 MODULUS = YOUNG / (2 * (1 - POISSON**2))  # Eq. 28
 STIFF = 1e2 * MODULUS  # predicted: penetration p/k is 1/200 of the approach; 10 times more changes a by 0.1 %
-PAPER = {"p_max_pa": 6.59, "p_max_theory_pa": 6.61, "half_width_m": 0.97, "p_max_error_percent": 0.37}
+PAPER: dict[str, Any] = {
+    "p_max_pa": 6.59,
+    "p_max_theory_pa": 6.61,
+    "half_width_m": 0.97,
+    "p_max_error_percent": 0.37,
+}
 
 
 def half_width(radius: float) -> float:
@@ -41,7 +46,8 @@ def half_width(radius: float) -> float:
 
 
 def calibrated(nodes: int, a: float) -> dict[str, Any]:
-    """The paper's benchmark for discs of ``nodes`` boundary nodes: pressures of its Alg. 3 and of the balanced one."""
+    """The paper's benchmark for discs of ``nodes`` boundary nodes: pressures of its Alg. 3 and of the balanced
+    one."""
     t = 2 * np.pi * np.arange(nodes) / nodes
     ring = RADIUS * np.column_stack([np.cos(t), np.sin(t)])
     disc = build([ring])
@@ -58,7 +64,7 @@ def calibrated(nodes: int, a: float) -> dict[str, Any]:
     n_a, n_b = arcs(disc, wa, pose_a, none, disc, wb, pose_b, none, region, 1, s.x, s.y, s.edge, s.t)
     arc = np.column_stack([s.x[0, : n_a + 1], s.y[0, : n_a + 1]])
     other = np.column_stack([s.x[1, : n_b + 1], s.y[1, : n_b + 1]])
-    normal, distance, tributary, weight = nodal.literal(arc, other, 0.5)
+    normal, distance, _, weight = nodal.literal(arc, other, 0.5)
     centroid = np.array([0.5 * region["chord"], 0.0])
     # in the chord frame the force on A points to +y
     normal_a = -normal * np.sign(normal[:, 1:2]) * -1.0
@@ -121,10 +127,16 @@ def predicted(division: int, full: bool = False, cache: Path | None = None) -> d
     slope, square = np.polyfit(x[keep] ** 2, s.pressure[keep] ** 2, 1, w=np.sqrt(s.weight[keep]))
     width, top = np.sqrt(-square / slope), np.sqrt(square)
     return {
-        "division": division, "nodes": nodes, "approach_m": d1, "half_width_m": float(width), "p_max_pa": float(top),
-        "half_width_error_percent": 100 * float(width / theory - 1), "p_max_error_percent": 100 * float(top / peak - 1),
-        "x": x, "pressure": s.pressure,
-    }  # fmt: skip
+        "division": division,
+        "nodes": nodes,
+        "approach_m": d1,
+        "half_width_m": float(width),
+        "p_max_pa": float(top),
+        "half_width_error_percent": 100 * float(width / theory - 1),
+        "p_max_error_percent": 100 * float(top / peak - 1),
+        "x": x,
+        "pressure": s.pressure,
+    }
 
 
 def run(
@@ -141,13 +153,18 @@ def run(
         rows = []
         for n in counts:
             c = curves[name, n] = calibrated(n, a)
-            rows.append({
-                "nodes": n, "element_m": 2 * RADIUS * np.sin(np.pi / n), "half_width_m": c["half_width_m"],
-                "force_n": c["force_n"], "p_max_pa": float(c["pressure_balanced"].max()),
-                "p_max_error_percent": 100 * abs(float(c["pressure_balanced"].max()) / peak - 1),
-                "p_max_pa_literal": float(c["pressure"].max()),
-                "p_max_error_percent_literal": 100 * abs(float(c["pressure"].max()) / peak - 1),
-            })  # fmt: skip
+            rows.append(
+                {
+                    "nodes": n,
+                    "element_m": 2 * RADIUS * np.sin(np.pi / n),
+                    "half_width_m": c["half_width_m"],
+                    "force_n": c["force_n"],
+                    "p_max_pa": float(c["pressure_balanced"].max()),
+                    "p_max_error_percent": 100 * abs(float(c["pressure_balanced"].max()) / peak - 1),
+                    "p_max_pa_literal": float(c["pressure"].max()),
+                    "p_max_error_percent_literal": 100 * abs(float(c["pressure"].max()) / peak - 1),
+                }
+            )
         # circles are no parabolas: the error has a floor of order (a/R)², so orders are fitted to each one's own limit
         order = {}
         for kind in ("", "_literal"):
@@ -171,7 +188,7 @@ def run(
                 "force_n",
                 "p_max_error_percent_literal",
             )
-        },  # fmt: skip
+        },
         "nodes": 5000,
         "predicted_half_width_error_percent": best["half_width_error_percent"],
         "predicted_p_max_error_percent": best["p_max_error_percent"],
@@ -181,8 +198,15 @@ def run(
     }
     if out is not None:
         _figures(out, readings, curves, best)
-    settings = {"radius_m": RADIUS, "young_pa": YOUNG, "poisson": POISSON, "force_n": FORCE, "q": 0.5,
-                "stiffness_predicted_pa_per_m": STIFF, "divisions": list(divisions)}  # fmt: skip
+    settings = {
+        "radius_m": RADIUS,
+        "young_pa": YOUNG,
+        "poisson": POISSON,
+        "force_n": FORCE,
+        "q": 0.5,
+        "stiffness_predicted_pa_per_m": STIFF,
+        "divisions": list(divisions),
+    }
     return report.result("hertz", settings, results, PAPER, clock, 0.0)
 
 
@@ -207,8 +231,11 @@ def _figures(out: Path, readings: dict[str, Any], curves: dict[Any, Any], best: 
                 label=f"Alg. 3, {n} nodes",
                 fillstyle="none",
             )
-        ax.set(xlabel="x (m)", ylabel="contact pressure (Pa)",
-               title={"equations": "R* = R/2, as Eq. 27 says", "printed": "R* = R, as the paper prints"}[name])  # fmt: skip
+        ax.set(
+            xlabel="x (m)",
+            ylabel="contact pressure (Pa)",
+            title={"equations": "R* = R/2, as Eq. 27 says", "printed": "R* = R, as the paper prints"}[name],
+        )
         ax.legend(loc="lower center")
     axes[0].plot(best["x"], best["pressure"], "-", color=report.ORANGE, lw=1, label="predicted, FE statics")
     axes[0].legend(loc="lower center")
@@ -217,11 +244,22 @@ def _figures(out: Path, readings: dict[str, Any], curves: dict[Any, Any], best: 
     for name, colour in (("equations", report.BLUE), ("printed", report.RED)):
         rows = readings[name]["meshes"]
         h = [r["element_m"] for r in rows]
-        ax.loglog(h, [r["p_max_error_percent_literal"] for r in rows], "o--", color=colour, fillstyle="none",
-                  label=f"Alg. 3 literally, a = {readings[name]['half_width_theory_m']:.3f} m,"
-                        f" order {readings[name]['order_literal']:.2f}")  # fmt: skip
-        ax.loglog(h, [r["p_max_error_percent"] for r in rows], "s-", color=colour,
-                  label=f"balanced, same a, order {readings[name]['order']:.2f}")  # fmt: skip
+        ax.loglog(
+            h,
+            [r["p_max_error_percent_literal"] for r in rows],
+            "o--",
+            color=colour,
+            fillstyle="none",
+            label=f"Alg. 3 literally, a = {readings[name]['half_width_theory_m']:.3f} m,"
+            f" order {readings[name]['order_literal']:.2f}",
+        )
+        ax.loglog(
+            h,
+            [r["p_max_error_percent"] for r in rows],
+            "s-",
+            color=colour,
+            label=f"balanced, same a, order {readings[name]['order']:.2f}",
+        )
     ax.axhline(0.37, color=report.BLACK, ls=":", label="the paper: 0.37 %")
     ax.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
     ax.legend()

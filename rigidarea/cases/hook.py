@@ -26,7 +26,8 @@ def turn(
     duration: float,
     h: float,
 ) -> Record:
-    """Steps ``driver`` (about the origin) at ``speed(t)`` against ``wheel``, pivoted at ``at``, with a torsional damper.
+    """Steps ``driver`` (about the origin) at ``speed(t)`` against ``wheel``, pivoted at ``at``, with a torsional
+    damper.
 
     density: mass an area. angles: of driver and wheel at t = 0. Frictionless, undamped contact: F = stiffness · A.
     """
@@ -62,6 +63,18 @@ def turn(
     kinetic = 0.5 * driven.moment * v[:, 1, 2] ** 2
     one, none = np.ones(n), np.zeros(n)
     return Record(
-        h * np.arange(1, n + 1), x, v, x[:, :, 2], v[:, :, 2], force, regions, one, none, none, kinetic,
-        np.zeros(0), np.zeros(0), n,
-    )  # fmt: skip
+        h * np.arange(1.0, n + 1.0),
+        x,
+        v,
+        x[:, :, 2],
+        v[:, :, 2],
+        force,
+        regions,
+        one,
+        none,
+        none,
+        kinetic,
+        np.zeros(0),
+        np.zeros(0),
+        n,
+    )

@@ -1,13 +1,13 @@
 """Patch test: a block pressed into a wider one (the paper's section 3.3, Fig. 11–13).
 
-Left open by the paper and chosen here: block sizes (40 × 20 mm on 80 × 30 mm), k (5×10⁷ N/m²), node positions. Displacements
-are prescribed (gaps of 2 and 6 mm), on a uniform, a defined non-uniform and a random mesh.
+Left open by the paper and chosen here: block sizes (40 × 20 mm on 80 × 30 mm), k (5×10⁷ N/m²), node positions.
+Displacements are prescribed (gaps of 2 and 6 mm), on a uniform, a defined non-uniform and a random mesh.
 
 Measured on the nodal pressures: their spread on each body, the ratio of the two bodies' means, and how far the
 nodal forces are from the global force and from zero moment about the centroid. The paper's own Alg. 3 stands beside
-ours (its pressures differ between the bodies because crossing points carry no force and vertical sides carry some). And
-the test behind the name: under the nodal forces, with the same pressure on its upper side, the stress of the upper
-block must be uniform.
+ours (its pressures differ between the bodies because crossing points carry no force and vertical sides carry
+some). And the test behind the name: under the nodal forces, with the same pressure on its upper side, the stress
+of the upper block must be uniform.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 SLAVE, MASTER, K = (0.040, 0.020), (0.080, 0.030), 5e7
 GAPS = (0.002, 0.006)
 MESHES = ("uniform", "defined", "random")
-PAPER = {"pressure_spread_pa": 1e-2, "master_equals_slave": False}
+PAPER: dict[str, Any] = {"pressure_spread_pa": 1e-2, "master_equals_slave": False}
 
 
 def face(width: float, mesh: str, count: int, seed: int) -> Array:
@@ -54,10 +54,14 @@ def block(size: tuple[float, float], top: Array | None, bottom: Array | None, st
     lower = even if bottom is None else bottom
     upper = even if top is None else top
     side = np.linspace(0, h, max(2, round(h / step) + 1))[1:-1]
-    return np.vstack([
-        np.column_stack([lower, 0 * lower]), np.column_stack([0 * side + 0.5 * w, side]),
-        np.column_stack([upper[::-1], 0 * upper + h]), np.column_stack([0 * side - 0.5 * w, side[::-1]]),
-    ])  # fmt: skip
+    return np.vstack(
+        [
+            np.column_stack([lower, 0 * lower]),
+            np.column_stack([0 * side + 0.5 * w, side]),
+            np.column_stack([upper[::-1], 0 * upper + h]),
+            np.column_stack([0 * side - 0.5 * w, side[::-1]]),
+        ]
+    )
 
 
 def rings(mesh: str) -> tuple[Array, Array]:
@@ -92,10 +96,12 @@ def press(gap: float, mesh: str) -> dict[str, Any]:
         balance.append(np.abs(f.sum(0) - sign * force).max() / r["force"])
         moments.append(abs((arm[:, 0] * f[:, 1] - arm[:, 1] * f[:, 0]).sum()) / (r["force"] * SLAVE[0]))
     row |= {
-        "pressure_spread_relative": max(spread), "master_slave_ratio": means[1] / means[0],
-        "force_balance_relative": float(max(balance)), "moment_balance_relative": float(max(moments)),
+        "pressure_spread_relative": max(spread),
+        "master_slave_ratio": means[1] / means[0],
+        "force_balance_relative": float(max(balance)),
+        "moment_balance_relative": float(max(moments)),
         "pressure_pa_m": means[0],
-    }  # fmt: skip
+    }
     # the paper's Alg. 3, q = 1
     n_a, n_b = arcs(a, wa, pose_a, none, b, wb, pose_b, none, r, 1, s.x, s.y, s.edge, s.t)
     poly = [np.column_stack([s.x[k, : m + 1], s.y[k, : m + 1]]) for k, m in ((0, n_a), (1, n_b))]
@@ -161,8 +167,16 @@ def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
             p = w.touched[: w.touched[-1]]
             shape = np.vstack([w.position, w.position[:1]])
             ax.plot(1e3 * shape[:, 0], 1e3 * shape[:, 1], ".-", ms=4, lw=0.8, color=colour)
-            ax.quiver(1e3 * w.position[p, 0], 1e3 * w.position[p, 1], w.point_load[p, 0], w.point_load[p, 1],
-                      color=colour, width=0.004, scale=7 * np.abs(w.point_load).max(), label=name)  # fmt: skip
+            ax.quiver(
+                1e3 * w.position[p, 0],
+                1e3 * w.position[p, 1],
+                w.point_load[p, 0],
+                w.point_load[p, 1],
+                color=colour,
+                width=0.004,
+                scale=7 * np.abs(w.point_load).max(),
+                label=name,
+            )
         ax.set(title=f"gap {row['gap_mm']:.0f} mm, {row['mesh']}", ylim=(-16, 9), xlim=(-26, 26))
     axes[0, 0].legend()
     for ax in axes[-1]:
@@ -174,8 +188,14 @@ def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
     for (wa, wb), row, marker in zip(states[:3], rows[:3], "os^", strict=True):
         for w, colour, name in ((wa, report.RED, "slave"), (wb, report.BLUE, "master")):
             i = np.flatnonzero(w.pressure > 0)
-            ax.plot(1e3 * w.position[i, 0], 1e-3 * w.pressure[i], marker, color=colour, fillstyle="none",
-                    label=f"{name}, {row['mesh']}")  # fmt: skip
+            ax.plot(
+                1e3 * w.position[i, 0],
+                1e-3 * w.pressure[i],
+                marker,
+                color=colour,
+                fillstyle="none",
+                label=f"{name}, {row['mesh']}",
+            )
     ax.set(
         xlabel="x (mm)",
         ylabel="pressure (kN/m)",

@@ -1,8 +1,8 @@
 """A pin bouncing in a circular support (the paper's section 3.2, Fig. 7–10, Table 2).
 
 Left open by the paper and chosen here: the support's outer radius (45 mm, its rim clamped), the time step (10 µs: 130
-steps a contact), ρ∞ = 1 (no constraints, so no reason to dissipate), STS details (see ``flexible.segment``; the pin is the
-slave). E is 207×10⁸ Pa as its Table 1 prints. k = 5×10⁷ N/m² without the thickness: F = k A.
+steps a contact), ρ∞ = 1 (no constraints, so no reason to dissipate), STS details (see ``flexible.segment``; the
+pin is the slave). E is 207×10⁸ Pa as its Table 1 prints. k = 5×10⁷ N/m² without the thickness: F = k A.
 
 Level "rigid" runs through the pymunk hook; its exact answers (lens area, quadrature) are recomputed here. The other
 levels, and STS at every level, run through ``flexible``. The comparison of costs times both methods at the paper's
@@ -29,8 +29,11 @@ PIN, JOURNAL, RIM, THICKNESS, DENSITY, K, GRAVITY = 0.020, 0.035, 0.045, 0.005, 
 STEEL = Material(207e8, 0.29, DENSITY, THICKNESS)
 STEP = 1e-5
 TOLERANCE = 1e-8  # sagitta of the rigid level's outlines: 4e-5 of the penetration
-PAPER = {"table_2_s": {"0.7": [21.61, 11.57], "1.0": [19.05, 9.29], "1.3": [16.57, 8.99]},
-         "ratio": {"0.7": 0.535, "1.0": 0.488, "1.3": 0.543}, "first_contact_s": 0.05}  # fmt: skip
+PAPER: dict[str, Any] = {
+    "table_2_s": {"0.7": [21.61, 11.57], "1.0": [19.05, 9.29], "1.3": [16.57, 8.99]},
+    "ratio": {"0.7": 0.535, "1.0": 0.488, "1.3": 0.543},
+    "first_contact_s": 0.05,
+}
 
 
 def circle(radius: float, clockwise: bool = False, n: int = 7200) -> Array:
@@ -65,8 +68,12 @@ def exact() -> dict[str, float]:
     deepest = brentq(energy, 1e-5, 1e-3, xtol=1e-16)
     # substitution depth = deepest (1 − s²) takes the root's singularity away
     touch = 2 * quad(lambda s: 2 * s * deepest / np.sqrt(max(energy(deepest * (1 - s * s)), 1e-300)), 0, 1)[0]
-    return {"penetration_max_mm": 1e3 * deepest, "force_max_n": K * area(deepest), "contact_ms": 1e3 * touch,
-            "period_ms": 1e3 * (touch + 2 * np.sqrt(2 * play / GRAVITY))}  # fmt: skip
+    return {
+        "penetration_max_mm": 1e3 * deepest,
+        "force_max_n": K * area(deepest),
+        "contact_ms": 1e3 * touch,
+        "period_ms": 1e3 * (touch + 2 * np.sqrt(2 * play / GRAVITY)),
+    }
 
 
 def simulation(
@@ -87,7 +94,7 @@ def simulation(
     )
     return Simulation(
         [pin, support], k=K, contact=contact, reach=5e-4, margin=2e-4, rho=1.0, gravity=(0.0, -GRAVITY)
-    )  # fmt: skip
+    )
 
 
 def run_hook(duration: float) -> tuple[Array, Array, Array, Array]:
@@ -115,7 +122,7 @@ def run_hook(duration: float) -> tuple[Array, Array, Array, Array]:
         space.step(STEP)
         y[i], v[i + 1], level[i] = pin.position.y, pin.velocity.y, 0.5 * pin.velocity.length**2 / GRAVITY
     contact.detach()
-    return STEP * np.arange(1, steps + 1), y, pin.mass * (np.diff(v) / STEP + GRAVITY), level + y
+    return STEP * np.arange(1.0, steps + 1.0), y, pin.mass * (np.diff(v) / STEP + GRAVITY), level + y
 
 
 def measure(t: Array, y: Array, force: Array, level: Array) -> dict[str, float]:
@@ -192,9 +199,13 @@ def compare(mesh_mm: float, level: str, cache: Path | None) -> dict[str, Any]:
 
 
 def run(
-    mode: str = "rigid", mesh_mm: float = 1.0, contact: str = "area", out: Path | None = None, cache: Path | None = None,
+    mode: str = "rigid",
+    mesh_mm: float = 1.0,
+    contact: str = "area",
+    out: Path | None = None,
+    cache: Path | None = None,
     duration: float = 1.2,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Ten bounces at one level, beside the exact rigid answers; then area and STS on the paper's three meshes."""
     clock = report.Clock()
     reference = exact()
@@ -220,8 +231,16 @@ def run(
     }
     if out is not None:
         _figures(out, rows, mode, cache)
-    settings = {"mode": mode, "mesh_mm": mesh_mm, "contact": contact, "step_s": STEP, "duration_s": duration, "k": K,
-                "young_pa": STEEL.young, "rim_radius_mm": 1e3 * RIM}  # fmt: skip
+    settings = {
+        "mode": mode,
+        "mesh_mm": mesh_mm,
+        "contact": contact,
+        "step_s": STEP,
+        "duration_s": duration,
+        "k": K,
+        "young_pa": STEEL.young,
+        "rim_radius_mm": 1e3 * RIM,
+    }
     return report.result("pin-joint", settings, results, PAPER, clock, duration)
 
 
@@ -235,16 +254,24 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
             sim = simulation(row["mesh_mm"], level, contact, cache=cache)
             sim.run((deepest + 1) * STEP, STEP)
             for i, colour, name in ((0, report.RED, "pin"), (1, report.BLUE, "support")):
-                w, b = sim.works[i], sim.boundaries[i]
+                w = sim.works[i]
                 p = w.touched[: w.touched[-1]]
-                near = np.flatnonzero(w.position_stamp >= sim._buffers.count[1] - 1)
+                near = np.flatnonzero(w.position_stamp >= sim._buffers.counts[1] - 1)
                 near = near[np.argsort(w.position[near, 0])]
                 near = near[(np.abs(w.position[near, 0]) < 0.009) & (w.position[near, 1] < -0.025)]
                 ax.plot(
                     1e3 * w.position[near, 0], 1e3 * w.position[near, 1], ".-", ms=3, lw=0.8, color=colour
                 )
-                ax.quiver(1e3 * w.position[p, 0], 1e3 * w.position[p, 1], w.point_load[p, 0], w.point_load[p, 1],
-                          color=colour, scale=90, width=0.003, label=f"{name}: Σ = {np.hypot(*w.point_load[p].sum(0)):.2f} N")  # fmt: skip
+                ax.quiver(
+                    1e3 * w.position[p, 0],
+                    1e3 * w.position[p, 1],
+                    w.point_load[p, 0],
+                    w.point_load[p, 1],
+                    color=colour,
+                    scale=90,
+                    width=0.003,
+                    label=f"{name}: Σ = {np.hypot(*w.point_load[p].sum(0)):.2f} N",
+                )
             ax.set(
                 title=f"{'STS' if contact == 'sts' else 'area'}, {row['mesh_mm']} mm",
                 xlim=(-8, 8),
@@ -273,8 +300,11 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
     report.save(fig, out, "pin_joint_fig10")
     fig, axes = report.figure(11, 4.2, 1, 3)
     x = np.arange(3)
-    kinds = (("run_s", "run_ratio", "whole run of 0.3 s (s)"), ("contact_phase_s", "contact_phase_ratio", "one contact, 1.4 ms (s)"),
-             ("eval_us", "eval_ratio", "one contact evaluation (µs)"))  # fmt: skip
+    kinds = (
+        ("run_s", "run_ratio", "whole run of 0.3 s (s)"),
+        ("contact_phase_s", "contact_phase_ratio", "one contact, 1.4 ms (s)"),
+        ("eval_us", "eval_ratio", "one contact evaluation (µs)"),
+    )
     for ax, (key, ratio, label) in zip(axes, kinds, strict=True):
         for k, (name, colour) in enumerate((("sts", report.ORANGE), ("area", report.BLUE))):
             ax.bar(

@@ -37,11 +37,11 @@ def elastic_body(
 ) -> tuple[Body, Mesh]:
     """A body from finely sampled ``rings`` ([0] outer, counter-clockwise; then holes, clockwise), and its mesh.
 
-    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
-    free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine: contact points a mesh
-    edge, on the rings themselves. growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the
-    rings' coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
-    ``triangulate`` and ``reduce``.
+    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal"
+    (``modes`` free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine:
+    contact points a mesh edge, on the rings themselves. growth: of the size inside the body. keys: passed to
+    ``Body``; ``position`` is where the origin of the rings' coordinates goes at angle 0, as given by the rings.
+    Raises ValueError for bad settings, see ``resample``, ``triangulate`` and ``reduce``.
     """
     if level not in LEVELS:
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")

@@ -137,8 +137,8 @@ def workspace(b: Boundary) -> Work:
     n, f = len(b.points), (len(b.modes) - 3) // 2
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
-        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.full(len(b.left), -1), np.zeros(3),
-        np.zeros(f + 1, np.int64),
+        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.full(len(b.left), -1),
+        np.zeros(3), np.zeros(f + 1, np.int64),
     )  # fmt: skip
 
 

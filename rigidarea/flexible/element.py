@@ -79,7 +79,7 @@ def stiffness(mesh: Mesh, material: Material) -> sp.csc_array:
 def lumped_mass(mesh: Mesh, material: Material) -> Array:
     """Nodal masses (n,): each triangle gives ρ t A / 3 to its nodes."""
     share = np.repeat(mesh.areas() * material.density * material.thickness / 3.0, 3)
-    return np.bincount(mesh.triangles.ravel(), share, len(mesh.points))
+    return np.asarray(np.bincount(mesh.triangles.ravel(), share, len(mesh.points)), float)
 
 
 def stress(mesh: Mesh, material: Material, u: Array) -> Array:

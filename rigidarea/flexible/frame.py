@@ -6,8 +6,8 @@ no angular momentum at rest, which leaves of LᵀML
 
     M_RR = m I,  M_θθ = J₀ + 2 hᵀq + qᵀq,  M_θq = (G q)ᵀ,  M_qq = I,  M_Rθ = 0,  M_Rq = 0
 
-and of −LᵀML̇ the quadratic velocity forces Q_θ = −2 θ̇ (h + q)ᵀq̇, Q_q = θ̇² (h + q) − 2 θ̇ G q̇. (M_Rθ and M_Rq are zero
-because the modes have no net momentum in any orientation.)
+and of −LᵀML̇ the quadratic velocity forces Q_θ = −2 θ̇ (h + q)ᵀq̇, Q_q = θ̇² (h + q) − 2 θ̇ G q̇. (M_Rθ and M_Rq
+are zero because the modes have no net momentum in any orientation.)
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ def inertia_forces(
 ) -> float:
     """M q̈ − Q_v of one body: returns the row of θ (a moment), writes the modal rows (m,) to ``out``.
 
-    j0: moment of inertia of the undeformed body; h, g: ``stretch`` and ``coupling`` of ``modes.Reduced``; omega, alpha:
-    angular velocity and acceleration of the frame. The rows of R are m R̈.
+    j0: moment of inertia of the undeformed body; h, g: ``stretch`` and ``coupling`` of ``modes.Reduced``; omega,
+    alpha: angular velocity and acceleration of the frame. The rows of R are m R̈.
     """
     m = len(q)
     if m == 0:

@@ -69,7 +69,8 @@ def resample(ring: Array, size: float, refine: int = 1) -> Array:
 
     ring: (n, 2), sampled finer than ``size``. refine: points an edge, (k · refine, 2): the nodes and, between
     them, points of the ring itself: a profile finer than the mesh. Raises ValueError where ``size`` is larger than a
-    feature, that is where an arc between two corners is shorter than size/2, or the ring would keep fewer than 3 nodes.
+    feature, that is where an arc between two corners is shorter than size/2, or the ring would keep fewer than 3
+    nodes.
     """
     ring = np.asarray(ring, float)
     step = np.roll(ring, -1, 0) - ring
@@ -104,8 +105,8 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
     """Mesh the region bounded by ``rings`` ([0] outer, counter-clockwise; then holes, clockwise).
 
     The boundary nodes are the rings' points, no more and no fewer; inside, the size grows by ``growth`` a unit of
-    distance from the boundary (0: uniform), up to ``max_size``. Raises ValueError if the rings do not bound a valid region or a
-    boundary edge cannot be kept (two boundaries nearer than their own spacing).
+    distance from the boundary (0: uniform), up to ``max_size``. Raises ValueError if the rings do not bound a
+    valid region or a boundary edge cannot be kept (two boundaries nearer than their own spacing).
     """
     rings = [np.ascontiguousarray(r, float) for r in rings]
     polygon = shapely.Polygon(rings[0], rings[1:])
@@ -129,7 +130,7 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
     near = min(8, len(middle))
 
     def size_and_gap(p: Array) -> tuple[Array, Array]:
-        d, i = (a.reshape(len(p), near) for a in tree.query(p, k=near))
+        d, i = (np.reshape(a, (len(p), near)) for a in tree.query(p, k=near))
         h = (edge_length[i] + growth * d).min(1)
         h = h if max_size is None else np.minimum(h, max_size)
         # exact distance to the near edges: on a graded boundary the nearest midpoint may not own the nearest edge
@@ -142,15 +143,10 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
         tri = _delaunay_inside(np.vstack([boundary, inner]), polygon)
         missing = _missing(edge, tri)
         if len(missing):  # drop the seeds inside the diametral circle of a lost edge, and try again
-            hit = (
-                cKDTree(inner).query_ball_point(middle[missing], 0.5 * edge_length[missing])
-                if len(inner)
-                else []
-            )
-            drop = (
-                np.unique(np.concatenate([np.asarray(h, int) for h in hit])) if len(hit) else np.empty(0, int)
-            )
-            inner = np.delete(inner, drop, 0)
+            near_lost = cKDTree(middle[missing]).query(inner)[1] if len(inner) else np.zeros(0, int)
+            lost = missing[near_lost]
+            drop = np.linalg.norm(inner - middle[lost], axis=1) < 0.5 * edge_length[lost]
+            inner = inner[~drop]
             tri = _delaunay_inside(np.vstack([boundary, inner]), polygon)
         if n < ROUNDS and len(inner):
             inner = _smooth(np.vstack([boundary, inner]), tri, len(boundary))

@@ -5,10 +5,10 @@ mean of its nodes (RBE3: the hub's motion is a mean, so it adds no stiffness). D
 
     u = Φ q + C f,
 
-Φ mass-orthonormal free-free modes about the centre of mass and C the static flexibility they leave out: with no mode kept, C
-is the whole inertia-relief flexibility and the body is *compliant*; with modes, *modal*. Cf. R. R. Craig and
-A. J. Kurdila, Fundamentals of Structural Dynamics, 2nd ed., chapter 17 (residual flexibility, inertia relief). A clamped
-body (a ground) has the flexibility and modes of its clamped mesh.
+Φ mass-orthonormal free-free modes about the centre of mass and C the static flexibility they leave out: with no
+mode kept, C is the whole inertia-relief flexibility and the body is *compliant*; with modes, *modal*. Cf. R. R.
+Craig and A. J. Kurdila, Fundamentals of Structural Dynamics, 2nd ed., chapter 17 (residual flexibility, inertia
+relief). A clamped body (a ground) has the flexibility and modes of its clamped mesh.
 """
 
 from __future__ import annotations
@@ -42,8 +42,8 @@ BLOCK = 128  # right-hand sides solved at once: bounds memory to BLOCK columns
 class Reduced:
     """A reduced body; i interface rows (2 f + 3), m modes; SI or any consistent units.
 
-    centre (2,): centre of mass in the mesh's coordinates. frequency (m,): rad/time. modes (i, m). flexibility (i, i), length/force.
-    coupling (m, m): G_jk = Σ mᵢ φᵢⱼᵀ J φᵢₖ. stretch (m,): h_k = Σ mᵢ xᵢᵀ φᵢₖ (design 2.8).
+    centre (2,): centre of mass in the mesh's coordinates. frequency (m,): rad/time. modes (i, m). flexibility (i,
+    i), length/force. coupling (m, m): G_jk = Σ mᵢ φᵢⱼᵀ J φᵢₖ. stretch (m,): h_k = Σ mᵢ xᵢᵀ φᵢₖ (design 2.8).
     """
 
     mass: float
@@ -115,7 +115,8 @@ def rigid_modes(points: Array, mass: Array) -> tuple[Array, Array, float]:
 
 
 def hub_rows(points: Array, nodes: Ints) -> Array:
-    """RBE3 weights (2 n, 3): hub displacement (x, y, rotation) = rowsᵀ u, equal weights; forces go back by the same."""
+    """RBE3 weights (2 n, 3): hub displacement (x, y, rotation) = rowsᵀ u, equal weights; forces go back by the
+    same."""
     w = np.zeros((len(points), 2, 3))
     x = points[nodes] - points[nodes].mean(0)
     w[nodes, 0, 0] = w[nodes, 1, 1] = 1.0 / len(nodes)
@@ -127,8 +128,8 @@ def hub_rows(points: Array, nodes: Ints) -> Array:
 def free_modes(k: sp.csc_array, mass: Array, rigid: Array, count: int) -> tuple[Array, Array]:
     """The first ``count`` elastic modes (2 n, count), mass-orthonormal, and their angular frequencies.
 
-    ``rigid`` (2 n, r) are the modes to leave out (r = 0 for a clamped body). Signs are fixed (largest entry positive), the
-    start vector is seeded: same input, same bits.
+    ``rigid`` (2 n, r) are the modes to leave out (r = 0 for a clamped body). Signs are fixed (largest entry
+    positive), the start vector is seeded: same input, same bits.
     """
     root = np.repeat(mass, 2) ** 0.5
     scaled = (sp.diags_array(1 / root) @ k @ sp.diags_array(1 / root)).tocsc()
@@ -174,8 +175,8 @@ def _substitute(
 class _Solver:
     """Sparse factors, applied to many right-hand sides row by row of all of them.
 
-    SuperLU's own ``solve`` takes one column after another through threaded BLAS calls of a few entries each: ten times
-    slower here, and more so on a busy machine.
+    SuperLU's own ``solve`` takes one column after another through threaded BLAS calls of a few entries each: ten
+    times slower here, and more so on a busy machine.
     """
 
     def __init__(self, matrix: sp.csc_array) -> None:

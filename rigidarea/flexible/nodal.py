@@ -23,7 +23,7 @@ strongly one-sided region with q ≠ 1 would make it negative, the q = 1 field i
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -242,15 +242,13 @@ def scratch(points: int) -> Scratch:
 
 
 @njit(cache=True)
-def _turn(
-    r: NDArray[np.void], x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float
-) -> float:
+def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float) -> float:
     """Direction of the force by Eq. 13-15, and the arcs in axes across and along it; returns x of the centroid there.
 
-    An edge's normal times its length is its chord turned by a quarter, so with heights b (arc of A) and t (arc of B) over
-    the chord the weighted mean normals are (∫ d^q b' dx, −∫ d^q dx) and (−∫ d^q t' dx, ∫ d^q dx), d = t − b: the
-    force leans from the chord's normal by the slope of the middle line. On a flank, whose curvature changes along it, the
-    chord alone would be off by a degree at a depth of a twentieth of the module.
+    An edge's normal times its length is its chord turned by a quarter, so with heights b (arc of A) and t (arc of
+    B) over the chord the weighted mean normals are (∫ d^q b' dx, −∫ d^q dx) and (−∫ d^q t' dx, ∫ d^q dx), d = t −
+    b: the force leans from the chord's normal by the slope of the middle line. On a flank, whose curvature changes
+    along it, the chord alone would be off by a degree at a depth of a twentieth of the module.
     """
     lean = weight = 0.0
     i = j = 0

@@ -16,6 +16,8 @@ exit, A is above, B below, and the region lies between them:
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
@@ -188,13 +190,13 @@ def find_regions(
 @njit(cache=True, inline="always")
 def arcs(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
-    r: NDArray[np.void], stamp: int, x: Array, y: Array, edge: Ints, t: Array,
+    r: Any, stamp: int, x: Array, y: Array, edge: Ints, t: Array,
 ) -> tuple[int, int]:  # fmt: skip
     """The two arcs of a region in its chord frame (origin at the entry, x to the exit, y to the side of A).
 
     Row 0 of x, y (2, k) is the arc of A from entry to exit, row 1 the arc of B walked backwards, so that x grows
-    on both. Piece k, between vertices k and k + 1, lies on ``edge[·, k]`` at parameters ``t[·, k]``. Returns the numbers
-    of pieces, or (MANY, MANY).
+    on both. Piece k, between vertices k and k + 1, lies on ``edge[·, k]`` at parameters ``t[·, k]``. Returns the
+    numbers of pieces, or (MANY, MANY).
     """
     ux, uy = -r.ny, r.nx  # along the chord
     following, at_a, stamp_a = a.next, wa.position, wa.position_stamp

@@ -1,4 +1,5 @@
-"""Static contact of two elastic bodies: full finite-element statics on the boundary, Newton with a consistent tangent.
+"""Static contact of two elastic bodies: full finite-element statics on the boundary, Newton with a consistent
+tangent.
 
 Local law p = k d (Alg. 3 with q = 1, whose resultant is k A at the centroid); displacements u = C f from the bodies'
 condensed flexibility. The unknown is one number per Gauss point of the overlap, its thickness d: with N the
@@ -30,7 +31,8 @@ class Solution:
     """Static contact state. Forces on B; ``points`` rows are Gauss points of all regions.
 
     force: Σ k A along ``direction``. moment: of the force on B about B's origin. loads: (a, b) node loads (f, 2) in
-    each body frame. position (g, 2) world. pressure (g,), weight (g,) length. regions: number. iterations: evaluations.
+    each body frame. position (g, 2) world. pressure (g,), weight (g,) length. regions: number. iterations:
+    evaluations.
     """
 
     force: Array
@@ -56,7 +58,8 @@ def solve(
     """Equilibrium of two compliant bodies at fixed frames, poses (x, y, angle).
 
     along: a unit vector (world): only displacements along it move the perimeters, as in linear contact theory (Hertz
-    neglects the tangential ones, which are of the order of the strain). tolerance: relative change of the loads. Raises RuntimeError, with the residual, if ``limit`` evaluations do not suffice.
+    neglects the tangential ones, which are of the order of the strain). tolerance: relative change of the loads.
+    Raises RuntimeError, with the residual, if ``limit`` evaluations do not suffice.
     """
     wa, wb = workspace(a), workspace(b)
     s = nodal.scratch(len(a.points) + len(b.points))
@@ -173,9 +176,9 @@ def _shape(bd: Boundary, pose: Array, points: NDArray[np.int64], share: Array, n
 def hub_fixed(b: Boundary, hub: Array | tuple[float, float]) -> Boundary:
     """The boundary with the flexibility of a body whose hub is held: displacements relative to the hub.
 
-    The hub's reaction balances every load, so no inertia relief is left: with T the boundary's rigid motion about the hub,
-    C = C_bb − C_bh Tᵀ − T C_hb + T C_hh Tᵀ. ``hub`` (2,): its centre in the body frame; the FE nodes are taken from
-    the contact points that lie on them.
+    The hub's reaction balances every load, so no inertia relief is left: with T the boundary's rigid motion about
+    the hub, C = C_bb − C_bh Tᵀ − T C_hb + T C_hh Tᵀ. ``hub`` (2,): its centre in the body frame; the FE nodes are
+    taken from the contact points that lie on them.
     """
     own = np.flatnonzero(b.share == 0.0)
     points = np.zeros(((len(b.modes) - 3) // 2, 2))
