@@ -198,7 +198,13 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: in
         i = following[i]
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
+def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
+    """``place`` for a single point, as a call: for the rare point that no candidate leaf holds."""
+    place(b, w, pose, modal, i, 1, stamp)
+
+
+@njit(cache=True)
 def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
@@ -253,15 +259,15 @@ def candidates(
     return count
 
 
-@njit(cache=True, inline="always")
-def add_load(w: Work, i: int, fx: float, fy: float) -> None:
-    """Adds a force to contact point i and remembers that it is loaded."""
-    if not w.point_flag[i]:
-        w.point_flag[i] = True
-        w.touched[w.touched[-1]] = i
-        w.touched[-1] += 1
-    w.point_load[i, 0] += fx
-    w.point_load[i, 1] += fy
+@njit(cache=True)
+def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
+    """Adds a force to point i and remembers that it is loaded. (Arrays, not their tuple: see ``place``.)"""
+    if not flag[i]:
+        flag[i] = True
+        touched[touched[-1]] = i
+        touched[-1] += 1
+    load[i, 0] += fx
+    load[i, 1] += fy
 
 
 @njit(cache=True)
@@ -277,25 +283,17 @@ def clear_loads(w: Work) -> None:
 @njit(cache=True)
 def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
     """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
-    for k in range(w.loaded[-1]):
-        w.node_load[w.loaded[k], 0] = w.node_load[w.loaded[k], 1] = 0.0
-        w.node_flag[w.loaded[k]] = False
-    w.loaded[-1] = 0
-    for k in range(w.touched[-1]):
-        i = w.touched[k]
-        fx = pose[2] * w.point_load[i, 0] + pose[3] * w.point_load[i, 1]
-        fy = -pose[3] * w.point_load[i, 0] + pose[2] * w.point_load[i, 1]
-        s = b.share[i]
-        _add_node(w, b.low[i], (1.0 - s) * fx, (1.0 - s) * fy)
+    load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched
+    low, high, share = b.low, b.high, b.share
+    for k in range(loaded[-1]):
+        load[loaded[k], 0] = load[loaded[k], 1] = 0.0
+        flag[loaded[k]] = False
+    loaded[-1] = 0
+    for k in range(touched[-1]):
+        i = touched[k]
+        fx = pose[2] * point_load[i, 0] + pose[3] * point_load[i, 1]
+        fy = -pose[3] * point_load[i, 0] + pose[2] * point_load[i, 1]
+        s = share[i]
+        add_load(load, flag, loaded, low[i], (1.0 - s) * fx, (1.0 - s) * fy)
         if s > 0.0:
-            _add_node(w, b.high[i], s * fx, s * fy)
-
-
-@njit(cache=True, inline="always")
-def _add_node(w: Work, node: int, fx: float, fy: float) -> None:
-    if not w.node_flag[node]:
-        w.node_flag[node] = True
-        w.loaded[w.loaded[-1]] = node
-        w.loaded[-1] += 1
-    w.node_load[node, 0] += fx
-    w.node_load[node, 1] += fy
+            add_load(load, flag, loaded, high[i], s * fx, s * fy)

@@ -109,6 +109,8 @@ def distribute(
     i = j = 0
     lo = 0.0
     next_a, next_b = a.next, b.next
+    load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
+    load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
     a_low = a_high = b_low = b_high = 0.0
     while i < n_a and j < n_b:
         hi = min(x[0, i + 1], x[1, j + 1])
@@ -148,8 +150,8 @@ def distribute(
                     b_high += p * tb
                 lo = hi
         if x[0, i + 1] <= lo:
-            add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
-            add_load(wa, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
+            add_load(load_a, flag_a, touched_a, edge[0, i], -a_low * nx, -a_low * ny)
+            add_load(load_a, flag_a, touched_a, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
             a_low = a_high = 0.0
             i += 1
             # the vertex between two pieces is a node inside: its pressure, Eq. 12 (none on a wall along the force)
@@ -157,19 +159,19 @@ def distribute(
                 v = _height(x, y, 1, j, x[0, i]) - y[0, i]
                 wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
         else:
-            add_load(wb, edge[1, j], b_low * nx, b_low * ny)
-            add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
+            add_load(load_b, flag_b, touched_b, edge[1, j], b_low * nx, b_low * ny)
+            add_load(load_b, flag_b, touched_b, next_b[edge[1, j]], b_high * nx, b_high * ny)
             b_low = b_high = 0.0
             j += 1
             if j < n_b and x[1, j + 1] - x[1, j - 1] > 1e-9 * chord:
                 v = y[1, j] - _height(x, y, 0, i, x[1, j])
                 wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
     if i < n_a:
-        add_load(wa, edge[0, i], -a_low * nx, -a_low * ny)
-        add_load(wa, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
+        add_load(load_a, flag_a, touched_a, edge[0, i], -a_low * nx, -a_low * ny)
+        add_load(load_a, flag_a, touched_a, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
     if j < n_b:
-        add_load(wb, edge[1, j], b_low * nx, b_low * ny)
-        add_load(wb, next_b[edge[1, j]], b_high * nx, b_high * ny)
+        add_load(load_b, flag_b, touched_b, edge[1, j], b_low * nx, b_low * ny)
+        add_load(load_b, flag_b, touched_b, next_b[edge[1, j]], b_high * nx, b_high * ny)
 
 
 @njit(cache=True)

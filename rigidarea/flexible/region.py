@@ -22,7 +22,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, place, place_leaves
+from rigidarea.flexible.boundary import Boundary, Work, place_leaves, place_one
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -140,7 +140,7 @@ def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
         c[i].next_b = best if best >= 0 else wrap
 
 
-@njit(cache=True, inline="always")
+@njit(cache=True)
 def find_regions(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     pairs: Ints, n_pairs: int, stamp: int, crossings: NDArray[np.void], regions: NDArray[np.void],
@@ -213,7 +213,7 @@ def arcs(
         if n_a >= limit:
             return MANY, MANY
         if stamp_a[i] != stamp:
-            place(a, wa, pose_a, qa, i, 1, stamp)
+            place_one(a, wa, pose_a, qa, i, stamp)
         px, py = at_a[i, 0] - r.enter_x, at_a[i, 1] - r.enter_y
         x[0, n_a], y[0, n_a] = ux * px + uy * py, -uy * px + ux * py
     edge[0, n_a] = i
@@ -226,7 +226,7 @@ def arcs(
         edge[1, n_b] = j
         t[1, n_b, 0], t[1, n_b, 1] = t0, 0.0
         if stamp_b[j] != stamp:
-            place(b, wb, pose_b, qb, j, 1, stamp)
+            place_one(b, wb, pose_b, qb, j, stamp)
         px, py = at_b[j, 0] - r.enter_x, at_b[j, 1] - r.enter_y
         j, t0, n_b = preceding[j], 1.0, n_b + 1
         if n_b >= limit:

@@ -38,6 +38,8 @@ def contact(
     next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
     place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
     place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
+    load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
+    load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
     pairs, regions = s.pairs, s.regions
     count = 0
     last = -1
@@ -92,10 +94,10 @@ def contact(
                     f = -gap * w
                     xi = x / length
                     if spread:
-                        add_load(wa, i, -(1.0 - xi) * f * nx, -(1.0 - xi) * f * ny)
-                        add_load(wa, i1, -xi * f * nx, -xi * f * ny)
-                        add_load(wb, j, (1.0 - eta) * f * nx, (1.0 - eta) * f * ny)
-                        add_load(wb, j1, eta * f * nx, eta * f * ny)
+                        add_load(load_a, flag_a, touched_a, i, -(1.0 - xi) * f * nx, -(1.0 - xi) * f * ny)
+                        add_load(load_a, flag_a, touched_a, i1, -xi * f * nx, -xi * f * ny)
+                        add_load(load_b, flag_b, touched_b, j, (1.0 - eta) * f * nx, (1.0 - eta) * f * ny)
+                        add_load(load_b, flag_b, touched_b, j1, eta * f * nx, eta * f * ny)
                     fx += f * nx
                     fy += f * ny
                     hx, hy = px + x * tx - pose_a[0], py + x * ty - pose_a[1]
