@@ -279,8 +279,8 @@ def test_a_dashpot_never_reverses_the_speed_within_a_step(kernel: Any) -> None:
 def test_couple_of_a_resting_face(kernel: Any) -> None:
     """Against the turning of one straight face on the other, at most F L / 6; none on curves, none in an impact."""
 
-    def couple(w: float, flat: float = 0.5, resting: int = 1) -> float:
-        got = contact(kernel, a=dict(w=w), x=0.0, resting=resting, elasticity=0.5, flat=flat)
+    def couple(w: float, straight: float = 0.5, resting: int = 1) -> float:
+        got = contact(kernel, a=dict(w=w), x=0.0, resting=resting, elasticity=0.5, straight=straight)
         return float(got.region["couple"])
 
     assert couple(0.0) == 0 and couple(1e3) == -couple(-1e3) and couple(1e-3) == -couple(-1e-3)
@@ -288,8 +288,8 @@ def test_couple_of_a_resting_face(kernel: Any) -> None:
     c = 2 * kernel.force.damping_ratio(0.5) * math.sqrt(1e4 * 0.5 / 0.5)
     # a bed of dashpots, c in all, spread over the chord: second moment of its straight stretch
     assert couple(1e-3) == pytest.approx(c * 0.5**2 / 12 * 1e-3, rel=1e-6)
-    assert couple(1e-3, flat=0.25) == pytest.approx(c / 0.5 * 0.25**3 / 12 * 1e-3, rel=1e-6)
-    assert couple(1e3, flat=0.0) == 0
+    assert couple(1e-3, straight=0.25) == pytest.approx(c / 0.5 * 0.25**3 / 12 * 1e-3, rel=1e-6)
+    assert couple(1e3, straight=0.0) == 0
     assert couple(1e3, resting=0) == 0
 
 
@@ -363,7 +363,7 @@ motions = st.builds(
 regions = st.fixed_dictionaries(
     dict(
         area=st.floats(1e-12, 1), x=number, y=number, chord=st.floats(1e-6, 3), spring=number, damping=positive,
-        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive, speed=number, flat=st.floats(0, 3),
+        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive, speed=number, straight=st.floats(0, 3),
         resting=st.integers(0, 1), opened=st.integers(0, 1),
     )
 )  # fmt: skip

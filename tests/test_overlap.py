@@ -985,9 +985,6 @@ def test_overlap_function_refuses_what_is_no_outline() -> None:
 
 
 @pytest.mark.skipif(bool(os.environ.get("NUMBA_DISABLE_JIT")), reason="this is the run without compilation")
-@pytest.mark.xfail(
-    strict=True, reason="a field named `flat` is numpy's own attribute of a record in plain Python"
-)
 def test_the_same_without_compilation() -> None:
     """The kernels' tests again as plain Python, with fewer pairs: either alone proves half."""
     here = Path(__file__).parent

@@ -62,7 +62,7 @@ REGION = record(
         ("work", "f8"),  # done on the spring while closing (force length)
         ("loss", "f8"),  # energy lost to damping while closing (force length)
         ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
-        ("flat", "f8"),  # longest straight stretch of both boundaries in it (length)
+        ("straight", "f8"),  # longest straight stretch of both boundaries in it (length)
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
         ("speed", "f8"),  # closing speed (length/time)
@@ -292,7 +292,7 @@ def region_force(
     if r.resting:
         c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
         force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
-        bed = c * r.flat**3 / (12.0 * r.chord)
+        bed = c * r.straight**3 / (12.0 * r.chord)
         couple = bed * (a.w - b.w) / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
         most = force * r.chord / 6.0  # more would need the pressure to pull at one end
         couple = min(most, max(-most, couple))

@@ -195,7 +195,7 @@ def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a.chord_x, b.chord_x = b.chord_x, a.chord_x
     a.chord_y, b.chord_y = b.chord_y, a.chord_y
     a.lever, b.lever = b.lever, a.lever
-    a.flat, b.flat = b.flat, a.flat
+    a.straight, b.straight = b.straight, a.straight
     a.region, b.region = b.region, a.region
 
 

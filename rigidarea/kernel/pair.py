@@ -422,7 +422,7 @@ def pair_pull(
             # the gradient's line of action: its moment about the centroid is -lever
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
-        region.flat = min(loop.flat, chord)
+        region.straight = min(loop.straight, chord)
         region.area = area
         region.x = x
         region.y = y

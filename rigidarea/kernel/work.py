@@ -26,7 +26,7 @@ LOOP = record(
         ("chord_y", "f8"),
         ("lever", "f8"),  # sum of (|end|^2 - |start|^2) / 2 over the arcs of A, about the centroid (length^2)
         (
-            "flat",
+            "straight",
             "f8",
         ),  # longest straight stretch of both boundaries: the shorter of A's and B's longest edges (length)
         ("region", "i4"),  # of a hole: the loop it is a hole of; of a region: itself
@@ -160,6 +160,6 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
     loop.chord_x = chord_x
     loop.chord_y = chord_y
     loop.lever = lever - sx * chord_x - sy * chord_y
-    loop.flat = math.sqrt(min(flat_a, flat_b))
+    loop.straight = math.sqrt(min(flat_a, flat_b))
     loop.region = n
     return n + 1
