@@ -1,0 +1,212 @@
+"""A frame into steps: the planned step is stable, the limit is where theory puts it (design 2.3), towers stand."""
+
+import math
+import warnings
+
+import numpy as np
+import pymunk
+import pytest
+
+import rigidarea as ra
+from rigidarea.stepping import PHASE
+
+G = 10.0
+K = 5e4
+
+
+def world(stiffness=None, gravity=(0, -G), **settings):
+    space = pymunk.Space()
+    space.gravity = gravity
+    line = pymunk.Segment(space.static_body, (-500, 0), (500, 0), 0)
+    line.friction = line.elasticity = 1.0
+    space.add(line)
+    return space, ra.attach(space, stiffness, **settings)
+
+
+def box(space, position, size=(1.0, 1.0), mass=1.0, friction=0.5, elasticity=0.0):
+    body = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
+    body.position = position
+    shape = pymunk.Poly.create_box(body, size)
+    shape.friction, shape.elasticity = friction, elasticity
+    space.add(body, shape)
+    return body
+
+
+def bounce_of_undamped_box(phase):
+    """Largest height over rest of an undamped box that lies on a line, started 1 % of its sinking off, w h given.
+
+    One degree of freedom: m = 1, stiffness k L = K, exactly linear while the face is in touch.
+    """
+    space, _ = world(K)
+    sink = G / K
+    body = box(space, (0, 0.5 - sink * 1.01), friction=0.0, elasticity=1.0)
+    body.moment = math.inf
+    h = phase / math.sqrt(K)
+    worst = 0.0
+    for _ in range(4000):
+        space.step(h)
+        worst = max(worst, abs(body.position.y - 0.5 + sink))
+    return worst / (0.01 * sink)
+
+
+def test_stability_limit_of_a_single_contact_is_two():
+    """Symplectic Euler on one spring: bounded below w h = 2, growing above. (Within 1 %: the bracket.)"""
+    assert (
+        bounce_of_undamped_box(1.98) < 15
+    )  # bounded by 1 / sqrt(1 - (w h / 2)^2) = 7, twice over for the start
+    assert bounce_of_undamped_box(2.02) > 1000  # grows by a factor of 1.33 a step until it leaves the line
+
+
+def test_the_plan_is_the_flat_box_between_two_others():
+    """w = 2 sqrt(k L / m), the chain's highest frequency: steps = dt w / PHASE, rounded up."""
+    for mass, width in ((1.0, 1.0), (0.1, 1.0), (1.0, 3.0)):
+        space, contact = world(K)
+        box(space, (0, 50), (width, 0.5), mass)
+        w = 2 * math.sqrt(K * width / mass)
+        assert contact.steps(1 / 60) == math.ceil(w / 60 / PHASE)
+        assert contact.steps(1 / 7) == math.ceil(w / 7 / PHASE)
+
+
+def test_steps_are_predicted_before_any_contact():
+    """The plan for the corner's hit is the plan for the lying box: nothing is found out by blowing up."""
+    space, contact = world(K)
+    body = box(space, (0, 3), elasticity=0.3)
+    body.angle = 0.6
+    before = contact.steps(1 / 60)
+    planned = []
+    for _ in range(240):
+        planned.append(contact.step(1 / 60))
+    assert len(contact.regions) == 1 and abs(math.sin(2 * body.angle)) < 1e-3  # it lies flat now
+    # a tilted face is pressed L/6 off its middle: stiffer by 1 + (L/6)^2 m / I = 7/6, in frequency 8 %
+    assert min(planned) == before and max(planned) <= math.ceil(before * math.sqrt(7 / 6))
+
+
+def test_step_takes_as_many_equal_steps_as_it_says():
+    space, contact = world(K)
+    box(space, (0, 3))
+    seen = []
+
+    def count(body, dt):
+        seen.append(dt)
+        pymunk.Body.update_position(body, dt)
+
+    next(iter(space.bodies)).position_func = count
+    n = contact.step(1 / 60)
+    assert n == len(seen) == contact.steps(1 / 60) and set(seen) == {1 / 60 / n}
+    assert sum(seen) == pytest.approx(1 / 60, rel=1e-14)
+    contact.stiffness = 100 * K
+    assert contact.step(1 / 60) == pytest.approx(10 * n, abs=10)  # as the root of the stiffness, rounded up
+    contact.phase = contact.phase / 2
+    assert contact.step(1 / 60) == pytest.approx(20 * n, abs=20)
+
+
+def tower(space, n, friction=0.5):
+    return [box(space, (0, 0.5 + i), friction=friction) for i in range(n)]
+
+
+def restless(h_times):
+    """Largest speed in the second half of 2 s of a flat stack of undamped boxes, at so many times the planned step."""
+    space, contact = world()
+    bodies = [box(space, (0, (0.5 + i) * (1 - 1e-6)), friction=0.0, elasticity=1.0) for i in range(8)]
+    for body in bodies:
+        body.moment = math.inf  # vertical motion alone: a chain
+    h = h_times / 60 / contact.steps(1 / 60)
+    worst = 0.0
+    for i in range(round(2.0 / h)):
+        space.step(h)
+        if i * h > 1.0:
+            worst = max(worst, *(abs(b.velocity.y) for b in bodies))
+    return worst, max(b.position.y for b in bodies)
+
+
+def test_planned_step_is_stable_and_one_beyond_the_limit_is_not():
+    """The plan stands 2 / PHASE = 4.4 below the limit of an endless chain; eight boxes reach 0.98 of that."""
+    for times in (1.0, 4.0):
+        speed, height = restless(times)
+        # let go unsunk, they swing by what they will sink, 36 x 2e-4 m, at 0.09 sqrt(4 K): 0.3 m/s, and overtones
+        assert height < 7.51 and speed < 0.8, times
+    speed, height = restless(4.8)
+    assert speed > 3.0 and height > 8.0
+
+
+def test_the_cap_warns_once():
+    space, contact = world(K)
+    box(space, (0, 0.5))
+    needed = contact.steps(1 / 60)
+    contact.max_steps = needed - 1
+    with pytest.warns(ra.StepLimitWarning, match=f"{needed} steps.*{needed - 1}"):
+        assert contact.step(1 / 60) == needed - 1
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert contact.step(1 / 60) == needed - 1
+        contact.max_steps = needed
+        assert contact.step(1 / 60) == needed
+
+
+def test_long_chords_that_only_contact_brings_are_planned_for_as_they_are_met():
+    """A peg in a conforming hole touches along more than it could lie on: the next frame takes more steps."""
+    space, contact = world(K, gravity=(0, 0))
+    angle = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    hole = np.column_stack((np.cos(angle), np.sin(angle)))
+    plate = ra.Outline([(-3, -3), (3, -3), (3, 3), (-3, 3)], [hole])
+    space.add(plate.add_to(space.static_body))
+    peg = ra.Outline(hole * 0.999)
+    body = peg.body(mass=1.0)
+    space.add(body, peg.add_to(body))
+    before = contact.steps(1 / 60)
+    body.position = 0.004, 0
+    space.step(1e-6)
+    assert contact.regions["chord"].max() > 1.0
+    assert contact.steps(1 / 60) > before
+
+
+def test_frames_of_any_length_tell_the_same_story():
+    """The step is the plan's, not the frame's: 1/30 and 1/120 s frames end alike, to the order of the step."""
+    ends = []
+    for frame in (1 / 30, 1 / 120):
+        space, contact = world(K)
+        body = box(space, (0, 1.0), elasticity=0.5, friction=0.3)
+        body.velocity = 1, 0
+        for _ in range(round(1.0 / frame)):
+            contact.step(frame)
+        ends.append(body.position)
+    assert ends[0].x == pytest.approx(ends[1].x, rel=0.02)
+    assert ends[0].y == pytest.approx(ends[1].y, abs=1e-3)
+
+
+# --- standing ---
+
+
+def stands(space, contact, bodies, seconds, sag):
+    start = [b.position for b in bodies]
+    for _ in range(round(seconds * 60)):
+        contact.step(1 / 60)
+    moved = [b.position - s for b, s in zip(bodies, start)]
+    assert max(abs(m.x) for m in moved) < sag and max(abs(b.angle) for b in bodies) < sag
+    assert -sag < min(m.y for m in moved) and max(m.y for m in moved) < 1e-9
+    return moved
+
+
+def test_a_ten_box_stack_stands_for_a_minute():
+    space, contact = world()
+    bodies = tower(space, 10)
+    # 55 weights of 2e-4 m of sinking in all: 0.011 m
+    stands(space, contact, bodies, 60, 0.0115)
+    assert max(b.velocity.length for b in bodies) < 1e-6
+    before = [b.position for b in bodies]
+    for _ in range(600):
+        contact.step(1 / 60)
+    assert max((b.position - p).length for b, p in zip(bodies, before)) < 1e-8  # no creep
+
+
+@pytest.mark.slow
+def test_the_pyramid_of_820_boxes_stands_for_a_minute():
+    space, contact = world()
+    bodies = []
+    for row in range(40):
+        for i in range(40 - row):
+            bodies.append(box(space, (1.1 * (i - (39 - row) / 2), 0.5 + row)))
+    assert len(bodies) == 820
+    # a box of row r carries up to 40 - r weights at the middle: half of 40^2 sinkings of 2e-4 m
+    stands(space, contact, bodies, 60, 0.2)
+    assert max(b.velocity.length for b in bodies) < 0.05
