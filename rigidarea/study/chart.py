@@ -21,7 +21,7 @@ from .timing import median_times, scene_job
 
 REPEATS, QUICK_REPEATS = 5, 2
 PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
-"""Wall time (s) after which a run is not repeated: its noise is small beside it."""
+"""Time (s) after which a run is not repeated: its noise is small beside it."""
 
 
 def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
@@ -59,7 +59,7 @@ def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
 def costs(
     tasks: Sequence[Task], repeats: int, store: Path | None, patience_s: float = PATIENCE_S
 ) -> list[float]:
-    """Wall time per simulated second of every task, scene by scene, all settings of a scene interleaved."""
+    """Time per simulated second of every task, scene by scene, all settings of a scene interleaved."""
     known = {key(row["task"]): row["cost_s_per_s"] for row in read_rows(store)} if store else {}
     missing = [task for task in tasks if key(task) not in known]
     progress = Progress("costs", len(missing))

@@ -91,7 +91,7 @@ def chart_pages(report: Row, out: Path) -> list[Path]:
             for name in names
         ]
         figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
-        figure.supxlabel("cost: wall time / simulated time", fontsize=10)
+        figure.supxlabel("cost: computing time on one core / simulated time", fontsize=10)
         figure.supylabel("error (dimensionless; what it is stands in each panel)", fontsize=10)
         paths += save(figure, out, f"chart-{page + 1}")
     return paths

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 
 class Point(NamedTuple):
-    """One setting: `cost` (wall time per simulated time) and `error` (dimensionless)."""
+    """One setting: `cost` (computing time per simulated time) and `error` (dimensionless)."""
 
     cost: float
     error: float

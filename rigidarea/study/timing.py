@@ -1,4 +1,8 @@
-"""Wall time of runs: warm, on one core, interleaved, median of repeats."""
+"""Time of runs: warm, on one core, interleaved, median of repeats.
+
+What is timed is processor time of the one thread that steps: wall time on an idle core, and on a busy one not
+lengthened by other programs, which would hit long runs and spare short ones.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +17,7 @@ from .peers import Run, Settings, get_peer
 from .scene import Scene
 
 SHORT_S = 1e-3
-"""Wall time (s) below which a run is repeated at once."""
+"""Time (s) below which a run is repeated at once."""
 
 
 @contextlib.contextmanager
@@ -35,10 +39,10 @@ def one_core() -> Iterator[None]:
 
 
 def timed(run: Run, frames: int) -> float:
-    """Wall time (s) of `frames` frames in one call."""
-    started = time.perf_counter()
+    """Time (s) of `frames` frames in one call."""
+    started = time.thread_time()
     run.advance(frames)
-    return time.perf_counter() - started
+    return time.thread_time() - started
 
 
 def median_times(
@@ -61,7 +65,7 @@ def median_times(
 
 
 def scene_job(scene: Scene, peer: str, settings: Settings) -> Callable[[], float]:
-    """A job that builds the scene anew and times it: wall time (s) of its whole duration, set-up not counted.
+    """A job that builds the scene anew and times it: time (s) of its whole duration, set-up not counted.
 
     Runs below a millisecond are short beside the noise of a clock interrupt: the median of five of them.
     """

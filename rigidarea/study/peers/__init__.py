@@ -1,4 +1,24 @@
-"""The engines that the studies hold side by side; each module here with a `PEER` is one."""
+"""The engines that the studies hold side by side; each module here with a `PEER` or `PEERS` is one.
+
+How they are set, so that each does what it can:
+
+- *Stepping.* All run from the same kind of loop in C, one foreign call a step (`base.drive`): pymunk's solver and
+  rigidarea's equal steps through Chipmunk's own step function, Box2D through its binding. What a step of an empty
+  world costs is in the output of `bench frames` (`call_overhead_us`). Only `rigidarea-frame` goes through Python for
+  every step, because that is how `contact.step` works today.
+- *Building* is not timed, nor is the first run. Repeats are interleaved over all settings of a scene; see `timing`.
+- *pymunk*: steps a frame, iterations and the collision slop (a fraction of the body size; its default is meant for
+  pixels) are swept; the bias is pymunk's.
+- *Box2D*: steps a frame, substeps a step, contact softness (30 Hz, or the stiffest it allows, a quarter of the
+  substep rate) and the length of a body in its units (1 or 10 m: its tolerances are fixed in metres) are swept. The
+  restitution threshold is 0.01 m/s instead of 1, rotations are set by exact cosines (its own are approximated).
+- *Concave and curved outlines* get the same points for all, sampled so that the area is kept. Terrain becomes chains
+  that know their neighbours (pymunk's segments, Box2D's chains), moving outlines convex pieces that tile them
+  exactly (`decompose`), of at most eight vertices for Box2D. The sampling is swept. Circles are exact for the peers.
+- *Sleeping* is off everywhere; friction and elasticity are those of the pair, however an engine mixes them.
+- Single precision and one solver in Box2D, double in the others. `tests/study/test_peers.py` checks every peer's
+  set-up on scenes that it is known to do well.
+"""
 
 from __future__ import annotations
 

@@ -41,7 +41,7 @@ def scene() -> Scene:
         error_name="position over three bounces / drop",
         error=error,
         source="free fall: T = 2 sqrt(2 h/g) in the rigid limit",
-        pressure=2 * G * DROP / PIN**3,
+        pressure=2 * G / (PIN * DROP),  # k s δ²/2 = m g h at δ = h
         frame=1 / 240,
         tags=frozenset({"curved", "conforming", "concave", "impact"}),
     )
