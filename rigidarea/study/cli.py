@@ -30,7 +30,7 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
 def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
     bench = subparsers.add_parser("bench", help="speed and memory, beside shapely, pymunk's solver and Box2D")
-    bench.add_argument("what", choices=("frames", "kernels", "memory"))
+    bench.add_argument("what", choices=("frames", "kernels", "memory", "step", "start"))
     bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
     _common(bench, "bench")
     bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
@@ -91,7 +91,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw
+    from . import bench, draw, start
     from .records import write_csv, write_json
 
     if arguments.what == "frames":
@@ -101,6 +101,10 @@ def _bench(arguments: argparse.Namespace) -> int:
     elif arguments.what == "kernels":
         report = bench.kernels(arguments.scene)
         draw.kernel_times(report, arguments.out)
+    elif arguments.what == "step":
+        report = start.step()
+    elif arguments.what == "start":
+        report = start.start()
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
     write_json(arguments.out / f"bench-{arguments.what}.json", report)
