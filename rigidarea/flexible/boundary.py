@@ -259,7 +259,7 @@ def candidates(
     return count
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
     """Adds a force to point i and remembers that it is loaded. (Arrays, not their tuple: see ``place``.)"""
     if not flag[i]:

@@ -140,7 +140,7 @@ def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
         c[i].next_b = best if best >= 0 else wrap
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def find_regions(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     pairs: Ints, n_pairs: int, stamp: int, crossings: NDArray[np.void], regions: NDArray[np.void],
