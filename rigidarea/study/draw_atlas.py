@@ -49,7 +49,7 @@ def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
     xs, ys = (sorted({row[key] for row in rows}) for key in ("x", "y"))
     verdicts = [PASS, *sorted({row["verdict"] for row in rows} - {PASS})]
     colours = [PASS_COLOUR, *(FAIL_COLOURS[i % len(FAIL_COLOURS)] for i in range(len(verdicts) - 1))]
-    columns = min(len(names), 4)
+    columns = 3 if len(names) > 4 else len(names)
     lines = -(-len(names) // columns)
     figure, axes = plt.subplots(
         lines,

@@ -44,7 +44,7 @@ def atlas_map() -> Map:
         name="grazing",
         title="grazing: an elastic disc on a corner",
         x=Axis(
-            "how deep the disc's path cuts the corner / radius",
+            "cut of the path / radius",
             (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3),
             (0.01, 0.1, 0.3),
             log=True,
