@@ -107,11 +107,9 @@ def test_bad_settings_of_attach(name):
         assert (state(space) == state(untouched)).all()
 
 
-@pytest.mark.parametrize("value", ["20000", None, [1e4], 1j])
+@pytest.mark.parametrize("value", ["20000", [1e4], 1j])
 def test_settings_of_the_wrong_kind(value):
     space = scene()
-    if value is None:
-        pytest.skip("None means: to be chosen")
     with pytest.raises((ValueError, TypeError)):
         ra.attach(space, stiffness=value)
     assert ra.attached(space) is None

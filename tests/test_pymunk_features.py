@@ -744,6 +744,71 @@ def test_removing_a_body_in_contact_lets_the_rest_go_on(hook):
     assert upper.position.y == pytest.approx(0.5, abs=1e-3)
 
 
+def test_a_shape_comes_back_and_moves_to_another_space(hook):
+    """Its row was given to others meanwhile; each space knows it by an id of its own."""
+    space, contact = world(hook)
+    floor(space)
+    body, shape = box(space, (0, 0.6))
+    steps(space, 300)
+    for _ in range(10):
+        space.remove(body, shape)
+        others = [box(space, (3 * j, 0.5), size=(2, 1)) for j in range(3)]
+        contact.step(1 / 60)
+        for other in others:
+            space.remove(*other)
+        space.add(body, shape)
+        contact.step(1 / 60)
+    assert used(contact) == (1, 1)
+    assert body.position.y == pytest.approx(0.5 - G / 5e4, abs=1e-6)
+    second, contact_2 = world(hook)
+    box(second, (9, 9))
+    floor(second, y=-1.0)
+    space.remove(body, shape)
+    second.add(body, shape)
+    steps(second, 1500)
+    steps(space, 10)
+    assert body.position.y == pytest.approx(-0.5 - G / 5e4, abs=1e-4)
+    assert used(contact) == (0, 0) and used(contact_2)[0] == 2
+
+
+def test_mass_given_by_density(hook):
+    space, contact = world(hook, stiffness=None)
+    floor(space)
+    body = pymunk.Body()
+    body.position = 0, 0.6
+    shape = pymunk.Poly.create_box(body, (1, 1))
+    shape.density = 2.0
+    space.add(body, shape)
+    for _ in range(60):
+        contact.step(1 / 60)
+    assert contact.regions["force"] == pytest.approx([2 * G], rel=1e-9)
+    # chosen so that it sinks by 2e-4 of its face
+    assert contact.stiffness == pytest.approx(2 * G / 2e-4, rel=1e-12)
+
+
+@pytest.mark.parametrize("kind", ["box", "ball"])
+def test_sliding_and_rolling_over_the_joints_of_a_floor(hook, kind):
+    """A floor of many segments feels like one: no bumps ("ghost collisions") where they meet."""
+    space, _ = world(hook, stiffness=1e6)
+    for i in range(-10, 10):
+        shape = pymunk.Segment(space.static_body, (i, 0), (i + 1, 0), 0)
+        shape.friction = 1.0
+        space.add(shape)
+    if kind == "ball":
+        body, _ = ball(space, (-3, 0.5), friction=1.0)
+        body.angular_velocity = -4
+    else:
+        body, _ = box(space, (-3, 0.5 - G / 1e6), friction=0.0)
+    body.velocity = 2, 0
+    heights = []
+    for _ in range(2000):
+        space.step(DT)
+        heights.append(body.position.y)
+    assert max(heights) <= 0.5 + 1e-9
+    # the ball's bed is soft, it loses a little on facets and joints; the box has nothing to lose
+    assert body.velocity.x == pytest.approx(2.0, rel=0.01 if kind == "ball" else 1e-4)
+
+
 def test_adding_and_removing_from_callbacks(hook):
     """Each ball that lands is replaced by a new one in a post-step callback."""
     space, contact = world(hook)
