@@ -179,16 +179,16 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: in
                         for k in range(n_modes):
                             ux += modes[2 * node, k] * modal[k]
                             uy += modes[2 * node + 1, k] * modal[k]
-                        if static:
+                        if static:  # C is symmetric: a load's row, for neighbouring nodes next to each other
                             for k in range(loaded[-1]):
                                 j = loaded[k]
                                 fx, fy = load[j, 0], load[j, 1]
-                                ux += flex[2 * node, 2 * j] * fx + flex[2 * node, 2 * j + 1] * fy
-                                uy += flex[2 * node + 1, 2 * j] * fx + flex[2 * node + 1, 2 * j + 1] * fy
+                                ux += flex[2 * j, 2 * node] * fx + flex[2 * j + 1, 2 * node] * fy
+                                uy += flex[2 * j, 2 * node + 1] * fx + flex[2 * j + 1, 2 * node + 1] * fy
                             last = flex.shape[0] - 3
                             for k in range(3):
-                                ux += flex[2 * node, last + k] * hub[k]
-                                uy += flex[2 * node + 1, last + k] * hub[k]
+                                ux += flex[last + k, 2 * node] * hub[k]
+                                uy += flex[last + k, 2 * node + 1] * hub[k]
                         u[node, 0] = ux
                         u[node, 1] = uy
                     x += weight * u[node, 0]
@@ -204,7 +204,7 @@ def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: in
     place(b, w, pose, modal, i, 1, stamp)
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
@@ -270,17 +270,18 @@ def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: fl
     load[i, 1] += fy
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def clear_loads(w: Work) -> None:
     """Forgets the contact points' loads."""
-    for k in range(w.touched[-1]):
-        i = w.touched[k]
-        w.point_load[i, 0] = w.point_load[i, 1] = w.pressure[i] = 0.0
-        w.point_flag[i] = False
-    w.touched[-1] = 0
+    touched, load, pressure, flag = w.touched, w.point_load, w.pressure, w.point_flag
+    for k in range(touched[-1]):
+        i = touched[k]
+        load[i, 0] = load[i, 1] = pressure[i] = 0.0
+        flag[i] = False
+    touched[-1] = 0
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
     """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
     load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched

@@ -255,7 +255,7 @@ def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, y
     lean = weight = 0.0
     i = j = 0
     lo = 0.0
-    chord = r.chord
+    chord = r["chord"]
     while i < n_a and j < n_b:
         xa, xb = x[0, i + 1], x[1, j + 1]
         hi = min(xa, xb, chord)
@@ -281,8 +281,8 @@ def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, y
         x[0, k], y[0, k] = c * x[0, k] + s * y[0, k], -s * x[0, k] + c * y[0, k]
     for k in range(n_b + 1):
         x[1, k], y[1, k] = c * x[1, k] + s * y[1, k], -s * x[1, k] + c * y[1, k]
-    nx, ny = r.nx, r.ny
-    r.nx, r.ny = c * nx - s * ny, c * ny + s * nx
+    nx, ny = r["nx"], r["ny"]
+    r["nx"], r["ny"] = c * nx - s * ny, c * ny + s * nx
     return c * xc + s * yc
 
 
@@ -309,15 +309,31 @@ def contact(
         if n_a == MANY:
             return MANY
         area, xc, yc = area_and_centroid(s.x, s.y, n_a, n_b)
-        r.area, r.force = area, k * area  # Eq. 5
-        ux, uy = -r.ny, r.nx
-        r.x, r.y = r.enter_x + ux * xc - uy * yc, r.enter_y + uy * xc + ux * yc
+        r["area"], r["force"] = area, k * area  # Eq. 5
+        ux, uy = -r["ny"], r["nx"]
+        r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
         if area <= 0.0:
             continue
         xc = _turn(r, s.x, s.y, n_a, n_b, q, xc, yc)
         if spread:
             distribute(
-                a, wa, b, wb, r.nx, r.ny, s.x, s.y, s.edge, s.t, n_a, n_b, r.force, area, xc, r.chord, q
+                a,
+                wa,
+                b,
+                wb,
+                r["nx"],
+                r["ny"],
+                s.x,
+                s.y,
+                s.edge,
+                s.t,
+                n_a,
+                n_b,
+                r["force"],
+                area,
+                xc,
+                s.x[0, n_a],
+                q,
             )
     return n
 

@@ -37,7 +37,7 @@ REGION = np.dtype(
     ]
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
-    + [("compliance", "f8"), ("x_chord", "f8"), ("y_chord", "f8")]
+    + [("x_chord", "f8"), ("y_chord", "f8")]
 )
 CROSSING = np.dtype(
     [("a", "i8"), ("b", "i8"), ("ta", "f8"), ("tb", "f8"), ("x", "f8"), ("y", "f8"), ("enter", "i8"), ("next_a", "i8"),
@@ -104,10 +104,10 @@ def _crossings(
                     return MANY
                 t = o_p / (o_p - o_q)
                 c = out[count]
-                c.a, c.b, c.ta, c.tb = i, j, t, o_r / (o_r - o_s)
-                c.x, c.y = px + t * dx, py + t * dy
-                c.enter = 1 if o_q >= 0.0 else 0  # A runs to the left of B's edge: into B
-                c.used = 0
+                c["a"], c["b"], c["ta"], c["tb"] = i, j, t, o_r / (o_r - o_s)
+                c["x"], c["y"] = px + t * dx, py + t * dy
+                c["enter"] = 1 if o_q >= 0.0 else 0  # A runs to the left of B's edge: into B
+                c["used"] = 0
                 count += 1
     return count
 
@@ -118,26 +118,26 @@ def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
     for i in range(n):
         best, wrap = -1, -1
         best_key = wrap_key = np.inf
-        key = c[i].a + c[i].ta
+        key = c[i]["a"] + c[i]["ta"]
         for j in range(n):
-            if j != i and ring_a[c[j].a] == ring_a[c[i].a]:
-                other = c[j].a + c[j].ta
+            if j != i and ring_a[c[j]["a"]] == ring_a[c[i]["a"]]:
+                other = c[j]["a"] + c[j]["ta"]
                 if other >= key and other < best_key and not (other == key and j < i):
                     best, best_key = j, other
                 if other < wrap_key:
                     wrap, wrap_key = j, other
-        c[i].next_a = best if best >= 0 else wrap
+        c[i]["next_a"] = best if best >= 0 else wrap
         best, wrap = -1, -1
         best_key = wrap_key = np.inf
-        key = c[i].b + c[i].tb
+        key = c[i]["b"] + c[i]["tb"]
         for j in range(n):
-            if j != i and ring_b[c[j].b] == ring_b[c[i].b]:
-                other = c[j].b + c[j].tb
+            if j != i and ring_b[c[j]["b"]] == ring_b[c[i]["b"]]:
+                other = c[j]["b"] + c[j]["tb"]
                 if other >= key and other < best_key and not (other == key and j < i):
                     best, best_key = j, other
                 if other < wrap_key:
                     wrap, wrap_key = j, other
-        c[i].next_b = best if best >= 0 else wrap
+        c[i]["next_b"] = best if best >= 0 else wrap
 
 
 @njit(cache=True, inline="always")
@@ -162,27 +162,27 @@ def find_regions(
     count = 0
     for i in range(n):
         c = crossings[i]
-        if c.enter == 0 or c.used == 1:
+        if c["enter"] == 0 or c["used"] == 1:
             continue
-        out = c.next_a
-        if out < 0 or crossings[out].enter == 1:
+        out = c["next_a"]
+        if out < 0 or crossings[out]["enter"] == 1:
             return TORN
-        if crossings[out].next_b != i:
+        if crossings[out]["next_b"] != i:
             return SLICED
         if count == len(regions):
             return MANY
-        c.used = crossings[out].used = 1
+        c["used"] = crossings[out]["used"] = 1
         r, d = regions[count], crossings[out]
-        r.enter_a, r.enter_a_t, r.enter_b, r.enter_b_t = c.a, c.ta, c.b, c.tb
-        r.leave_a, r.leave_a_t, r.leave_b, r.leave_b_t = d.a, d.ta, d.b, d.tb
-        r.enter_x, r.enter_y, r.leave_x, r.leave_y = c.x, c.y, d.x, d.y
-        ex, ey = d.x - c.x, d.y - c.y
-        r.chord = np.hypot(ex, ey)
-        if r.chord > 0.0:
+        r["enter_a"], r["enter_a_t"], r["enter_b"], r["enter_b_t"] = c["a"], c["ta"], c["b"], c["tb"]
+        r["leave_a"], r["leave_a_t"], r["leave_b"], r["leave_b_t"] = d["a"], d["ta"], d["b"], d["tb"]
+        r["enter_x"], r["enter_y"], r["leave_x"], r["leave_y"] = c["x"], c["y"], d["x"], d["y"]
+        ex, ey = d["x"] - c["x"], d["y"] - c["y"]
+        r["chord"] = np.hypot(ex, ey)
+        if r["chord"] > 0.0:
             # Eq. 13 for q = 0: the mean normal of an arc is its chord turned by a quarter. Outward for A, so it is
             # the direction of the force on B.
-            r.nx, r.ny = ey / r.chord, -ex / r.chord
-            r.x_chord, r.y_chord = 0.5 * (d.x + c.x), 0.5 * (d.y + c.y)
+            r["nx"], r["ny"] = ey / r["chord"], -ex / r["chord"]
+            r["x_chord"], r["y_chord"] = 0.5 * (d["x"] + c["x"]), 0.5 * (d["y"] + c["y"])
             count += 1
     return count
 
@@ -198,15 +198,15 @@ def arcs(
     on both. Piece k, between vertices k and k + 1, lies on ``edge[·, k]`` at parameters ``t[·, k]``. Returns the
     numbers of pieces, or (MANY, MANY).
     """
-    ux, uy = -r.ny, r.nx  # along the chord
+    ux, uy = -r["ny"], r["nx"]  # along the chord
     following, at_a, stamp_a = a.next, wa.position, wa.position_stamp
     preceding, at_b, stamp_b = b.previous, wb.position, wb.position_stamp
     limit = x.shape[1] - 2
     for side in range(2):
         x[side, 0] = y[side, 0] = 0.0
     n_a = 0
-    i, t0 = r.enter_a, r.enter_a_t
-    while i != r.leave_a or (n_a == 0 and r.leave_a_t < t0):
+    i, t0 = r["enter_a"], r["enter_a_t"]
+    while i != r["leave_a"] or (n_a == 0 and r["leave_a_t"] < t0):
         edge[0, n_a] = i
         t[0, n_a, 0], t[0, n_a, 1] = t0, 1.0
         i, t0, n_a = following[i], 0.0, n_a + 1
@@ -214,28 +214,28 @@ def arcs(
             return MANY, MANY
         if stamp_a[i] != stamp:
             place_one(a, wa, pose_a, qa, i, stamp)
-        px, py = at_a[i, 0] - r.enter_x, at_a[i, 1] - r.enter_y
+        px, py = at_a[i, 0] - r["enter_x"], at_a[i, 1] - r["enter_y"]
         x[0, n_a], y[0, n_a] = ux * px + uy * py, -uy * px + ux * py
     edge[0, n_a] = i
-    t[0, n_a, 0], t[0, n_a, 1] = t0, r.leave_a_t
+    t[0, n_a, 0], t[0, n_a, 1] = t0, r["leave_a_t"]
     n_a += 1
-    x[0, n_a], y[0, n_a] = r.chord, 0.0
+    x[0, n_a], y[0, n_a] = r["chord"], 0.0
     n_b = 0
-    j, t0 = r.enter_b, r.enter_b_t
-    while j != r.leave_b or (n_b == 0 and r.leave_b_t > t0):
+    j, t0 = r["enter_b"], r["enter_b_t"]
+    while j != r["leave_b"] or (n_b == 0 and r["leave_b_t"] > t0):
         edge[1, n_b] = j
         t[1, n_b, 0], t[1, n_b, 1] = t0, 0.0
         if stamp_b[j] != stamp:
             place_one(b, wb, pose_b, qb, j, stamp)
-        px, py = at_b[j, 0] - r.enter_x, at_b[j, 1] - r.enter_y
+        px, py = at_b[j, 0] - r["enter_x"], at_b[j, 1] - r["enter_y"]
         j, t0, n_b = preceding[j], 1.0, n_b + 1
         if n_b >= limit:
             return MANY, MANY
         x[1, n_b], y[1, n_b] = ux * px + uy * py, -uy * px + ux * py
     edge[1, n_b] = j
-    t[1, n_b, 0], t[1, n_b, 1] = t0, r.leave_b_t
+    t[1, n_b, 0], t[1, n_b, 1] = t0, r["leave_b_t"]
     n_b += 1
-    x[1, n_b], y[1, n_b] = r.chord, 0.0
+    x[1, n_b], y[1, n_b] = r["chord"], 0.0
     return n_a, n_b
 
 

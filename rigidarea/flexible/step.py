@@ -204,31 +204,31 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
             return n
         for i in range(n):
             r = s.regions[i]
-            fx, fy = r.force * r.nx, r.force * r.ny
+            fx, fy = r["force"] * r["nx"], r["force"] * r["ny"]
             buf.force[0] += fx
             buf.force[1] += fy
             if total < REGIONS_KEPT:
-                buf.regions[total, 0] = r.force
-                buf.regions[total, 1], buf.regions[total, 2] = r.nx, r.ny
-                buf.regions[total, 3], buf.regions[total, 4] = r.x, r.y
+                buf.regions[total, 0] = r["force"]
+                buf.regions[total, 1], buf.regions[total, 2] = r["nx"], r["ny"]
+                buf.regions[total, 3], buf.regions[total, 4] = r["x"], r["y"]
             total += 1
             buf.row[:] = 0.0
             for side in range(2):
                 j, sign = (ia, -1.0) if side == 0 else (ib, 1.0)
-                ax, ay = r.x - buf.pose[j, 0], r.y - buf.pose[j, 1]
+                ax, ay = r["x"] - buf.pose[j, 0], r["y"] - buf.pose[j, 1]
                 buf.load[j, 0] += sign * fx
                 buf.load[j, 1] += sign * fy
                 buf.load[j, 2] += sign * (ax * fy - ay * fx)
-                ax, ay = r.x_chord - buf.pose[j, 0], r.y_chord - buf.pose[j, 1]
-                buf.row[3 * j], buf.row[3 * j + 1] = sign * r.nx, sign * r.ny
-                buf.row[3 * j + 2] = sign * (ax * r.ny - ay * r.nx)
+                ax, ay = r["x_chord"] - buf.pose[j, 0], r["y_chord"] - buf.pose[j, 1]
+                buf.row[3 * j], buf.row[3 * j + 1] = sign * r["nx"], sign * r["ny"]
+                buf.row[3 * j + 2] = sign * (ax * r["ny"] - ay * r["nx"])
             for m in range(6):
                 row = 3 * (ia if m < 3 else ib) + m % 3
                 for c in range(6):
                     col = 3 * (ia if c < 3 else ib) + c % 3
-                    buf.tangent[row, col] += st.k * r.chord * buf.row[row] * buf.row[col]
+                    buf.tangent[row, col] += st.k * r["chord"] * buf.row[row] * buf.row[col]
             if not st.sts:
-                turn = st.k * r.chord**3 / 12.0
+                turn = st.k * r["chord"] ** 3 / 12.0
                 buf.tangent[3 * ia + 2, 3 * ia + 2] += turn
                 buf.tangent[3 * ib + 2, 3 * ib + 2] += turn
                 buf.tangent[3 * ia + 2, 3 * ib + 2] -= turn
