@@ -20,6 +20,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 #: Functions that machine code calls, all on pointers and scalars.
 FUNCTIONS = [
     "cpSpaceGetUserData",
+    "cpSpaceGetSleepTimeThreshold",
     "cpSpaceGetTimestamp",
     "cpSpaceGetCurrentTimeStep",
     "cpShapeGetHashID",
@@ -97,8 +98,19 @@ def layout() -> dict[str, int]:
         "arbiter_count": "count",
         "arbiter_normal": "n",
         "arbiter_process": "processCollision",
+        "arbiter_state": "state",
+        "arbiter_handlers": "handlerAB",
     }
     found |= {name: ffi.offsetof("struct cpArbiter", field) for name, field in arbiter.items()}
+    found["handler_post_solve"] = ffi.offsetof("struct cpCollisionHandler", "postSolveFunc")
+    # what a handler's post_solve is that pymunk has cleared, and one that nobody ever set
+    found["unset_post_solve"] = address_of(ffi.addressof(lib, "DoNothing"))
+    space = pymunk.Space()
+    space.on_collision(1, 2)
+    found["no_post_solve"] = address_of(space._handlers[1, 2]._handler.postSolveFunc)
+    for i, name in enumerate(("handlerAB", "handlerBA", "handlerA", "handlerB")):
+        if ffi.offsetof("struct cpArbiter", name) != found["arbiter_handlers"] + 8 * i:
+            raise LayoutError(f"arbiter {name}: the four handlers do not follow each other")
     for pair in ("a", "body_a"):  # B's pointer follows A's
         if ffi.offsetof("struct cpArbiter", pair.replace("a", "b") if pair == "a" else "body_b") != (
             ffi.offsetof("struct cpArbiter", pair) + 8

@@ -14,7 +14,7 @@ from numba import config
 from pymunk._chipmunk_cffi import ffi, lib
 
 from . import hook, stepping
-from .chipmunk import LayoutError, layout
+from .chipmunk import LayoutError, address_of, layout
 from .energy import stored_energy
 from .kernel.force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from .outline import Outline, positive
@@ -97,6 +97,7 @@ class AreaContact:
         self._hook = Hook(self)
         space.on_collision(pre_solve=self._hook, separate=self._hook.separate)
         self._handler = space._handlers[None, None]
+        self._state["global_handler"] = address_of(self._handler._handler)
         if self.compiled:
             from . import machine
 
@@ -143,6 +144,8 @@ class AreaContact:
         space.on_collision(pre_solve=pymunk.empty_callback, separate=pymunk.empty_callback)
         for arbiter in space._get_arbiters():
             arbiter.data = ffi.NULL
+            if arbiter.state == lib.CP_ARBITER_STATE_IGNORE:
+                arbiter.state = lib.CP_ARBITER_STATE_NORMAL
         self._space = None
 
     def _check_hooked(self) -> None:

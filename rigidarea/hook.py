@@ -7,8 +7,9 @@ set there acts in the same step, which is symplectic Euler, with joints solved a
 2. lets `pair_pull` find the regions and their force,
 3. adds the force to the two bodies,
 4. takes the arbiter's contact points away (count = 0). Chipmunk's solver then has nothing to solve, while the
-   arbiter itself stays: sleeping islands, waking, post_solve and separate go on as ever. process_collision is left
-   to the user: where a begin or pre_solve of theirs said no, there is no force either.
+   arbiter itself stays: sleeping islands, waking, post_solve and separate go on as ever. (Where there is neither
+   sleeping nor a post_solve, machine code leaves it out of the step, which is faster.) process_collision is left to
+   the user: where a begin or pre_solve of theirs said no, there is no force either.
 
 This file is the readable statement of that, and a hook that runs anywhere; `machine.py` is the same in machine code.
 Both call the same kernel.

@@ -21,11 +21,14 @@ from .kernel.memory import array_at
 from .kernel.pair import DONE, FREE_PAIRS, GROW_WORK, NOT_FINITE, Pose, Surface, end_pair, new_pair, pair_pull
 from .store import STATE, load_law, load_pool, load_tables, load_work
 
+#: Chipmunk's states of an arbiter (enum cpArbiterState).
+_NORMAL, _IGNORE = 1, 2
 _HALF = np.uint64(32)
 _LOWER = np.uint64(0xFFFFFFFF)
 
 register_symbols()
 _user_data = types.ExternalFunction("rigidarea_cpSpaceGetUserData", types.uintp(types.uintp))
+_sleep_time = types.ExternalFunction("rigidarea_cpSpaceGetSleepTimeThreshold", types.float64(types.uintp))
 _timestamp = types.ExternalFunction("rigidarea_cpSpaceGetTimestamp", types.uint32(types.uintp))
 _time_step = types.ExternalFunction("rigidarea_cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 _hash_id = types.ExternalFunction("rigidarea_cpShapeGetHashID", types.uintp(types.uintp))
@@ -97,6 +100,31 @@ def _push(s: Any, body: int, row: Any, stamp: int, fx: float, fy: float, moment:
     row.torque = t[0]
 
 
+@kernel(inline="always")
+def _post_solves(s: Any, handler: int) -> bool:
+    function = _address(handler + s.handler_post_solve)
+    return function != s.no_post_solve and function != s.unset_post_solve
+
+
+@kernel(inline="always")
+def _silence(s: Any, arbiter: int, space: int) -> None:
+    """Leave Chipmunk's solver nothing to do for this arbiter.
+
+    Where nobody would miss it (no sleeping, so no islands; no post_solve) the arbiter is left out of the step
+    altogether, which saves a tenth of it. Else it stays, without contact points.
+    """
+    state = array_at(arbiter + s.arbiter_state, (1,), np.int32)
+    missed = _sleep_time(space) < np.inf or _post_solves(s, s.global_handler)
+    for i in range(4):
+        missed = missed or _post_solves(s, _address(arbiter + s.arbiter_handlers + 8 * i))
+    if missed:
+        array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = 0
+        if state[0] == _IGNORE:
+            state[0] = _NORMAL
+    else:
+        state[0] = _IGNORE
+
+
 @callback(types.void(types.uintp, types.uintp, types.uintp))
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair of one step, in machine code. See the module's docstring."""
@@ -121,8 +149,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     b = _motion(s, body_b)
     if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
         return
-    count = array_at(arbiter + s.arbiter_count, (1,), np.int32)
-    count[0] = 0
+    _silence(s, arbiter, space)
 
     sa = _row(s, shape_a)
     sb = _row(s, shape_b)

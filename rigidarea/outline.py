@@ -373,7 +373,7 @@ def _chords(radius: float, sweep: float, tolerance: float) -> int:
 
 def positive(value: float, name: str) -> float:
     """The value as a float; ValueError with its name unless it is positive and finite."""
-    if not (math.isfinite(value) and value > 0):
+    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0):
         raise ValueError(f"{name} must be positive and finite, got {value!r}")
     return float(value)
 

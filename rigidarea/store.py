@@ -30,7 +30,8 @@ OFFSETS = [
     *("body_position", "body_transform", "body_velocity", "body_spin", "body_force", "body_torque"),
     *("body_inverse_mass", "body_inverse_moment", "shape_surface_velocity"),
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_data", "arbiter_shape_a"),
-    *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process"),
+    *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process", "arbiter_state"),
+    *("arbiter_handlers", "handler_post_solve", "no_post_solve", "unset_post_solve"),
 ]
 STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
@@ -45,10 +46,8 @@ STATE = record(
         ("direction", "i8"),
         ("request", "i8"),  # what machine code asks Python for
         ("restoring", "i8"),  # pairs are to be looked up in a copied space's memory
-        (
-            "epoch",
-            "u8",
-        ),  # upper half of what is kept in arbiters: tells this attachment's pairs from another's
+        ("global_handler", "u8"),  # address of Chipmunk's global handler
+        ("epoch", "u8"),  # upper half of what is kept in arbiters: whose pairs they are
     ],
 )
 
