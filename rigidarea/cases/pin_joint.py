@@ -321,5 +321,5 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
             )
         ax.set(xticks=x, xticklabels=[f"{r['mesh_mm']} mm" for r in rows], ylabel=label, xlabel="mesh")
         ax.margins(y=0.2)
-    axes[0].legend(loc="lower right")
+    axes[1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.9))
     report.save(fig, out, "pin_joint_table2")

@@ -106,6 +106,7 @@ class Simulation:
         margin: float = 0.0,
         rho: float = 0.8,
         gravity: tuple[float, float] = (0.0, 0.0),
+        depth_limit: float = np.inf,
     ) -> None:
         if not 0.0 <= rho <= 1.0:
             raise ValueError(f"rho must lie in [0, 1], got {rho}")
@@ -159,6 +160,30 @@ class Simulation:
             np.zeros((3 * n, 3 * n)), np.zeros(3 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
             np.array([-1, 0, 0]),
         )  # fmt: skip
+        if np.isfinite(depth_limit):
+            self._check_start(depth_limit)
+
+    def counts(self) -> tuple[int, int]:
+        """Contact evaluations so far, and contact regions in the last one."""
+        return int(self._buffers.counts[1]), int(self._buffers.counts[2])
+
+    def _check_start(self, limit: float) -> None:
+        for i, j in self.pairs:
+            pose = [np.array([x, y, np.cos(t), np.sin(t)]) for x, y, t in self.state.x[[i, j]]]
+            a, b = self.boundaries[i], self.boundaries[j]
+            s = self.scratch
+            n_pairs = nodal.search(a, pose[0], b, pose[1], 0.0, s)
+            works = workspace(a), workspace(b)
+            flat = [np.zeros(x.modes.shape[1]) for x in (a, b)]
+            n = nodal.contact(
+                a, works[0], pose[0], flat[0], b, works[1], pose[1], flat[1], n_pairs, 1, 1.0, 1.0, False, s
+            )
+            depth = max((float(r["area"] / r["chord"]) for r in s.regions[: max(n, 0)]), default=0.0)
+            if n < 0 or depth > limit:
+                raise ValueError(
+                    f"bodies {i} and {j} overlap at t = 0: expected a mean depth of at most {limit:.4g}, got "
+                    + (f"{depth:.4g}" if n >= 0 else "boundaries that pass through each other")
+                )
 
     def _new_state(self, modes: int) -> State:
         x = np.array([[*b.position, b.angle] for b in self.bodies], float)

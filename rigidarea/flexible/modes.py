@@ -75,8 +75,8 @@ def reduce(
     for name, ring in (("hub", hub), ("clamped", clamped)):
         if ring is not None and not (0 <= ring < len(mesh.rings) and len(mesh.rings[ring]) > 0):
             raise ValueError(f"{name} ring {ring} has no nodes; the mesh has rings 0 … {len(mesh.rings) - 1}")
-    if modes > 2 * len(mesh.points) - 6:
-        raise ValueError(f"modes must be at most {2 * len(mesh.points) - 6} for this mesh, got {modes}")
+    if modes > 2 * len(mesh.points) - 3:
+        raise ValueError(f"modes must be at most {2 * len(mesh.points) - 3} for this mesh, got {modes}")
     if cache is None:
         return _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
     digest = hashlib.sha256(
@@ -137,7 +137,10 @@ def free_modes(k: sp.csc_array, mass: Array, rigid: Array, count: int) -> tuple[
     shift = -1e-9 * scaled.diagonal().max()
     start = np.random.default_rng(0).standard_normal(len(root))
     extra = rigid.shape[1]
-    _, vectors = spl.eigsh(scaled, k=count + extra, sigma=shift, v0=start)
+    if 2 * (count + extra) > len(root):  # most of them: Lanczos cannot give all
+        vectors = np.linalg.eigh(scaled.toarray())[1][:, : count + extra]
+    else:
+        _, vectors = spl.eigsh(scaled, k=count + extra, sigma=shift, v0=start)
     phi = vectors / root[:, None]
     if extra:  # rigid part out, exactly
         phi -= rigid @ (rigid.T @ (phi * (root**2)[:, None]))

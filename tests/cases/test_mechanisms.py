@@ -7,6 +7,9 @@ import pytest
 
 from rigidarea import cases
 from rigidarea.cases import gearbox, geneva, pin_joint
+from rigidarea.flexible.body import elastic_body
+from rigidarea.flexible.integrate import Simulation
+from rigidarea.flexible.statics import hub_fixed
 
 
 def test_pin_joint_exact_and_hook():
@@ -89,3 +92,31 @@ def test_command_line():
         cases.run(parser.parse_args(["gearbox", "--mesh", "-1"]))
     with pytest.raises(ValueError, match="must not exceed a feature"):
         cases.run(parser.parse_args(["gearbox", "--mesh", "9"]))
+
+
+def test_teeth_inside_teeth_are_refused():
+    """A wheel half a pitch out of mesh: the error comes before the first step."""
+    sim = gearbox.simulation("rigid", 1.2)
+    bodies = sim.bodies
+    bodies[1].angle += np.pi / gearbox.TEETH[1]
+    with pytest.raises(ValueError, match="overlap at t = 0"):
+        Simulation(bodies, k=gearbox.K, depth_limit=0.25 * gearbox.MODULE)
+
+
+def test_tooth_compliance_converges():
+    """Compliance of a pinion tooth pushed at its tip land: meshes of 1, 1/2, 1/4 mm, order from their differences."""
+    pinion, _ = gearbox.outlines()
+    values = []
+    for size in (1e-3, 5e-4, 2.5e-4):
+        body, _ = elastic_body(pinion.rings, size, gearbox.STEEL, "compliant", hub=1)
+        b = hub_fixed(body.boundary, body.hub)
+        tip = np.flatnonzero(
+            (np.hypot(*b.points.T) > 0.02499) & (np.abs(np.arctan2(*b.points.T[::-1])) < 0.1)
+        )
+        load = np.zeros(len(b.flexibility))
+        load[2 * tip + 1] = 1.0 / len(tip)
+        values.append(load @ b.flexibility @ load)
+    first, second = values[1] / values[0] - 1, values[2] / values[1] - 1
+    assert 0 < second < first  # T3 converges from the stiff side
+    assert second < 0.07
+    assert 0.7 < np.log2(first / second) < 2.2  # root fillets and load corners keep it below 2
