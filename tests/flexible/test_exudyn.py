@@ -87,8 +87,17 @@ def test_free_flight_against_exudyn():
     rest = velocity - drift - omega * np.column_stack([-x[:, 1], x[:, 0]])
     full = modal_shapes(mesh, mat, mass)
     boundary = build([mesh.points[:6] - body.centre], modes=body.modes)
-    flying = Body(boundary, body.mass, body.inertia, tuple(body.centre), 0.0, body.frequency, body.coupling, body.stretch,
-                  velocity=(*drift, omega))  # fmt: skip
+    flying = Body(
+        boundary,
+        body.mass,
+        body.inertia,
+        tuple(body.centre),
+        0.0,
+        body.frequency,
+        body.coupling,
+        body.stretch,
+        velocity=(*drift, omega),
+    )
     far = Body(build([mesh.points[:6]]), 1.0, 1.0, (50.0, 0.0), fixed=True)
     sim = Simulation([flying, far], rho=1.0)
     sim.state.dq[:] = full.T @ (np.repeat(mass, 2) * rest.ravel())
