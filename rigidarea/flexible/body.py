@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import build
+from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, resample, triangulate
@@ -47,7 +48,17 @@ def elastic_body(
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
     if refine < 1:
         raise ValueError(f"refine must be at least 1, got {refine}")
-    mesh = triangulate([resample(r, size) for r in rings], growth)
+    nodes = [resample(r, size) for r in rings]
+
+    def build_mesh() -> dict[str, NDArray]:
+        made = triangulate(nodes, growth)
+        return {"points": made.points, "triangles": made.triangles}
+
+    found = arrays(
+        cache, ("mesh", growth, [len(r) for r in nodes]), nodes, ("points", "triangles"), build_mesh
+    )
+    ends = np.cumsum([0] + [len(r) for r in nodes])
+    mesh = Mesh(found["points"], found["triangles"], tuple(map(np.arange, ends[:-1], ends[1:])))
     body = reduce(
         mesh, material, contact_rings, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
     )

@@ -29,6 +29,8 @@ from rigidarea.flexible.step import (
 
 Array = NDArray[np.float64]
 
+CHUNK = 5000  # steps a compiled call: a Python signal waits at most this long
+
 
 @dataclass
 class Body:
@@ -228,8 +230,8 @@ class Simulation:
     def run(self, duration: float, h: float, every: int = 1) -> Record:
         """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps.
 
-        Raises RuntimeError naming step, residual and body if a step does not converge after HALVINGS halvings;
-        what was computed until then is in ``self.record``.
+        Raises RuntimeError naming step, residual and body if a step does not converge after HALVINGS halvings.
+        What was computed until then, or until an interrupt, is in ``self.record``.
         """
         if not (h > 0 and duration > 0):
             raise ValueError(f"duration and h must be positive, got {duration} and {h}")
@@ -237,18 +239,19 @@ class Simulation:
         n = len(self.bodies)
         out = np.zeros((steps // every, 7 + 8 * n + 5 * REGIONS_KEPT))
         start = int(self._buffers.counts[1])
-        done, code = run_steps(
-            self.boundaries, self.works, self.system, self.couplings, self.state, self._saved, self.pairs,
-            self.settings, self.scratch, self._buffers, self.time, h, steps, every, out,
-        )  # fmt: skip
-        self.time += h * done
-        rows = out[: done // every]
-        body = rows[:, 7 : 7 + 8 * n].reshape(len(rows), n, 8)
-        self.record = Record(
-            rows[:, 0], body[:, :, :3], body[:, :, 3:6], body[:, :, 6], body[:, :, 7], rows[:, 1:3],
-            rows[:, 7 + 8 * n :].reshape(len(rows), REGIONS_KEPT, 5), rows[:, 3], rows[:, 4], rows[:, 5], rows[:, 6],
-            self.state.q.copy(), self.state.dq.copy(), int(self._buffers.counts[1]) - start,
-        )  # fmt: skip
+        done = code = 0
+        begin, chunk = self.time, every * max(1, CHUNK // every)
+        try:
+            while done < steps and code >= 0:
+                part, code = run_steps(
+                    self.boundaries, self.works, self.system, self.couplings, self.state, self._saved, self.pairs,
+                    self.settings, self.scratch, self._buffers, begin + h * done, h, min(chunk, steps - done), every,
+                    out[done // every :],
+                )  # fmt: skip
+                done += part
+        finally:  # an interrupt arrives between chunks: what was computed stays readable
+            self.time = begin + h * done
+            self.record = self._rows(out[: done // every], int(self._buffers.counts[1]) - start)
         if code < 0:
             reason = {
                 MANY: "more contact points than the work arrays hold",
@@ -261,6 +264,15 @@ class Simulation:
                 f" {self._buffers.rhs[-2]:.3g} against forces of {self._buffers.rhs[-1]:.3g}, body {worst}"
             )
         return self.record
+
+    def _rows(self, rows: Array, evaluations: int) -> Record:
+        n = len(self.bodies)
+        body = rows[:, 7 : 7 + 8 * n].reshape(len(rows), n, 8)
+        return Record(
+            rows[:, 0], body[:, :, :3], body[:, :, 3:6], body[:, :, 6], body[:, :, 7], rows[:, 1:3],
+            rows[:, 7 + 8 * n :].reshape(len(rows), REGIONS_KEPT, 5), rows[:, 3], rows[:, 4], rows[:, 5], rows[:, 6],
+            self.state.q.copy(), self.state.dq.copy(), evaluations,
+        )  # fmt: skip
 
     def contact_seconds(self, x: Array, repeat: int = 5) -> float:
         """Seconds of one contact evaluation, search included, at the frames ``x`` (n, b, 3); best of ``repeat``."""

@@ -13,11 +13,6 @@ relief). A clamped body (a ground) has the flexibility and modes of its clamped 
 
 from __future__ import annotations
 
-import hashlib
-import os
-import tempfile
-import warnings
-import zipfile
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
 from pathlib import Path
@@ -28,13 +23,13 @@ import scipy.sparse.linalg as spl
 from numba import njit
 from numpy.typing import NDArray
 
+from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, lumped_mass, stiffness
 from rigidarea.flexible.mesh import Mesh
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-VERSION = 2  # of the cache's content: raise it when the reduction changes
 BLOCK = 128  # right-hand sides solved at once: bounds memory to BLOCK columns
 
 
@@ -77,29 +72,15 @@ def reduce(
             raise ValueError(f"{name} ring {ring} has no nodes; the mesh has rings 0 … {len(mesh.rings) - 1}")
     if modes > 2 * len(mesh.points) - 3:
         raise ValueError(f"modes must be at most {2 * len(mesh.points) - 3} for this mesh, got {modes}")
-    if cache is None:
-        return _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
-    digest = hashlib.sha256(
-        repr((VERSION, material, tuple(contact_rings), hub, clamped, modes, flexible)).encode()
-    )
-    for a in (mesh.points, mesh.triangles, *mesh.rings):
-        digest.update(np.ascontiguousarray(a).tobytes())
-    path = Path(cache) / f"{digest.hexdigest()[:32]}.npz"
-    if path.exists():
-        try:
-            with np.load(path, allow_pickle=False) as stored:
-                values = {f.name: stored[f.name] for f in fields(Reduced)}
-            values["mass"], values["inertia"] = float(values["mass"]), float(values["inertia"])
-            return Reduced(**values)
-        except (OSError, ValueError, KeyError, EOFError, zipfile.BadZipFile) as error:
-            warnings.warn(f"cache file {path} cannot be read ({error}); built again", stacklevel=2)
-    body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    handle, part = tempfile.mkstemp(dir=path.parent, suffix=".part")
-    with os.fdopen(handle, "wb") as out:
-        np.savez(out, **{f.name: getattr(body, f.name) for f in fields(Reduced)})
-    os.replace(part, path)  # never a half-written file under the final name
-    return body
+    names = [f.name for f in fields(Reduced)]
+
+    def build() -> dict[str, NDArray]:
+        body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
+        return {name: np.asarray(getattr(body, name)) for name in names}
+
+    settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible)
+    found = arrays(cache, settings, (mesh.points, mesh.triangles, *mesh.rings), names, build)
+    return Reduced(float(found.pop("mass")), float(found.pop("inertia")), **found)
 
 
 def rigid_modes(points: Array, mass: Array) -> tuple[Array, Array, float]:

@@ -1,8 +1,8 @@
 """One free-flying flexible body against Exudyn (J. Gerstmayr, doi:10.1007/s11044-023-09937-1), where it is installed.
 
 On equilateral triangles with ν = 1/3 the plane-stress CST *is* a truss: every triangle puts a spring E t √3/4 on each
-of its edges. Exudyn integrates that truss in world coordinates, with no frame, no modes and no linearisation; at small
-strain both must move alike, spin, Coriolis terms and all.
+of its edges. Exudyn integrates that truss in world coordinates, with no frame, no modes and no linearisation; at
+small strain both must move alike, spin, Coriolis terms and all.
 """
 
 import numpy as np
