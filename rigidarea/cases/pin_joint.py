@@ -170,19 +170,22 @@ def compare(mesh_mm: float, level: str, cache: Path | None) -> dict[str, Any]:
     for contact in ("area", "sts"):
         sim = simulation(mesh_mm, level, contact, cache=cache)
         sim.run(1e-4, STEP)  # compiles, or loads from the cache
-        sim = simulation(mesh_mm, level, contact, cache=cache)
-        start = time.perf_counter()
-        r = sim.run(0.3, STEP)
-        row[f"{contact}_run_s"] = time.perf_counter() - start
+        whole = []
+        for _ in range(3):  # processor time and the best of three: others share the machine
+            sim = simulation(mesh_mm, level, contact, cache=cache)
+            start = time.process_time()
+            r = sim.run(0.3, STEP)
+            whole.append(time.process_time() - start)
+        row[f"{contact}_run_s"] = min(whole)
         touching = np.flatnonzero(r.force[:, 1] != 0)
         row[f"{contact}_eval_us"] = 1e6 * sim.contact_seconds(r.x[touching], 20)
         phase = []
         for _ in range(5):  # the contact alone, where the evaluation counts
             sim = simulation(mesh_mm, level, contact, cache=cache)
             sim.run(0.0552, STEP)
-            start = time.perf_counter()
+            start = time.process_time()
             sim.run(0.0014, STEP)
-            phase.append(time.perf_counter() - start)
+            phase.append(time.process_time() - start)
         row[f"{contact}_contact_phase_s"] = min(phase)
         row[f"{contact}_iterations_mean"] = float(r.iterations.mean())
         curves[contact] = r
