@@ -18,8 +18,9 @@ from typing import Any
 
 import numpy as np
 
+from ..report import envelope
 from .peers import get_peer, record
-from .records import Row, report
+from .records import Row
 from .scene import Array, Scene, Trace
 from .sweep import run_tasks
 
@@ -152,7 +153,24 @@ def atlas(
         store.unlink(missing_ok=True)
     results = run_tasks(evaluate, tasks, store, scheduler, workers, title="atlas")
     rows = [{**task, **result} for task, result in zip(tasks, results, strict=True)]
-    return report("atlas", {"quick": quick}, rows, maps=[describe(chart) for chart in chosen])
+    return envelope("atlas", {"quick": quick}, rows, maps=[describe(chart) for chart in chosen])
+
+
+def passed(rows: Sequence[Row]) -> list[Row]:
+    """A row a map and engine: points passed, points in all, and how the others failed."""
+    groups: dict[tuple[str, str], list[str]] = {}
+    for row in rows:
+        groups.setdefault((row["map"], row["peer"]), []).append(row["verdict"])
+    return [
+        {
+            "map": name,
+            "peer": peer,
+            "passed": verdicts.count(PASS),
+            "points": len(verdicts),
+            "failed": ", ".join(sorted(set(verdicts) - {PASS})),
+        }
+        for (name, peer), verdicts in groups.items()
+    ]
 
 
 def describe(chart: Map) -> Row:

@@ -12,9 +12,10 @@ from typing import Any
 import numpy as np
 
 from ..outline import Outline
+from ..report import envelope
 from .crowds import CROWDS
 from .peers import drive, get_peer, record
-from .records import Progress, Row, report
+from .records import Progress, Row
 from .scene import Scene
 from .timing import one_core
 
@@ -28,7 +29,7 @@ USUAL: dict[str, tuple[dict[str, Any], ...]] = {
 }
 """How each engine is usually run; pymunk's users take one step a frame, or a few."""
 
-WARM, BUDGET_S = 10, 20.0
+WARM, BUDGET_S = 10, 8.0
 """Frames before timing; wall time after which the frames of one run are cut short."""
 
 
@@ -53,7 +54,7 @@ def frames(names: Sequence[str] = (), sizes: Sequence[int] = SIZES, peer_names: 
                 if not get_peer(peer).refuses(scene):
                     rows += [frame_row(scene, peer, settings) for settings in USUAL[peer]]
     settings = {"scenes": chosen, "sizes": list(sizes), "peers": wanted}
-    return report("bench frames", settings, rows, growth=growth(rows), **call_overhead())
+    return envelope("bench frames", settings, rows, growth=growth(rows), **call_overhead())
 
 
 def frame_row(scene: Scene, peer: str, settings: dict[str, Any]) -> Row:
@@ -210,7 +211,7 @@ def kernels(names: Sequence[str] = (), repeats: int = 5) -> Row:
             }
         )
         progress.step(name)
-    return report("bench kernels", {"pairs": list(names or pairs), "repeats": repeats}, rows)
+    return envelope("bench kernels", {"pairs": list(names or pairs), "repeats": repeats}, rows)
 
 
 class Query:
@@ -292,7 +293,7 @@ def memory(names: Sequence[str] = (), size: int = 1000, peer_names: Sequence[str
             with ProcessPoolExecutor(1, mp_context=get_context("spawn")) as pool:
                 rows.append(pool.submit(memory_row, name, size, peer).result())
             progress.step(f"{name} {peer}")
-    return report("bench memory", {"scenes": chosen, "size": size, "peers": wanted}, rows)
+    return envelope("bench memory", {"scenes": chosen, "size": size, "peers": wanted}, rows)
 
 
 def memory_row(name: str, size: int, peer: str) -> Row:

@@ -12,9 +12,10 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from ..report import envelope
 from . import front
 from .peers import get_peer, peers, record
-from .records import Progress, Row, append_rows, read_rows, report
+from .records import Progress, Row, append_rows, read_rows
 from .scene import Scene, get_scene, scenes
 from .sweep import Task, key, run_tasks
 from .timing import median_times, scene_job
@@ -132,7 +133,7 @@ def chart(
     for task, result, cost in zip(tasks, results, seconds, strict=True):
         scene = get_scene(task["scene"])
         rows.append({**task, **result, "error_name": scene.error_name, "cost_s_per_s": cost})
-    return report(
+    return envelope(
         "chart",
         {"quick": quick, "repeats": rounds, "scenes": names, "peers": chosen},
         rows,

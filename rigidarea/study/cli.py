@@ -9,13 +9,10 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from ..report import lines, output_arguments, write_json
 
-def _common(parser: argparse.ArgumentParser, name: str) -> None:
-    out = Path("out") / name
-    parser.add_argument("--out", type=Path, default=out, metavar="DIR", help="where files go (%(default)s)")
-    parser.add_argument(
-        "--json", metavar="FILE", help="also write the JSON here; - for standard output alone"
-    )
+UNTOLD = ("tags", "error_name")
+"""Columns left to the files: too wide for a table."""
 
 
 def _sweep(parser: argparse.ArgumentParser) -> None:
@@ -32,7 +29,7 @@ def add_commands(subparsers: Any) -> None:
     bench = subparsers.add_parser("bench", help="speed and memory, beside shapely, pymunk's solver and Box2D")
     bench.add_argument("what", choices=("frames", "kernels", "memory", "step", "start"))
     bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
-    _common(bench, "bench")
+    output_arguments(bench, Path("out") / "bench")
     bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
     bench.add_argument("--bodies", type=int, action="append", metavar="N", help="this many (repeatable)")
     bench.add_argument(
@@ -40,38 +37,46 @@ def add_commands(subparsers: Any) -> None:
     )
     bench.set_defaults(run=_bench)
     chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
-    _common(chart, "chart")
+    output_arguments(chart, Path("out") / "chart")
     _sweep(chart)
     chart.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this (repeatable)")
-    chart.add_argument("--repeats", type=int, metavar="N", help="rounds of timing (default 5, quick 3)")
+    chart.add_argument("--repeats", type=int, metavar="N", help="rounds of timing (default 5, quick 2)")
     chart.set_defaults(run=_chart)
 
     atlas = subparsers.add_parser("atlas", help="where methods fail: maps over two knobs")
-    _common(atlas, "atlas")
+    output_arguments(atlas, Path("out") / "atlas")
     _sweep(atlas)
     atlas.add_argument("--map", action="append", default=[], metavar="NAME", help="only this (repeatable)")
     atlas.set_defaults(run=_atlas)
     compare = subparsers.add_parser("compare", help="rigid, compliant and modal on the same scenes")
     compare.add_argument("scene", nargs="*", metavar="SCENE", help="scenes (default: all)")
-    _common(compare, "compare")
+    output_arguments(compare, Path("out") / "compare")
     compare.set_defaults(run=_compare)
+
+
+def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict[str, Any]]) -> int:
+    """JSON where it was asked for; unless that is standard output, a table there."""
+    write_json(report, arguments.json)
+    if arguments.json != "-":
+        print("\n".join(lines([{k: v for k, v in row.items() if k not in UNTOLD} for row in rows])))
+        print(f"\nFiles: {arguments.out}/")
+    return 0
 
 
 def _compare(arguments: argparse.Namespace) -> int:
     from . import compare, draw_compare
-    from .records import write_csv, write_json
+    from .records import write_csv
 
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
-    write_json(arguments.out / "compare.json", report)
+    write_json(report, arguments.out / "compare.json")
     write_csv(arguments.out / "compare.csv", report["results"])
     draw_compare.levels(report, traces, arguments.out)
-    write_json(arguments.json, report)
-    return 0
+    return _tell(arguments, report, report["results"])
 
 
 def _atlas(arguments: argparse.Namespace) -> int:
     from . import atlas, draw_atlas
-    from .records import write_csv, write_json
+    from .records import write_csv
 
     report = atlas.atlas(
         arguments.out,
@@ -82,17 +87,16 @@ def _atlas(arguments: argparse.Namespace) -> int:
         workers=arguments.workers,
         resume=not arguments.fresh,
     )
-    write_json(arguments.out / "atlas.json", report)
+    write_json(report, arguments.out / "atlas.json")
     write_csv(arguments.out / "atlas.csv", report["results"])
     draw_atlas.atlas_maps(report, arguments.out)
     draw_atlas.overview(report, arguments.out)
-    write_json(arguments.json, report)
-    return 0
+    return _tell(arguments, report, atlas.passed(report["results"]))
 
 
 def _bench(arguments: argparse.Namespace) -> int:
     from . import bench, draw, start
-    from .records import write_csv, write_json
+    from .records import write_csv
 
     if arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
@@ -107,15 +111,14 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = start.start()
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
-    write_json(arguments.out / f"bench-{arguments.what}.json", report)
+    write_json(report, arguments.out / f"bench-{arguments.what}.json")
     write_csv(arguments.out / f"bench-{arguments.what}.csv", report["results"])
-    write_json(arguments.json, report)
-    return 0
+    return _tell(arguments, report, report["results"])
 
 
 def _chart(arguments: argparse.Namespace) -> int:
     from . import chart, draw
-    from .records import write_csv, write_json
+    from .records import write_csv
 
     report = chart.chart(
         arguments.out,
@@ -127,10 +130,9 @@ def _chart(arguments: argparse.Namespace) -> int:
         workers=arguments.workers,
         resume=not arguments.fresh,
     )
-    write_json(arguments.out / "chart.json", report)
+    write_json(report, arguments.out / "chart.json")
     write_csv(arguments.out / "chart.csv", report["results"])
     write_csv(arguments.out / "chart-summary.csv", report["summary"])
     draw.chart_pages(report, arguments.out)
     draw.chart_summary(report, arguments.out)
-    write_json(arguments.json, report)
-    return 0
+    return _tell(arguments, report, report["summary"] or report["results"])

@@ -16,7 +16,8 @@ from typing import Any
 
 import numpy as np
 
-from .records import Progress, Row, report
+from ..report import envelope
+from .records import Progress, Row
 from .scene import Array
 from .timing import one_core
 
@@ -198,7 +199,7 @@ def compare(names: Sequence[str] = (), cache: Path | None = None, repeats: int =
             "window": described.window,
             "levels": found,
         }
-    return report("compare", {"scenes": chosen, "repeats": repeats}, rows), traces
+    return envelope("compare", {"scenes": chosen, "repeats": repeats}, rows), traces
 
 
 def _level(described: Comparison, level: str, cache: Path | None, repeats: int) -> tuple[Row, Any]:

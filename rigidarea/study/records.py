@@ -1,4 +1,4 @@
-"""What every output file carries, and how it is written: JSON, CSV, rows as they come."""
+"""How the studies write rows: CSV, JSON lines as they come, and the progress on standard error."""
 
 from __future__ import annotations
 
@@ -6,95 +6,13 @@ import csv
 import json
 import math
 import os
-import platform
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
-from importlib import metadata
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
 
 Row = dict[str, Any]
-
-PACKAGES = (
-    "rigidarea",
-    "pymunk",
-    "pyb2d3",
-    "numpy",
-    "numba",
-    "scipy",
-    "shapely",
-    "matplotlib",
-    "distributed",
-)
-
-
-def versions() -> dict[str, str]:
-    """Versions of Python and of every package that bears on a number; absent ones are left out."""
-    found = {"python": platform.python_version()}
-    for package in PACKAGES:
-        try:
-            found[package] = metadata.version(package)
-        except metadata.PackageNotFoundError:
-            continue
-    return found
-
-
-def machine() -> dict[str, Any]:
-    """Processor, cores, system, and the load when asked."""
-    model = platform.processor()
-    info = Path("/proc/cpuinfo")
-    if info.exists():
-        names = [
-            line.split(":", 1)[1].strip() for line in info.read_text().splitlines() if "model name" in line
-        ]
-        model = names[0] if names else model
-    load = os.getloadavg()[0] if hasattr(os, "getloadavg") else math.nan
-    return {
-        "processor": model,
-        "cores": os.cpu_count(),
-        "system": f"{platform.system()} {platform.machine()}",
-        "load_1min": round(load, 2),
-    }
-
-
-def report(command: str, settings: Mapping[str, Any], results: Any, **more: Any) -> Row:
-    """The object that a command writes: command, settings, versions, machine, results and what else it
-    has.
-    """
-    return {
-        "command": command,
-        "settings": dict(settings),
-        "versions": versions(),
-        "machine": machine(),
-        "results": results,
-        **more,
-    }
-
-
-def plain(value: Any) -> Any:
-    """The value as JSON knows it: no NaN or infinity (null instead), no NumPy scalars, no tuples."""
-    if isinstance(value, Mapping):
-        return {str(key): plain(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if hasattr(value, "item"):
-        value = value.item()
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value
-
-
-def write_json(target: str | Path | None, value: Any) -> None:
-    """Write to a file, or to standard output for "-"; nothing for None."""
-    if target is None:
-        return
-    text = json.dumps(plain(value), indent=1, ensure_ascii=False)
-    if str(target) == "-":
-        print(text)
-    else:
-        Path(target).parent.mkdir(parents=True, exist_ok=True)
-        Path(target).write_text(text + "\n")
 
 
 def write_csv(target: Path, rows: Sequence[Row]) -> None:

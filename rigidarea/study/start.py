@@ -16,7 +16,7 @@ import pymunk
 
 import rigidarea as ra
 
-from .records import report
+from ..report import envelope
 from .timing import one_core
 
 Row = dict[str, Any]
@@ -92,7 +92,7 @@ def step(repeats: int = 15) -> Row:
                 "area_us_per_contact": 1e6 * area / contacts,
             }
         )
-    return report("bench step", {"step_s": STEP, "repeats": repeats, "iterations": 10}, rows)
+    return envelope("bench step", {"step_s": STEP, "repeats": repeats, "iterations": 10}, rows)
 
 
 def _per_step(space: pymunk.Space, count: int) -> float:
@@ -138,4 +138,4 @@ def start(bodies: int = 10000) -> Row:
                     "to_first_step_s": sum(times),
                 }
             )
-    return report("bench start", {}, rows)
+    return envelope("bench start", {}, rows)

@@ -6,7 +6,8 @@ import time
 
 import pytest
 
-from rigidarea.study.records import append_rows, plain, read_rows
+from rigidarea.report import plain
+from rigidarea.study.records import append_rows, read_rows
 from rigidarea.study.sweep import key, run_tasks
 
 
