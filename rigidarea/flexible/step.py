@@ -191,6 +191,8 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
         n_pairs = buf.counts[0]
         if n_pairs < 0:
             return n_pairs
+        if n_pairs == 0:
+            continue
         qa, qb = q[first[ia] : first[ia + 1]], q[first[ib] : first[ib + 1]]
         if st.sts:
             n = segment.contact(
