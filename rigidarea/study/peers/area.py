@@ -105,7 +105,9 @@ class Area:
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Stiffness × phase × sampling."""
         stiffness = (1e2, 1e3, 1e4, 1e5, 1e6) if quick else (1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7)
-        phases = (1.0,) if quick else (0.5, 1.0)
+        phases: tuple[float, ...] = (1.0,) if quick else (0.5, 1.0)
+        if "impact" in scene.tags:  # restitution wants several steps within a contact
+            phases = (0.25, 1.0) if quick else (0.1, 0.25, 0.5, 1.0)
         return [
             {"stiffness": k, "phase": phase, **sampling}
             for k in stiffness
