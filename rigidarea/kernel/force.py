@@ -61,7 +61,11 @@ REGION = record(
         ("excess", "f8"),  # what is damping (force)
         ("work", "f8"),  # done on the spring while closing (force length)
         ("loss", "f8"),  # energy lost to damping while closing (force length)
+        ("slowed", "f8"),  # closing speed that its force has taken while closing (length/time)
+        ("lasted", "f8"),  # time since first touch was noticed, while closing
+        ("late", "f8"),  # time from the middle of the step of first touch to first touch
         ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
+        ("depth", "f8"),  # its extent along n at first touch (length)
         ("straight", "f8"),  # longest straight stretch of both boundaries in it (length)
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
@@ -273,6 +277,9 @@ def region_force(
         r.damping = 0.0 if r.resting else restitution_damping(elasticity) / speed
         r.work = 0.0
         r.loss = 0.0
+        r.slowed = 0.0
+        r.lasted = 0.0
+        r.late = 0.5 * dt - min(dt, r.depth / speed) if speed > 0.0 else 0.0
         r.withheld = 0.0
     r.phase += step_phase
     if not (born or r.opened):
@@ -280,12 +287,17 @@ def region_force(
         moved = 0.5 * dt * (r.speed + speed)
         r.work += r.elastic * moved
         r.loss += r.excess * moved
+        r.slowed += dt * (r.elastic + r.excess) * inverse
+        r.lasted += dt
         if speed < 0.0:
             r.opened = 1
-            energy = 0.5 * r.first_speed * r.first_speed / inverse
+            # touch came within a step, whose speed is that of its middle: what else pushes has changed it since
+            others = (speed - r.first_speed + r.slowed) / r.lasted if r.lasted > 0.0 else 0.0
+            touch = r.first_speed + others * r.late
+            energy = 0.5 * touch * touch / inverse
             missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
             r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
-    if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
+    if speed > 0.0 if r.opened else r.phase > REST_PHASE:
         r.resting = 1
 
     couple = 0.0

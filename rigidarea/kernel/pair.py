@@ -315,6 +315,20 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
 
 
 @kernel
+def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float) -> float:
+    """Extent of a loop along the world direction (wx, wy)."""
+    nx = pose.c * wx + pose.s * wy
+    ny = pose.c * wy - pose.s * wx
+    low = np.inf
+    high = -np.inf
+    for i in range(start, stop):
+        h = nx * work.polygon[i, 0] + ny * work.polygon[i, 1]
+        low = min(low, h)
+        high = max(high, h)
+    return high - low
+
+
+@kernel
 def overlap_of_pair(
     pool: Pool, tables: Tables, work: Work, pair: Any, sa: int, sb: int, a: Pose, b: Pose
 ) -> tuple[int, int]:
@@ -423,6 +437,8 @@ def pair_pull(
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
         region.straight = min(loop.straight, chord)
+        if born:
+            region.depth = _extent(work, loop.start, loop.stop, pose_a, wx, wy)
         region.area = area
         region.x = x
         region.y = y
