@@ -297,7 +297,7 @@ def region_force(
             energy = 0.5 * touch * touch / inverse
             missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
             r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
-    if speed > 0.0 if r.opened else r.phase > REST_PHASE:
+    if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
         r.resting = 1
 
     couple = 0.0
