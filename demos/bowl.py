@@ -15,7 +15,7 @@ RADIUS, WALL = 5.0, 0.4
 """Of the bowl, inside, and of its wall (m)."""
 TOLERANCE = 2e-3
 """Largest sagitta of a chord (m)."""
-COLUMNS, ROWS, PITCH = 5, 9, 1.75
+COLUMNS, ROWS, PITCH = 5, 8, 1.75
 """How the pieces hang above the bowl before they fall; distance of neighbours (m)."""
 DENSITY, FRICTION, ELASTICITY = 1.0, 0.35, 0.1
 G = 9.81
@@ -71,7 +71,7 @@ def pieces() -> list[Outline]:
 
 
 def build() -> Scene:
-    """45 pieces in a loose column above the bowl, turned at random (seeded)."""
+    """40 pieces in a loose column above the bowl, turned at random (seeded)."""
     space = pymunk.Space()
     space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
     space.gravity = (0, -G)

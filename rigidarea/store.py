@@ -229,7 +229,8 @@ class Store:
             slots = np.full(max(ident + 1, 2 * len(self.slots)), -1, np.int32)
             slots[: len(self.slots)] = self.slots
             self.slots = slots
-        self.forget([ident])
+        if self.knows(ident):
+            self.forget([ident])
         row = self._free.pop() if self._free else self._fill["shapes"]
         if row == len(self.tables.shapes):
             self.tables = self.tables._replace(shapes=np.resize(self.tables.shapes, 2 * row))
