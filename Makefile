@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: run test test-all lint constraints clean
+.PHONY: run test test-all lint studies constraints clean
 .DEFAULT_GOAL := run
 
 # The build backend is pinned too: no build isolation, so pip fetches nothing that constraints.txt does not name.
@@ -26,6 +26,12 @@ test: .venv/.installed lint
 
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
+
+# Redraws the studies: chart, atlas and comparison, under $(OUT).
+studies: .venv/.installed
+	$(BIN)/python -m rigidarea chart --out $(OUT)/chart
+	$(BIN)/python -m rigidarea atlas --out $(OUT)/atlas
+	$(BIN)/python -m rigidarea compare --out $(OUT)/compare
 
 # Rewrites constraints.txt from what is installed now (after a deliberate upgrade).
 constraints: .venv/.installed

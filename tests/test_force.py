@@ -363,7 +363,8 @@ motions = st.builds(
 regions = st.fixed_dictionaries(
     dict(
         area=st.floats(1e-12, 1), x=number, y=number, chord=st.floats(1e-6, 3), spring=number, damping=positive,
-        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive, speed=number, straight=st.floats(0, 3),
+        tangent_stiffness=positive, phase=st.floats(0, 100), first_speed=positive,
+        speed=number, straight=st.floats(0, 3),
         resting=st.integers(0, 1), opened=st.integers(0, 1),
     )
 )  # fmt: skip
