@@ -111,6 +111,7 @@ class AreaContact:
         # Chipmunk calls separate once more for what touches when the space goes: not into freed tables.
         self._end = _finalize(space)
         self._frequency()  # compiled now, not in the first frame
+        stored_energy(self._store, self._shapes, -2)  # the same: no region is of that step
 
     def _choose_hook(self, wanted: str) -> bool:
         if wanted == "python":
