@@ -205,7 +205,7 @@ class AreaContact:
         tables, pool = self._store.tables, self._store.pool
         for ident, shape in self._shapes.items():
             body = shape.body
-            if body is None or body.body_type != pymunk.Body.DYNAMIC or shape.sensor or shape.space is None:
+            if body is None or body.body_type != pymunk.Body.DYNAMIC or shape.sensor:
                 continue
             flat = float(pool.heads[tables.shapes[self._store.slots[ident]]["outline"]]["face"])
             sizes[body] = max(sizes.get(body, 0.0), flat)
@@ -315,7 +315,7 @@ class AreaContact:
 
     @property
     def regions(self) -> np.ndarray:
-        """The contact regions of the last step, one REGIONS row each, in the order in which pairs first touched."""
+        """The contact regions of the last step, one REGIONS row each; the order is the tables' and means nothing."""
         stamp = lib.cpSpaceGetTimestamp(self.space._space)
         tables = self._store.tables
         live = tables.regions[tables.regions["stamp"] == stamp]
