@@ -29,8 +29,8 @@ Points = NDArray[np.float64]
 
 DEFAULT_TOLERANCE = 5e-5
 """Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc gets 316 points. An eighth
-of the penetration that `attach` allows by default, so that the facets stay unfelt: a disc left alone still rolls at
-0.986 of its speed after 10 s (at 1e-3, with 72 points, 0.56). Contacts cost what the contact is, not the outline."""
+of the penetration that `attach` allows by default, so that a rolling disc hardly feels its facets. Contacts cost what
+the contact is, not the outline."""
 
 SEGMENT_THICKNESS = 2.0
 """Depth of the solid behind a segment of radius 0 over the segment's length (dimensionless). See
