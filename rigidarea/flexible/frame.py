@@ -13,13 +13,14 @@ are zero because the modes have no net momentum in any orientation.)
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 
 
-@njit(cache=True)
+@kernel
 def inertia_forces(
     j0: float, h: Array, g: Array, q: Array, dq: Array, ddq: Array, omega: float, alpha: float, out: Array
 ) -> float:

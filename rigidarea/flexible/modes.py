@@ -20,12 +20,12 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
-from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, lumped_mass, stiffness
 from rigidarea.flexible.mesh import Mesh
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -106,36 +106,7 @@ def hub_rows(points: Array, nodes: Ints) -> Array:
     return w.reshape(-1, 3)
 
 
-def free_modes(k: sp.csc_array, mass: Array, rigid: Array, count: int) -> tuple[Array, Array]:
-    """The first ``count`` elastic modes (2 n, count), mass-orthonormal, and their angular frequencies.
-
-    ``rigid`` (2 n, r) are the modes to leave out (r = 0 for a clamped body). Signs are fixed (largest entry
-    positive), the start vector is seeded: same input, same bits.
-    """
-    root = np.repeat(mass, 2) ** 0.5
-    scaled = (sp.diags_array(1 / root) @ k @ sp.diags_array(1 / root)).tocsc()
-    # A shift below zero keeps the factorisation regular; relative to the stiffest diagonal it is far below any mode
-    shift = -1e-9 * scaled.diagonal().max()
-    start = np.random.default_rng(0).standard_normal(len(root))
-    extra = rigid.shape[1]
-    if 2 * (count + extra) > len(root):  # most of them: Lanczos cannot give all
-        vectors = np.linalg.eigh(scaled.toarray())[1][:, : count + extra]
-    else:
-        _, vectors = spl.eigsh(scaled, k=count + extra, sigma=shift, v0=start)
-    phi = vectors / root[:, None]
-    if extra:  # rigid part out, exactly
-        phi -= rigid @ (rigid.T @ (phi * (root**2)[:, None]))
-    # Rayleigh–Ritz on what is left puts the rigid remainder (norm ~ 0) aside and orders the rest
-    gram = phi.T @ (phi * (root**2)[:, None])
-    size, basis = np.linalg.eigh(gram)
-    phi = phi @ (basis[:, extra:] / size[extra:] ** 0.5)
-    square, turn = np.linalg.eigh(phi.T @ (k @ phi))
-    phi = phi @ turn
-    phi *= np.sign(phi[np.abs(phi).argmax(0), np.arange(count)])
-    return phi, square**0.5
-
-
-@njit(cache=True)
+@kernel
 def _substitute(
     lp: Ints, li: Ints, lx: Array, up: Ints, ui: Ints, ux: Array, x: Array
 ) -> None:  # compressed columns of L and U, right-hand sides as the columns of x
@@ -156,31 +127,77 @@ def _substitute(
                     x[ui[p], k] -= ux[p] * x[j, k]
 
 
-class _Solver:
-    """Sparse factors, applied to many right-hand sides row by row of all of them.
+class Flexibility:
+    """The static response of a body, u = C f, from one sparse factorisation, its rigid motion relieved.
 
-    SuperLU's own ``solve`` takes one column after another through threaded BLAS calls of a few entries each: ten
-    times slower here, and more so on a busy machine.
+    Free in space, C = (I − R Rᵀ M) K⁺ (I − M R Rᵀ) with R the rigid modes (2 n, 3): loads lose their resultant to
+    the body's own inertia, displacements their rigid part, and K⁺ may stand on any three supports that hold the
+    body, as they carry nothing. With degrees of freedom ``held``, R is empty (2 n, 0) and C = K⁻¹. Modes are the
+    eigenvectors of C M, with eigenvalues 1/ω², so the same factors give them and what they leave out.
     """
 
-    def __init__(self, matrix: sp.csc_array) -> None:
+    def __init__(self, k: sp.csc_array, mass: Array, rigid: Array, held: Ints) -> None:
+        self.root = np.repeat(mass, 2) ** 0.5
+        self._rigid, self._momentum = rigid, self.root[:, None] ** 2 * rigid
+        self._free = np.setdiff1d(np.arange(k.shape[0]), held)
         factors = spl.splu(
-            matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
-        )
+            k[self._free][:, self._free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
+            options={"SymmetricMode": True},
+        )  # fmt: skip
         self._row, self._column = factors.perm_r, factors.perm_c
-        lower, upper = factors.L.tocsc(), factors.U.tocsc()
         self._factors = tuple(
             part
-            for f in (lower, upper)
+            for f in (factors.L.tocsc(), factors.U.tocsc())
             for part in (f.indptr.astype(np.int64), f.indices.astype(np.int64), f.data)
         )
 
-    def solve(self, rhs: Array) -> Array:
-        """x (n, m) of A x = rhs."""
-        x = np.empty(rhs.shape)
-        x[self._row] = rhs
+    def __call__(self, loads: Array) -> Array:
+        """Displacements (2 n, c) under ``loads`` (2 n, c).
+
+        Thin products and substitution are not left to BLAS, whose threads take a hundred times longer to share out
+        so little work on a busy machine; SuperLU's ``solve`` calls it as well, for one column after another.
+        """
+        loads = loads - np.einsum("ir,rc->ic", self._momentum, np.einsum("ir,ic->rc", self._rigid, loads))
+        x = np.empty((len(self._free), loads.shape[1]))
+        x[self._row] = loads[self._free]
         _substitute(*self._factors, x)
-        return x[self._column]
+        u = np.zeros(loads.shape)
+        u[self._free] = x[self._column]
+        return u - np.einsum("ir,rc->ic", self._rigid, np.einsum("ir,ic->rc", self._momentum, u))
+
+    def modes(self, count: int) -> tuple[Array, Array]:
+        """The first ``count`` elastic modes (2 n, count), mass-orthonormal, and their angular frequencies (count,).
+
+        Largest eigenvalues of √M C √M, where rigid modes have none. Signs are fixed (largest entry positive), the
+        start vector is seeded: same input, same bits.
+        """
+        n = len(self.root)
+        if 2 * count > n:  # most of them: Lanczos cannot give all
+            dense = self.root[:, None] * self(np.diag(self.root))
+            value, vectors = np.linalg.eigh(0.5 * (dense + dense.T))
+        else:
+            response = spl.LinearOperator(
+                (n, n), lambda x: self.root * self((self.root * x.ravel())[:, None])[:, 0], dtype=float
+            )
+            start = np.random.default_rng(0).standard_normal(n)
+            value, vectors = spl.eigsh(response, k=count, which="LM", v0=start)
+        first = np.argsort(value)[::-1][:count]
+        phi = vectors[:, first] / self.root[:, None]
+        return phi * np.sign(phi[np.abs(phi).argmax(0), np.arange(count)]), value[first] ** -0.5
+
+
+def elastic(mesh: Mesh, material: Material, clamped: int | None = None) -> Flexibility:
+    """A mesh's static response, free in space or with the nodes of ring ``clamped`` held."""
+    mass, k = lumped_mass(mesh, material), stiffness(mesh, material)
+    if clamped is not None:
+        held = (2 * mesh.rings[clamped][:, None] + np.arange(2)).ravel()
+        return Flexibility(k, mass, np.zeros((k.shape[0], 0)), held)
+    # three supports: a point, and a turn about it
+    i = int(np.argmin(mesh.points[:, 0]))
+    away = mesh.points - mesh.points[i]
+    j = int(np.argmax((away**2).sum(1)))
+    held = np.array([2 * i, 2 * i + 1, 2 * j + (1 if abs(away[j, 0]) > abs(away[j, 1]) else 0)])
+    return Flexibility(k, mass, rigid_modes(mesh.points, mass)[0], held)
 
 
 def _reduce(
@@ -188,66 +205,29 @@ def _reduce(
     flexible: bool,
 ) -> Reduced:  # fmt: skip
     mass = lumped_mass(mesh, material)
-    rigid, centre, inertia = rigid_modes(mesh.points, mass)
+    _, centre, inertia = rigid_modes(mesh.points, mass)
     nodes = np.concatenate([mesh.rings[i] for i in contact_rings])
-    n = 2 * len(mesh.points)
-    f = 2 * len(nodes)
-    pick = np.zeros(f, np.int64)
-    pick[0::2], pick[1::2] = 2 * nodes, 2 * nodes + 1
-    hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
-
-    def interface(full: Array) -> Array:
-        return np.vstack([full[pick], hubs.T @ full])
-
-    x = mesh.points - centre
-    total = float(mass.sum())
-    none = np.zeros((f + 3, 0)), np.zeros((0, 0))
+    n, f = 2 * len(mass), 2 * len(nodes)
     if not flexible:
-        return Reduced(total, inertia, centre, np.zeros(0), *none, np.zeros((0, 0)), np.zeros(0))
-    k = stiffness(mesh, material)
-    if clamped is not None:
-        held = np.concatenate([2 * mesh.rings[clamped], 2 * mesh.rings[clamped] + 1])
-        rigid = np.zeros((n, 0))
-    else:  # three supports, statically determinate: they carry nothing, as every load is self-equilibrated
-        i = int(np.argmin(mesh.points[:, 0]))
-        away = mesh.points - mesh.points[i]
-        j = int(np.argmax((away**2).sum(1)))
-        held = np.array([2 * i, 2 * i + 1, 2 * j + (1 if abs(away[j, 0]) > abs(away[j, 1]) else 0)])
-    free = np.setdiff1d(np.arange(n), held)
-    omega, phi = np.zeros(0), np.zeros((n, 0))
-    if modes:
-        if clamped is None:
-            phi, omega = free_modes(k, mass, rigid, modes)
-        else:
-            kf = k[free][:, free].tocsc()
-            phi = np.zeros((n, modes))
-            root = np.repeat(mass, 2)[free] ** 0.5
-            scaled = (sp.diags_array(1 / root) @ kf @ sp.diags_array(1 / root)).tocsc()
-            start = np.random.default_rng(0).standard_normal(len(root))
-            square, vectors = spl.eigsh(scaled, k=modes, sigma=0.0, v0=start)
-            phi[free], omega = vectors / root[:, None], square**0.5
-    solver = _Solver(k[free][:, free].tocsc())
-    where = np.full(n, -1)
-    where[free] = np.arange(len(free))
-    m_rigid = np.repeat(mass, 2)[:, None] * rigid
-    s = np.empty((f + 3, f + 3))
-    for first in range(0, f, BLOCK):
-        cols = where[pick[first : first + BLOCK]]
-        rhs = np.zeros((len(free), len(cols)))
-        rhs[cols[cols >= 0], np.flatnonzero(cols >= 0)] = 1.0
-        full = np.zeros((n, len(cols)))
-        full[free] = solver.solve(rhs)
-        s[:, first : first + len(cols)] = interface(full)
-    rhs = np.zeros((n, 3 + rigid.shape[1]))
-    rhs[free] = solver.solve(np.ascontiguousarray(np.hstack([hubs, m_rigid])[free]))
-    s[:, f:] = interface(rhs[:, :3])
-    # C = (I − R Rᵀ M) K⁺ (I − M R Rᵀ): loads lose their resultant, displacements their rigid part
-    t, r = interface(rhs[:, 3:]), interface(rigid)
-    c = s - t @ r.T - r @ t.T + r @ (m_rigid.T @ rhs[:, 3:]) @ r.T
-    rows = interface(phi)
-    c -= (rows / omega**2) @ rows.T
+        return Reduced(float(mass.sum()), inertia, centre, np.zeros(0), np.zeros((f + 3, 0)), np.zeros((0, 0)),
+                       np.zeros((0, 0)), np.zeros(0))  # fmt: skip
+    # interface displacements = rowsᵀ u, loads on the nodes = rows f
+    pick = (2 * nodes[:, None] + np.arange(2)).ravel()
+    hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
+    boundary = sp.csc_array((np.ones(f), (pick, np.arange(f))), shape=(n, f))
+    rows = sp.hstack([boundary, sp.csc_array(hubs)]).tocsc()
+    response = elastic(mesh, material, clamped)
+    phi, omega = response.modes(modes) if modes else (np.zeros((n, 0)), np.zeros(0))
+    at = np.asarray(rows.T @ phi)
+    c = np.empty((f + 3, f + 3))
+    for first in range(0, f + 3, BLOCK):
+        part = slice(first, first + BLOCK)
+        c[:, part] = rows.T @ response(rows[:, part].toarray()) - (at / omega**2) @ at[part].T
+        c[part, part] = 0.5 * (c[part, part] + c[part, part].T)
+        c[part, :first] = c[:first, part].T  # symmetric to the last bit, with no second matrix in memory
+    m2 = np.repeat(mass, 2)
     turned = np.stack([-phi[1::2], phi[0::2]], 1).reshape(phi.shape)  # J φ
     return Reduced(
-        total, inertia, centre, omega, rows, 0.5 * (c + c.T),
-        phi.T @ (np.repeat(mass, 2)[:, None] * turned), (np.repeat(mass, 2) * x.ravel()) @ phi,
+        float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned),
+        (m2 * (mesh.points - centre).ravel()) @ phi,
     )  # fmt: skip

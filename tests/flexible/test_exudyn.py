@@ -12,7 +12,7 @@ from rigidarea.flexible.boundary import build
 from rigidarea.flexible.element import Material, lumped_mass, stiffness
 from rigidarea.flexible.integrate import Body, Simulation
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.flexible.modes import reduce
+from rigidarea.flexible.modes import elastic, reduce
 
 YOUNG, SIDE, SPIN = 2e5, 0.1, 2.0
 
@@ -85,7 +85,7 @@ def test_free_flight_against_exudyn():
     x = mesh.points - body.centre
     omega = float(mass @ (x[:, 0] * velocity[:, 1] - x[:, 1] * velocity[:, 0]) / body.inertia)
     rest = velocity - drift - omega * np.column_stack([-x[:, 1], x[:, 0]])
-    full = modal_shapes(mesh, mat, mass)
+    full = modal_shapes(mesh, mat)
     boundary = build([mesh.points[:6] - body.centre], modes=body.modes)
     flying = Body(
         boundary,
@@ -114,9 +114,6 @@ def test_free_flight_against_exudyn():
     assert np.abs(ours - coordinates).max() < 0.02 * elastic
 
 
-def modal_shapes(mesh, mat, mass):
+def modal_shapes(mesh, mat):
     """All elastic modes of all nodes, with the signs that ``reduce`` has."""
-    from rigidarea.flexible.modes import free_modes, rigid_modes
-
-    rigid, _, _ = rigid_modes(mesh.points, mass)
-    return free_modes(stiffness(mesh, mat), mass, rigid, 11)[0]
+    return elastic(mesh, mat).modes(11)[0]
