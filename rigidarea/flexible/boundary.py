@@ -11,8 +11,9 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -142,7 +143,7 @@ def workspace(b: Boundary) -> Work:
     )  # fmt: skip
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: int, stamp: int) -> None:
     """World positions of ``count`` contact points from ``start`` on along the perimeter, each once an evaluation.
 
@@ -198,13 +199,13 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: in
         i = following[i]
 
 
-@njit(cache=True)
+@kernel
 def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
     """``place`` for a single point, as a call: for the rare point that no candidate leaf holds."""
     place(b, w, pose, modal, i, 1, stamp)
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
@@ -217,7 +218,7 @@ def place_leaves(
             place(b, w, pose, modal, first[leaf], 1 - size[leaf], stamp)
 
 
-@njit(cache=True)
+@kernel
 def candidates(
     a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, stack: Ints, out: Ints
 ) -> int:
@@ -259,7 +260,7 @@ def candidates(
     return count
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
     """Adds a force to point i and remembers that it is loaded. (Arrays, not their tuple: see ``place``.)"""
     if not flag[i]:
@@ -270,7 +271,7 @@ def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: fl
     load[i, 1] += fy
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def clear_loads(w: Work) -> None:
     """Forgets the contact points' loads."""
     touched, load, pressure, flag = w.touched, w.point_load, w.pressure, w.point_flag
@@ -281,7 +282,7 @@ def clear_loads(w: Work) -> None:
     touched[-1] = 0
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
     """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
     load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched

@@ -26,11 +26,11 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, add_load, candidates
 from rigidarea.flexible.region import CROSSING, MANY, REGION, arcs, area_and_centroid, find_regions
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -40,7 +40,7 @@ GAUSS_X = (0.5 - 0.5 * 0.6**0.5, 0.5, 0.5 + 0.5 * 0.6**0.5)
 GAUSS_W = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
-@njit(cache=True)
+@kernel
 def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
     """Makes x grow along an arc; overhanging parts get no width, so no load. True if there were any."""
     bent = False
@@ -53,7 +53,7 @@ def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
     return bent
 
 
-@njit(cache=True)
+@kernel
 def _moments(x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float) -> tuple[float, float, float]:
     """∫ d^q (x − x_c)^i dx for i = 0, 1, 2 over the merged pieces of both arcs."""
     s0 = s1 = s2 = 0.0
@@ -81,7 +81,7 @@ def _moments(x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float) -> tup
     return s0, s1, s2
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, x: Array, y: Array, edge: Ints, t: Array,
     n_a: int, n_b: int, force: float, area: float, xc: float, chord: float, q: float,
@@ -174,7 +174,7 @@ def distribute(
         add_load(load_b, flag_b, touched_b, next_b[edge[1, j]], b_high * nx, b_high * ny)
 
 
-@njit(cache=True)
+@kernel
 def quadrature(
     a: Boundary, b: Boundary, x: Array, y: Array, edge: Ints, t: Array, n_a: int, n_b: int, chord: float,
     point: Ints, value: Array,
@@ -213,7 +213,7 @@ def quadrature(
     return count
 
 
-@njit(cache=True)
+@kernel
 def _height(x: Array, y: Array, side: int, k: int, at: float) -> float:
     width = x[side, k + 1] - x[side, k]
     return (
@@ -243,7 +243,7 @@ def scratch(points: int) -> Scratch:
     )  # fmt: skip
 
 
-@njit(cache=True)
+@kernel
 def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float) -> float:
     """Direction of the force by Eq. 13-15, and the arcs in axes across and along it; returns x of the centroid there.
 
@@ -286,13 +286,13 @@ def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, y
     return c * xc + s * yc
 
 
-@njit(cache=True)
+@kernel
 def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
     """Candidate leaf pairs into ``s.pairs``; their number, or MANY."""
     return candidates(a, pose_a, b, pose_b, margin, s.stack, s.pairs)
 
 
-@njit(cache=True)
+@kernel
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, q: float, spread: bool, s: Scratch,

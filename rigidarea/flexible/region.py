@@ -19,10 +19,10 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, place_leaves, place_one
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -49,7 +49,7 @@ TORN = -2  # crossings that do not alternate: a boundary that crosses itself
 SLICED = -3  # a region with more than one arc a body (a bar through a bar)
 
 
-@njit(cache=True)
+@kernel
 def _crossings(
     next_a: Ints, first_a: Ints, size_a: Ints, at_a: Array, next_b: Ints, first_b: Ints, size_b: Ints, at_b: Array,
     pairs: Ints, n_pairs: int, out: NDArray[np.void],
@@ -112,7 +112,7 @@ def _crossings(
     return count
 
 
-@njit(cache=True)
+@kernel
 def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
     """next_a, next_b: the crossing that follows on the same ring of A, of B."""
     for i in range(n):
@@ -140,7 +140,7 @@ def _link(ring_a: Ints, ring_b: Ints, c: NDArray[np.void], n: int) -> None:
         c[i]["next_b"] = best if best >= 0 else wrap
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def find_regions(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     pairs: Ints, n_pairs: int, stamp: int, crossings: NDArray[np.void], regions: NDArray[np.void],
@@ -187,7 +187,7 @@ def find_regions(
     return count
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def arcs(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     r: Any, stamp: int, x: Array, y: Array, edge: Ints, t: Array,
@@ -239,7 +239,7 @@ def arcs(
     return n_a, n_b
 
 
-@njit(cache=True, inline="always")
+@kernel(inline="always")
 def area_and_centroid(x: Array, y: Array, n_a: int, n_b: int) -> tuple[float, float, float]:
     """Area and centroid (Eq. 4 and 7) of the region between the arcs, in its chord frame.
 

@@ -11,19 +11,19 @@ as k is for the area method; on flat faces both give the same resultant. The sig
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, add_load, place_leaves
 from rigidarea.flexible.nodal import Scratch
 from rigidarea.flexible.region import MANY
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 
 GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
 
 
-@njit(cache=True)
+@kernel
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, reach: float, spread: bool, s: Scratch,

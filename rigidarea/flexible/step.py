@@ -17,12 +17,12 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.boundary import Boundary, Work, clear_loads, to_nodes
 from rigidarea.flexible.frame import inertia_forces
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -83,7 +83,7 @@ class State(NamedTuple):
     mu: Array
 
 
-@njit(cache=True)
+@kernel
 def _prescribed(drive: Array, t: float) -> float:
     """Hub angle at time t: the angular velocity grows linearly over the ramp time, then stays."""
     if t < drive[2]:
@@ -91,7 +91,7 @@ def _prescribed(drive: Array, t: float) -> float:
     return drive[0] + drive[1] * (t - 0.5 * drive[2])
 
 
-@njit(cache=True)
+@kernel
 def _solve(a: Array, b: Array, n: int) -> None:
     """Gaussian elimination with partial pivoting, in place: b becomes the solution. n is at most a few dozen."""
     for i in range(n):
@@ -118,7 +118,7 @@ def _solve(a: Array, b: Array, n: int) -> None:
         b[i] = s / a[i, i] if a[i, i] != 0.0 else 0.0
 
 
-@njit(cache=True)
+@kernel
 def _hub(b: Boundary, w: Work, modal: Array, row: int) -> float:
     """Hub displacement (row 0, 1: body frame; 2: rotation) by modes and static flexibility."""
     n = b.modes.shape[0] - 3 + row
@@ -134,7 +134,7 @@ def _hub(b: Boundary, w: Work, modal: Array, row: int) -> float:
     return u
 
 
-@njit(cache=True)
+@kernel
 def _hub_rate(b: Boundary, dq: Array) -> float:
     u = 0.0
     for k in range(b.modes.shape[1]):
@@ -158,7 +158,7 @@ class Buffers(NamedTuple):
     counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
 
 
-@njit(cache=True)
+@kernel
 def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-untyped-def]
     """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``region``."""
     buf.counts[1] += 1
@@ -186,8 +186,9 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
         if buf.counts[0] < 0 or moved > 0.5 * st.margin or len(pairs) > 1:
             reach = st.margin + (st.q if st.sts else 0.0)
             buf.counts[0] = nodal.search(a, pa, b, pb, reach, s)
-            buf.searched[ia] = pa
-            buf.searched[ib] = pb
+            for i in range(4):
+                buf.searched[ia, i] = pa[i]
+                buf.searched[ib, i] = pb[i]
         n_pairs = buf.counts[0]
         if n_pairs < 0:
             return n_pairs
@@ -242,14 +243,14 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
     return total
 
 
-@njit(cache=True)
+@kernel
 def _poses(x, buf):  # type: ignore[no-untyped-def]
     for b in range(len(x)):
         buf.pose[b, 0], buf.pose[b, 1] = x[b, 0], x[b, 1]
         buf.pose[b, 2], buf.pose[b, 3] = np.cos(x[b, 2]), np.sin(x[b, 2])
 
 
-@njit(cache=True)
+@kernel
 def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type: ignore[no-untyped-def]
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
     n_b = len(bodies)
@@ -442,20 +443,23 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
     return NO_CONVERGENCE
 
 
-@njit(cache=True)
+@kernel
 def _copy(source, target):  # type: ignore[no-untyped-def]
-    target.x[:] = source.x
-    target.v[:] = source.v
-    target.acc[:] = source.acc
-    target.aux[:] = source.aux
-    target.mu[:] = source.mu
-    target.q[:] = source.q
-    target.dq[:] = source.dq
-    target.ddq[:] = source.ddq
-    target.auxq[:] = source.auxq
+    for b in range(len(source.x)):
+        for i in range(3):
+            target.x[b, i] = source.x[b, i]
+            target.v[b, i] = source.v[b, i]
+            target.acc[b, i] = source.acc[b, i]
+            target.aux[b, i] = source.aux[b, i]
+            target.mu[b, i] = source.mu[b, i]
+    for i in range(len(source.q)):
+        target.q[i] = source.q[i]
+        target.dq[i] = source.dq[i]
+        target.ddq[i] = source.ddq[i]
+        target.auxq[i] = source.auxq[i]
 
 
-@njit(cache=True)
+@kernel
 def run_steps(bodies, works, sy, couplings, state, saved, pairs, st, s, buf, t0, h, steps, every, out):  # type: ignore[no-untyped-def]
     """``steps`` steps of h; one row of ``out`` every ``every`` steps. Returns (steps done, code)."""
     n_b = len(bodies)
@@ -527,7 +531,7 @@ def run_steps(bodies, works, sy, couplings, state, saved, pairs, st, s, buf, t0,
     return steps, 0
 
 
-@njit(cache=True)
+@kernel
 def replay(bodies, works, sy, q, pairs, st, s, buf, x):  # type: ignore[no-untyped-def]
     """One contact evaluation for each recorded frame position x (n, b, 3)."""
     for n in range(len(x)):
