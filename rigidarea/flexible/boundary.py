@@ -61,6 +61,7 @@ class Work(NamedTuple):
     leaf_stamp: Ints  # (t,)
     hub_load: Array  # (3,) force and moment on the hub, body frame
     loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
+    mobility: Array  # (m,) what a force on a mode moves it within the step, 1/(M' + C' + ω²)
 
 
 def build(
@@ -139,7 +140,7 @@ def workspace(b: Boundary) -> Work:
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.full(len(b.left), -1),
-        np.zeros(3), np.zeros(f + 1, np.int64),
+        np.zeros(3), np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]),
     )  # fmt: skip
 
 

@@ -121,6 +121,9 @@ class Simulation:
         constrained = any(b.anchor is not None or b.drive is not None for b in bodies)
         if constrained and rho == 1.0:
             raise ValueError("rho must be below 1 with constraints (index 3 is unstable at 1), got 1")
+        for i, b in enumerate(bodies):
+            if b.fixed and (b.anchor is not None or b.drive is not None):
+                raise ValueError(f"body {i} is fixed: expected neither anchor nor drive")
         self.bodies = list(bodies)
         count = [len(b.frequency) for b in bodies]
         for i, b in enumerate(bodies):
@@ -160,7 +163,7 @@ class Simulation:
         self._buffers = Buffers(
             np.zeros((n, 4)), np.full((n, 4), np.inf), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)),
             np.zeros((3 * n, 3 * n)), np.zeros(3 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
-            np.array([-1, 0, 0]),
+            np.array([-1, 0, 0]), np.zeros(1),
         )  # fmt: skip
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)

@@ -29,6 +29,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, add_load, candidates
+from rigidarea.flexible.condense import resultant
 from rigidarea.flexible.region import CROSSING, MANY, REGION, arcs, area_and_centroid, find_regions
 from rigidarea.kernel.jit import kernel
 
@@ -309,13 +310,16 @@ def contact(
         if n_a == MANY:
             return MANY
         area, xc, yc = area_and_centroid(s.x, s.y, n_a, n_b)
-        r["area"], r["force"] = area, k * area  # Eq. 5
+        r["area"], r["force"], r["give"] = area, k * area, 1.0  # Eq. 5
         ux, uy = -r["ny"], r["nx"]
         r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
         if area <= 0.0:
             continue
         xc = _turn(r, s.x, s.y, n_a, n_b, q, xc, yc)
         if spread:
+            r["force"], r["give"] = resultant(
+                a, wa, pose_a, b, wb, pose_b, r["nx"], r["ny"], s.edge, n_a, n_b, r["force"], k * r["chord"]
+            )
             distribute(
                 a,
                 wa,

@@ -58,6 +58,7 @@ def contact(
                 # the point of the line of action nearest to A's origin: the moment about that origin is kept
                 r["x"], r["y"] = pose_a[0] + r["ny"] * moment / f, pose_a[1] - r["nx"] * moment / f
                 r["x_chord"], r["y_chord"], r["chord"], r["area"] = r["x"], r["y"], stiff / k, f / k
+                r["give"] = 1.0
                 count += 1
             fx = fy = moment = stiff = 0.0
             last = leaf_a

@@ -6,10 +6,8 @@ multipliers by its inverse (C. L. Bottasso et al., 2007), the residual is judged
 
 Newton's matrix has the rigid rows, the constraints, and the contact tangent k L (and k L³/12 in rotation); modes are
 eliminated first, their block being diagonal. Static flexibility (residual modes, or all of it for a compliant
-body) is a compliance of hub and boundary: the hub's enters the matrix, the boundary's is renewed in every
-iteration with the loads of the one before. That contracts by k L c (c the boundary's compliance under the
-contact), 0.1 % a time in the paper's cases; contacts stiffer than their bodies do not converge this way and end in
-the error below.
+body) is a compliance of hub and boundary: the hub's enters the matrix, the boundary's is condensed into the
+contact forces (``condense``), so that bodies may be softer than their contacts.
 """
 
 from __future__ import annotations
@@ -156,6 +154,7 @@ class Buffers(NamedTuple):
     regions: Array  # (REGIONS_KEPT, 5)
     modal_residual: Array
     counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
+    apart: Array  # (1,) largest difference of a region's k A from the force that it hands on (``condense``)
 
 
 @kernel
@@ -165,6 +164,7 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
     buf.load[:] = 0.0
     buf.tangent[:] = 0.0
     buf.force[:] = 0.0
+    buf.apart[0] = 0.0
     buf.regions[:] = 0.0
     for b in range(len(bodies)):
         clear_loads(works[b])
@@ -207,6 +207,7 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
             return n
         for i in range(n):
             r = s.regions[i]
+            buf.apart[0] = max(buf.apart[0], abs(r["force"] - st.k * r["area"]))
             fx, fy = r["force"] * r["nx"], r["force"] * r["ny"]
             buf.force[0] += fx
             buf.force[1] += fy
@@ -229,7 +230,7 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
                 row = 3 * (ia if m < 3 else ib) + m % 3
                 for c in range(6):
                     col = 3 * (ia if c < 3 else ib) + c % 3
-                    buf.tangent[row, col] += st.k * r["chord"] * buf.row[row] * buf.row[col]
+                    buf.tangent[row, col] += st.k * r["chord"] * r["give"] * buf.row[row] * buf.row[col]
             if not st.sts:
                 turn = st.k * r["chord"] ** 3 / 12.0
                 buf.tangent[3 * ia + 2, 3 * ia + 2] += turn
@@ -276,6 +277,9 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
     b_vel = gamma / (h * beta)
     correction = (1.0 - af) / (1.0 - am)
     scale = beta * h * h
+    for b in range(n_b):
+        for i in range(sy.first[b], sy.first[b + 1]):
+            works[b].mobility[i - sy.first[b]] = 1.0 / (b_acc + sy.viscous[i] * b_vel + sy.square[i])
     t_new = t + h
     n3 = 3 * n_b
     change = 1.0
@@ -288,7 +292,7 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
         m[:] = 0.0
         rhs[:] = 0.0
         reference = np.hypot(buf.force[0], buf.force[1])
-        worst = worst_g = 0.0
+        worst, worst_g = buf.apart[0], 0.0
         row = n3
         for b in range(n_b):
             bd, w = bodies[b], works[b]
@@ -403,11 +407,9 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
         row = n3
         change = 0.0
         for b in range(n_b):
-            if sy.fixed[b] == 1:
-                continue
             lo, hi = sy.first[b], sy.first[b + 1]
             c, sn = buf.pose[b, 2], buf.pose[b, 3]
-            for i in range(3):
+            for i in range(0 if sy.fixed[b] == 1 else 3):
                 d = rhs[3 * b + i]
                 change = max(change, abs(d) / (sy.size[b] if i < 2 else 1.0))
                 state.x[b, i] += d
