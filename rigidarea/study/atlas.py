@@ -66,18 +66,19 @@ class Map:
     run: Callable[[Variant, float, float], Outcome]
     source: str
     theory: Callable[[], list[tuple[str, Array, Array]]] = field(default=lambda: [])
+    theory_of: tuple[str, ...] = ()
+    """The variants that theory speaks of; none: all."""
 
 
 def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:
-    """The usual variants: rigidarea by frames, pymunk, Box2D, the paper's method; `changes` replace settings.
-
-    A change of None drops the engine.
+    """The usual variants: rigidarea by frames, pymunk, Box2D, the paper's method (ten nodes a side); `changes`
+    replace settings, None drops the engine.
     """
     usual: dict[str, dict[str, Any]] = {
         "rigidarea": {"peer": "rigidarea-frame"},
         "pymunk": {"peer": "pymunk", "steps": 4, "iterations": 10, "slop": 1e-3},
         "box2d": {"peer": "box2d", "steps": 1, "substeps": 4, "stiff": False, "length": 1},
-        "literal": {"peer": "literal", "phase": 0.5},
+        "literal": {"peer": "literal", "phase": 0.5, "spacing": 0.1},
     }
     found = {}
     for label, settings in usual.items():

@@ -1,8 +1,9 @@
 """Accuracy against speed: every scene, every peer, every setting; fronts and what they say.
 
-Errors are deterministic and may be computed anywhere, in parallel. Costs are measured here, on one core,
-warm and interleaved. Both are kept as they come (`chart-errors.jsonl`, `chart-costs.jsonl` in the output
-folder), so that the same command goes on where it was stopped.
+Errors are deterministic and may be computed anywhere, in parallel; the run that gives the error is timed as well.
+Settings that another of the same peer beats in error at less than half that time cannot be on a front and keep that
+time as their cost. All others are timed here, on one core, warm and interleaved. Both are kept as they come
+(`chart-errors.jsonl`, `chart-costs.jsonl` in the output folder), so that the same command goes on where it was stopped.
 """
 
 from __future__ import annotations
@@ -18,8 +19,12 @@ from .peers import get_peer, peers, record
 from .records import Progress, Row, append_rows, read_rows
 from .scene import Scene, get_scene, scenes
 from .sweep import Task, key, run_tasks
-from .timing import median_times, scene_job
+from .timing import Stopwatch, median_times, scene_job
 
+RESOLUTION = 1e-4
+"""Errors below it count as equally good, in every scene: a tenth of a pixel on a body drawn 1,000 pixels large, and a
+hundredth of what friction, restitution and mass of real bodies are known to.
+"""
 REPEATS, QUICK_REPEATS = 5, 2
 PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
 """Time (s) after which a run is not repeated: its noise is small beside it."""
@@ -28,9 +33,13 @@ PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
 def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
     """Run one setting and measure its error (null if the run failed): the task of the sweep."""
     described = get_scene(scene)
-    run = get_peer(peer).build(described, settings)
+    run = Stopwatch(get_peer(peer).build(described, settings))
     error = described.measure(record(run, described))
-    return {"error": error if math.isfinite(error) else None, "steps_per_frame": run.steps}
+    return {
+        "error": error if math.isfinite(error) else None,
+        "steps_per_frame": run.steps,
+        "rough_s_per_s": run.seconds / described.duration,
+    }
 
 
 def jobs(names: Sequence[str], peer_names: Sequence[str], quick: bool) -> list[Task]:
@@ -55,6 +64,22 @@ def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
             if why:
                 rows.append({"scene": name, "peer": peer_name, "why": why})
     return rows
+
+
+def on_front(tasks: Sequence[Task], results: Sequence[Row]) -> list[bool]:
+    """Which settings could be on their peer's front: none with at most their error took less than half their time."""
+    groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
+    for task, found in zip(tasks, results, strict=True):
+        if found["error"] is not None:
+            groups.setdefault((task["scene"], task["peer"]), []).append(
+                (found["error"], found["rough_s_per_s"])
+            )
+    kept = []
+    for task, found in zip(tasks, results, strict=True):
+        error, cost = found["error"], found["rough_s_per_s"]
+        rivals = groups.get((task["scene"], task["peer"]), [])
+        kept.append(error is not None and not any(e <= error and 2 * c < cost for e, c in rivals))
+    return kept
 
 
 def costs(
@@ -99,7 +124,7 @@ def summarise(rows: Sequence[Row]) -> list[Row]:
         mine = points(rows, name, ours=True)
         for peer in dict.fromkeys(row["peer"] for row in rows if row["scene"] == name):
             if not get_peer(peer).ours:
-                found = front.compare(mine, points(rows, name, peer=peer), scene.resolution)
+                found = front.compare(mine, points(rows, name, peer=peer), RESOLUTION)
                 summary.append({"scene": name, "peer": peer, "tags": sorted(scene.tags), **found._asdict()})
     return summary
 
@@ -116,7 +141,7 @@ def chart(
 ) -> Row:
     """Sweep, measure, draw; returns the object written to `out`/chart.json.
 
-    scene_names, peer_names: default all. repeats: rounds of timing (default 5, quick 3). scheduler, workers:
+    scene_names, peer_names: default all. repeats: rounds of timing (default 5, quick 2). scheduler, workers:
     see `sweep.open_executor`. resume: use what an earlier, stopped run left in `out`.
     """
     names = list(scene_names) or list(scenes())
@@ -128,11 +153,16 @@ def chart(
         for store in stores:
             store.unlink(missing_ok=True)
     results = run_tasks(evaluate, tasks, stores[0], scheduler, workers, title="errors")
-    seconds = costs(tasks, rounds, stores[1], QUICK_PATIENCE_S if quick else PATIENCE_S)
+    timed = on_front(tasks, results)
+    chosen_tasks = [task for task, keep in zip(tasks, timed, strict=True) if keep]
+    seconds = iter(costs(chosen_tasks, rounds, stores[1], QUICK_PATIENCE_S if quick else PATIENCE_S))
     rows = []
-    for task, result, cost in zip(tasks, results, seconds, strict=True):
-        scene = get_scene(task["scene"])
-        rows.append({**task, **result, "error_name": scene.error_name, "cost_s_per_s": cost})
+    for task, result, keep in zip(tasks, results, timed, strict=True):
+        row = {**task, **result, "error_name": get_scene(task["scene"]).error_name}
+        rough = row.pop("rough_s_per_s")
+        rows.append(
+            {**row, "cost_s_per_s": next(seconds) if keep else rough, "repeats": rounds if keep else 1}
+        )
     return envelope(
         "chart",
         {"quick": quick, "repeats": rounds, "scenes": names, "peers": chosen},
@@ -151,7 +181,6 @@ def describe(scene: Scene) -> Row:
         "bodies": len(scene.bodies),
         "duration_s": scene.duration,
         "error_name": scene.error_name,
-        "resolution": scene.resolution,
         "source": scene.source,
         "tags": sorted(scene.tags),
     }

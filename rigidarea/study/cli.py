@@ -22,6 +22,25 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
     add("--workers", type=int, metavar="N", help="local processes; 0: none (default: one a core)")
     add("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     add("--fresh", action="store_true", help="forget what an earlier run left in DIR")
+    _docs(parser)
+
+
+def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
+    """What `_sweep` asks for, as the sweeps take it."""
+    return {
+        "out": arguments.out,
+        "quick": arguments.quick,
+        "peer_names": arguments.peer,
+        "scheduler": arguments.scheduler,
+        "workers": arguments.workers,
+        "resume": not arguments.fresh,
+    }
+
+
+def _docs(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--docs", type=Path, metavar="DIR", help="renew there what README.md and docs/study.md show of it"
+    )
 
 
 def add_commands(subparsers: Any) -> None:
@@ -51,7 +70,18 @@ def add_commands(subparsers: Any) -> None:
     compare = subparsers.add_parser("compare", help="rigid, compliant and modal on the same scenes")
     compare.add_argument("scene", nargs="*", metavar="SCENE", help="scenes (default: all)")
     output_arguments(compare, Path("out") / "compare")
+    _docs(compare)
     compare.set_defaults(run=_compare)
+
+
+def _write(arguments: argparse.Namespace, name: str, report: dict[str, Any]) -> None:
+    """The object as JSON, its rows (and those of a summary) as CSV."""
+    from .records import write_csv
+
+    write_json(report, arguments.out / f"{name}.json")
+    write_csv(arguments.out / f"{name}.csv", report["results"])
+    if report.get("summary"):
+        write_csv(arguments.out / f"{name}-summary.csv", report["summary"])
 
 
 def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict[str, Any]]) -> int:
@@ -64,39 +94,33 @@ def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from . import compare, draw_compare
-    from .records import write_csv
+    from . import compare, draw_compare, page
 
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
-    write_json(report, arguments.out / "compare.json")
-    write_csv(arguments.out / "compare.csv", report["results"])
-    draw_compare.levels(report, traces, arguments.out)
+    _write(arguments, "compare", report)
+    (picture, _) = draw_compare.levels(report, traces, arguments.out)
+    if arguments.docs:
+        page.renew(arguments.docs, {}, {"compare.png": picture})
     return _tell(arguments, report, report["results"])
 
 
 def _atlas(arguments: argparse.Namespace) -> int:
-    from . import atlas, draw_atlas
-    from .records import write_csv
+    from . import atlas, draw_atlas, page
 
-    report = atlas.atlas(
-        arguments.out,
-        quick=arguments.quick,
-        map_names=arguments.map,
-        peer_names=arguments.peer,
-        scheduler=arguments.scheduler,
-        workers=arguments.workers,
-        resume=not arguments.fresh,
-    )
-    write_json(report, arguments.out / "atlas.json")
-    write_csv(arguments.out / "atlas.csv", report["results"])
+    report = atlas.atlas(map_names=arguments.map, **_swept(arguments))
+    _write(arguments, "atlas", report)
     draw_atlas.atlas_maps(report, arguments.out)
     draw_atlas.overview(report, arguments.out)
+    pictures = draw_atlas.page(report, arguments.out)
+    if arguments.docs:
+        page.renew(
+            arguments.docs, {"maps": page.maps(report)}, {"atlas.png": pictures[0]} if pictures else {}
+        )
     return _tell(arguments, report, atlas.passed(report["results"]))
 
 
 def _bench(arguments: argparse.Namespace) -> int:
     from . import bench, draw, start
-    from .records import write_csv
 
     if arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
@@ -111,28 +135,22 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = start.start()
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
-    write_json(report, arguments.out / f"bench-{arguments.what}.json")
-    write_csv(arguments.out / f"bench-{arguments.what}.csv", report["results"])
+    _write(arguments, f"bench-{arguments.what}", report)
     return _tell(arguments, report, report["results"])
 
 
 def _chart(arguments: argparse.Namespace) -> int:
-    from . import chart, draw
-    from .records import write_csv
+    from . import chart, draw, page
 
-    report = chart.chart(
-        arguments.out,
-        quick=arguments.quick,
-        scene_names=arguments.scene,
-        peer_names=arguments.peer,
-        repeats=arguments.repeats,
-        scheduler=arguments.scheduler,
-        workers=arguments.workers,
-        resume=not arguments.fresh,
-    )
-    write_json(report, arguments.out / "chart.json")
-    write_csv(arguments.out / "chart.csv", report["results"])
-    write_csv(arguments.out / "chart-summary.csv", report["summary"])
+    report = chart.chart(scene_names=arguments.scene, repeats=arguments.repeats, **_swept(arguments))
+    _write(arguments, "chart", report)
     draw.chart_pages(report, arguments.out)
-    draw.chart_summary(report, arguments.out)
+    pictures = draw.chart_summary(report, arguments.out)
+    if arguments.docs and pictures:
+        tables = {
+            "ratios": page.ratios(report),
+            "dominated": page.dominated(report),
+            "known_well": page.known_well(report),
+        }
+        page.renew(arguments.docs, tables, {"chart.png": pictures[0]})
     return _tell(arguments, report, report["summary"] or report["results"])

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from . import front
-from .chart import points
+from .chart import RESOLUTION, points
 from .peers import get_peer
 from .records import Row
 
@@ -22,9 +22,21 @@ COLOURS = {
     "pymunk": "#D55E00",
     "box2d": "#009E73",
     "literal": "#CC79A7",
+    "rigidarea-implicit": "#000000",
+    "compliant": "#CC79A7",
+    "modal": "#E69F00",
 }
-MARKERS = {"rigidarea": "o", "rigidarea-frame": "P", "pymunk": "s", "box2d": "^", "literal": "x"}
-OTHER_COLOURS = ("#E69F00", "#F0E442", "#000000")
+MARKERS = {
+    "rigidarea": "o",
+    "rigidarea-frame": "P",
+    "rigidarea-implicit": "X",
+    "compliant": "v",
+    "modal": "D",
+    "pymunk": "s",
+    "box2d": "^",
+    "literal": "x",
+}
+OTHER_COLOURS = ("#F0E442", "#999999")
 PAGE = (3, 3)
 """Rows and columns of panels on a page of 1000 pixels width."""
 
@@ -98,7 +110,7 @@ def chart_pages(report: Row, out: Path) -> list[Path]:
 
 
 def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> None:
-    floor = scene["resolution"]
+    floor = RESOLUTION
     for name in names:
         found = [
             front.Point(p.cost, max(p.error, floor / 3)) for p in points(rows, scene["scene"], peer=name)

@@ -1,12 +1,11 @@
-"""The atlas drawn: one strip of panels a map, an engine a panel; and an overview of all maps."""
+"""The atlas drawn: a strip of panels a map, an engine a panel; an overview of all; a page of the telling ones."""
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,17 +19,41 @@ if TYPE_CHECKING:
 
 PASS_COLOUR = "#BFE3F7"
 FAIL_COLOURS = ("#D55E00", "#E69F00", "#CC79A7", "#F0E442", "#009E73", "#000000")
+ENGINES = ("rigidarea", "pymunk", "box2d", "literal")
+"""Columns of the overview and of the page."""
+PAGE = ("step_size", "buckling", "corner", "mass_ratio", "overlap_depth", "tunnel")
+"""Maps of the page."""
+TICKS = 6
+"""Most labelled values of an axis."""
 
 
-def edges(axis: Axis, values: Sequence[float]) -> Array:
-    """Cell edges around the values: halfway between them, on a logarithmic axis in the logarithm."""
+def places(axis: Axis, values: Sequence[float], at: Array) -> Array:
+    """Where `at` lies along an axis whose `values` are drawn as equal cells with centres 0, 1, 2, …
+
+    Between the values linearly, on a logarithmic axis in the logarithm; beyond them as in the last cell.
+    """
+    known, wanted = np.array(values, dtype=np.float64), np.array(at, dtype=np.float64)
+    if axis.log:
+        known, wanted = np.log(known), np.log(wanted)
+    cell = np.clip(np.searchsorted(known, wanted) - 1, 0, max(len(known) - 2, 0))
+    step = np.diff(known)[cell] if len(known) > 1 else np.ones(len(wanted))
+    return np.asarray(cell + (wanted - known[cell]) / step, dtype=np.float64)
+
+
+def _label(axis: Axis, value: float) -> str:
     if axis.names:
-        return np.arange(len(values) + 1, dtype=np.float64) - 0.5
-    points = [math.log10(value) if axis.log else value for value in values]
-    inner = [(one + other) / 2 for one, other in itertools.pairwise(points)]
-    first, last = (inner[0], inner[-1]) if inner else (points[0] - 0.5, points[0] + 0.5)
-    found = [2 * points[0] - first, *inner, 2 * points[-1] - last]
-    return np.array([10**value if axis.log else value for value in found], dtype=np.float64)
+        return axis.names[round(value)]
+    if axis.log and (value >= 1e4 or value < 1e-2):
+        power = math.floor(math.log10(value) + 1e-9)
+        factor = value / 10**power
+        return f"$10^{{{power}}}$" if abs(factor - 1) < 1e-6 else f"{value:.0e}".replace("e-0", "e-")
+    return f"{value:.3g}"
+
+
+def _ticks(axis: Axis, values: Sequence[float], most: int = TICKS) -> tuple[list[int], list[str]]:
+    every = 1 if axis.names else -(-len(values) // most)
+    chosen = list(range(0, len(values), every))
+    return chosen, [_label(axis, values[i]) for i in chosen]
 
 
 def atlas_maps(report: Row, out: Path) -> list[Path]:
@@ -46,9 +69,6 @@ def atlas_maps(report: Row, out: Path) -> list[Path]:
 def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
     plt = _pyplot()
     names = list(dict.fromkeys(row["peer"] for row in rows))
-    xs, ys = (sorted({row[key] for row in rows}) for key in ("x", "y"))
-    verdicts = [PASS, *sorted({row["verdict"] for row in rows} - {PASS})]
-    colours = [PASS_COLOUR, *(FAIL_COLOURS[i % len(FAIL_COLOURS)] for i in range(len(verdicts) - 1))]
     columns = 3 if len(names) > 4 else len(names)
     lines = -(-len(names) // columns)
     figure, axes = plt.subplots(
@@ -60,60 +80,111 @@ def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
         squeeze=False,
         layout="constrained",
     )
+    colours = _colours(rows)
     for ax, name in zip(axes.flat, names, strict=False):
-        _cells(ax, chart, [row for row in rows if row["peer"] == name], (xs, ys), verdicts, colours)
+        _cells(ax, chart, rows, name, colours)
         ax.set_title(name)
     for ax in axes.flat[len(names) :]:
         ax.set_axis_off()
-    handles = [
-        plt.Rectangle((0, 0), 1, 1, fc=c, ec="#888888", label=v)
-        for v, c in zip(verdicts, colours, strict=True)
-    ]
-    handles += axes[0, 0].get_legend_handles_labels()[0]
+    handles = _swatches(colours) + _lines(axes)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), fontsize=8.5)
     figure.suptitle(chart.title, fontsize=11)
-    for ax in axes[-1]:
-        ax.set_xlabel(chart.x.label if columns < 4 else chart.x.label.replace(" / ", "\n/ "), fontsize=9)
+    figure.supxlabel(chart.x.label, fontsize=9.5)
     figure.supylabel(chart.y.label, fontsize=9.5)
     return save(figure, out, f"atlas-{chart.name}")
 
 
+def _colours(rows: Sequence[Row]) -> dict[str, str]:
+    """A colour for every verdict in the rows."""
+    failed = sorted({row["verdict"] for row in rows} - {PASS})
+    return {PASS: PASS_COLOUR} | {v: FAIL_COLOURS[i % len(FAIL_COLOURS)] for i, v in enumerate(failed)}
+
+
+def _swatches(colours: dict[str, str]) -> list[Any]:
+    plt = _pyplot()
+    return [plt.Rectangle((0, 0), 1, 1, fc=c, ec="#888888", label=v) for v, c in colours.items()]
+
+
+def _lines(axes: Any) -> list[Any]:
+    """Legend handles of theory, once each."""
+    found: dict[str, Any] = {}
+    for ax in axes.flat:
+        for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
+            found.setdefault(label, handle)
+    return list(found.values())
+
+
 def _cells(
-    ax: Axes,
-    chart: Map,
-    rows: Sequence[Row],
-    places: tuple[list[float], list[float]],
-    verdicts: Sequence[str],
-    colours: Sequence[str],
+    ax: Axes, chart: Map, rows: Sequence[Row], name: str, colours: dict[str, str], ticks: int = TICKS
 ) -> None:
+    """One engine's panel: equal cells, coloured by verdict, theory over them."""
     from matplotlib.colors import ListedColormap
 
-    xs, ys = places
+    xs, ys = (sorted({row[key] for row in rows}) for key in ("x", "y"))
+    verdicts = list(colours)
     grid = np.full((len(ys), len(xs)), np.nan)
     for row in rows:
-        grid[ys.index(row["y"]), xs.index(row["x"])] = verdicts.index(row["verdict"])
-    x, y = edges(chart.x, xs), edges(chart.y, ys)
+        if row["peer"] == name:
+            grid[ys.index(row["y"]), xs.index(row["x"])] = verdicts.index(row["verdict"])
     ax.pcolormesh(
-        x, y, grid, cmap=ListedColormap(list(colours)), vmin=-0.5, vmax=len(colours) - 0.5, ec="w", lw=0.4
+        np.arange(len(xs) + 1) - 0.5,
+        np.arange(len(ys) + 1) - 0.5,
+        grid,
+        cmap=ListedColormap(list(colours.values())),
+        vmin=-0.5,
+        vmax=len(colours) - 0.5,
+        ec="w",
+        lw=0.4,
     )
-    for (label, tx, ty), style in zip(chart.theory(), ("-", "--", ":"), strict=False):
-        ax.plot(tx, ty, color="k", lw=1.5, ls=style, label=label)
-    ax.set_xscale("log" if chart.x.log else "linear")
-    ax.set_yscale("log" if chart.y.log else "linear")
-    ax.set_xlim(x[0], x[-1])
-    ax.set_ylim(y[0], y[-1])
+    if not chart.theory_of or name in chart.theory_of:
+        for (label, tx, ty), style in zip(chart.theory(), ("-", "--", ":"), strict=False):
+            ax.plot(
+                places(chart.x, xs, tx), places(chart.y, ys, ty), color="k", lw=1.5, ls=style, label=label
+            )
+    ax.set_xlim(-0.5, len(xs) - 0.5)
+    ax.set_ylim(-0.5, len(ys) - 0.5)
     ax.grid(False)
-    if chart.y.names:
-        ax.set_yticks(range(len(ys)), [chart.y.names[round(v)] for v in ys])
+    ax.set_xticks(*_ticks(chart.x, xs, ticks))
+    ax.set_yticks(*_ticks(chart.y, ys, ticks))
+    ax.tick_params(labelsize=8)
+
+
+def page(report: Row, out: Path) -> list[Path]:
+    """The telling maps on one page: a line a map, a column an engine, theory's boundary where it speaks."""
+    plt = _pyplot()
+    charts = [get_map(name) for name in PAGE if any(row["map"] == name for row in report["results"])]
+    if not charts:
+        return []
+    figure = plt.figure(figsize=(10, 0.4 + 2.05 * len(charts)), layout="constrained")
+    strips = figure.subfigures(len(charts), 1, squeeze=False)[:, 0]
+    for strip, chart in zip(strips, charts, strict=True):
+        rows = [row for row in report["results"] if row["map"] == chart.name]
+        axes = strip.subplots(1, len(ENGINES), sharex=True, sharey=True, squeeze=False)
+        colours = _colours([row for row in rows if row["peer"] in ENGINES])
+        for ax, name in zip(axes.flat, ENGINES, strict=True):
+            here = [row["verdict"] == PASS for row in rows if row["peer"] == name]
+            if not here:
+                ax.set_axis_off()
+                continue
+            _cells(ax, chart, rows, name, colours, 5)
+            ax.set_title("the paper's method, literally" if name == "literal" else name, fontsize=8.5)
+        strip.suptitle(chart.title, fontsize=10, fontweight="bold", x=0.01, ha="left")
+        strip.supxlabel(chart.x.label, fontsize=8.5)
+        axes[0, 0].set_ylabel(chart.y.label, fontsize=8.5)
+        strip.legend(
+            handles=_swatches(colours) + _lines(axes),
+            loc="outside right center",
+            fontsize=8,
+            handlelength=1.4,
+        )
+    return save(figure, out, "atlas-page")
 
 
 def overview(report: Row, out: Path) -> list[Path]:
     """The share of points passed, a line a map, a column an engine."""
     plt = _pyplot()
     rows = report["results"]
-    names = [
-        name for name in ("rigidarea", "pymunk", "box2d", "literal") if any(r["peer"] == name for r in rows)
-    ]
+    names = [name for name in ENGINES if any(r["peer"] == name for r in rows)]
     charts = [described for described in report["maps"] if any(r["map"] == described["map"] for r in rows)]
     share = np.full((len(charts), len(names)), np.nan)
     for i, described in enumerate(charts):

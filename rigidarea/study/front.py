@@ -44,7 +44,10 @@ class Comparison(NamedTuple):
     errors at the largest cost that both have a use for (the smaller of the two fronts' largest costs, or the
     dearer of the two cheapest settings if that is more). `matched_error` and `matched_cost` say where that
     is. `cost_ratio_worst` is the largest cost ratio over all points of their front: infinite where we do not
-    reach their error, at most 1 if our front is nowhere dominated.
+    reach their error, at most 1 if our front is nowhere dominated. The smallest error that both reach is where the
+    less accurate of the two pays for its finest setting, so `cost_ratio_mean` is the geometric mean of the ratios at
+    errors from there up to COARSE, evenly spread in the logarithm, and `cost_ratio_low`, `cost_ratio_high` are their
+    extremes.
     """
 
     cost_ratio_at_matched_error: float
@@ -52,6 +55,13 @@ class Comparison(NamedTuple):
     matched_error: float
     matched_cost: float
     cost_ratio_worst: float
+    cost_ratio_mean: float
+    cost_ratio_low: float
+    cost_ratio_high: float
+
+
+COARSE, LEVELS = 0.1, 13
+"""The largest error at which costs are compared, and at how many errors."""
 
 
 def compare(ours: Iterable[Point], theirs: Iterable[Point], resolution: float = 0.0) -> Comparison:
@@ -61,8 +71,12 @@ def compare(ours: Iterable[Point], theirs: Iterable[Point], resolution: float = 
     """
     one, other = (front(Point(p.cost, max(p.error, resolution)) for p in points) for points in (ours, theirs))
     if not one or not other:
-        return Comparison(*[math.nan] * 5)
+        return Comparison(*[math.nan] * 8)
     error = max(one[-1].error, other[-1].error)
+    steps = (
+        [error * (COARSE / error) ** (i / (LEVELS - 1)) for i in range(LEVELS)] if error < COARSE else [error]
+    )
+    ratios = [cost_at(one, level) / cost_at(other, level) for level in steps]
     cost = max(min(one[-1].cost, other[-1].cost), one[0].cost, other[0].cost)
     return Comparison(
         cost_at(one, error) / cost_at(other, error),
@@ -70,4 +84,7 @@ def compare(ours: Iterable[Point], theirs: Iterable[Point], resolution: float = 
         error,
         cost,
         max(cost_at(one, p.error) / p.cost for p in other),
+        math.exp(sum(map(math.log, ratios)) / len(ratios)),
+        min(ratios),
+        max(ratios),
     )

@@ -61,12 +61,26 @@ Shape = Circle | Polygon | Curve
 
 
 @dataclass(frozen=True)
+class Elastic:
+    """What a body is made of, for the levels that let it deform; its density follows from its mass.
+
+    `young` (force/length²), `poisson`; plane stress in a plate of `thickness` (length). `mesh` is the spacing of the
+    finite-element boundary (length).
+    """
+
+    young: float
+    poisson: float
+    thickness: float
+    mesh: float
+
+
+@dataclass(frozen=True)
 class Body:
     """One body: shapes, inertia and start.
 
     `mass` (mass) and `moment` (mass·length²) matter to dynamic bodies only. A kinematic body keeps its
     velocity and angular velocity. `surface_speed` (length/time) moves the surface like a belt: a body
-    resting on top of it is dragged towards +x.
+    resting on top of it is dragged towards +x. `elastic` says what it is made of, where that is asked.
     """
 
     name: str
@@ -79,17 +93,20 @@ class Body:
     moment: float = 1.0
     kind: Literal["dynamic", "kinematic", "static"] = "dynamic"
     surface_speed: float = 0.0
+    elastic: Elastic | None = None
 
 
 @dataclass(frozen=True)
 class Pivot:
     """A revolute joint between a body's origin and the world, there from the start.
 
-    `brake` (force·length) is the largest torque with which the bearing opposes rotation.
+    `brake` (force·length) is the largest torque with which the bearing opposes rotation, `turns` the sense in which
+    the body turns (1 counter-clockwise): levels without dry friction brake with that torque all the time.
     """
 
     body: str
     brake: float = 0.0
+    turns: int = 1
 
 
 @dataclass(frozen=True)
@@ -116,8 +133,8 @@ class Scene:
     `friction` and `elasticity` are the values of every pair (engines combine the two bodies' values
     differently, so a scene states the result). `size` (length) is that of a typical moving body: peers
     choose their slop, sampling and units of length by it. `pressure` (force/length²) is the typical load on
-    that size; area stiffnesses are multiples of it. `resolution` is the error below which two results count
-    as equally good: by default a tenth of a pixel on a body drawn 1,000 pixels large.
+    that size; area stiffnesses are multiples of it. `deforms` says that the exact answer is that of elastic
+    bodies: rigid ones give back the restitution that is put in, and need not try.
     """
 
     name: str
@@ -135,7 +152,7 @@ class Scene:
     pressure: float = G
     frame: float = 1 / 60
     tags: frozenset[str] = frozenset()
-    resolution: float = 1e-4
+    deforms: bool = False
 
     @property
     def frames(self) -> int:

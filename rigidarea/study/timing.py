@@ -14,7 +14,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 
 from .peers import Run, Settings, get_peer
-from .scene import Scene
+from .scene import Array, Scene
 
 SHORT_S = 1e-3
 """Time (s) below which a run is repeated at once."""
@@ -36,6 +36,21 @@ def one_core() -> Iterator[None]:
             gc.enable()
         if before is not None:
             os.sched_setaffinity(0, before)
+
+
+class Stopwatch:
+    """A run that adds up the processor time (s) of its advances in `seconds`."""
+
+    def __init__(self, run: Run) -> None:
+        self.run, self.steps, self.seconds = run, run.steps, 0.0
+
+    def advance(self, frames: int) -> None:
+        """As the run does."""
+        self.seconds += timed(self.run, frames)
+
+    def state(self) -> Array:
+        """Of the run."""
+        return self.run.state()
 
 
 def timed(run: Run, frames: int) -> float:

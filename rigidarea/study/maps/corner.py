@@ -35,6 +35,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 
 def atlas_map() -> Map:
     """Tilt × drop height."""
+    variants = engines()
+    variants["literal, corners"] = Variant("literal", {"phase": 0.5})
     return Map(
         name="corner",
         title="one corner inside: a box dropped on a floor",
@@ -42,7 +44,7 @@ def atlas_map() -> Map:
         y=Axis("drop (sides)", (0.01, 0.1, 0.3, 1.0, 3.0), (0.1, 1.0), log=True),
         measure="deepest penetration / side",
         limit=LIMIT,
-        variants=engines(),
+        variants=variants,
         run=run,
         source="design 2.1: a region exists when its area is positive; the paper's gate wants nodes of both",
     )

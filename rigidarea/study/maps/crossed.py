@@ -33,6 +33,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 
 def atlas_map() -> Map:
     """Depth × width of the bar."""
+    variants = engines()
+    variants["literal, corners"] = Variant("literal", {"phase": 0.5})
     return Map(
         name="crossed",
         title="no node inside: a bar across a plate",
@@ -40,7 +42,7 @@ def atlas_map() -> Map:
         y=Axis("width of the bar / thickness", (0.1, 0.3, 1.0, 3.0), (0.3, 1.0), log=True),
         measure="way in 0.1 s / thickness",
         limit=0.0,
-        variants=engines(),
+        variants=variants,
         run=run,
         source="design 2.1: regions without any node inside",
     )

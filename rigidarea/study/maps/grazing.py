@@ -33,7 +33,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         pressure=y**2,
         frame=1 / 60,
     )
-    settings = {"stiffness": 1e5} if variant.peer in ("literal", "rigidarea") else {}
+    settings = {"stiffness": 1e7} if variant.peer in ("literal", "rigidarea") else {}
     last = run_scene(variant, scene, **settings)["disc"][-1]
     return judge(float(np.hypot(*(last[[VX, VY]] - exact)) / y), LIMIT, "wrong way")
 

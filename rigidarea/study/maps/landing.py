@@ -4,8 +4,7 @@ import math
 
 import numpy as np
 
-from ..atlas import Axis, Map, Outcome, Variant, judge
-from ..peers import get_peer, record
+from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
 from ..scene import OMEGA, VX, VY, Array, Body, G, Scene, Y, box, box_moment, floor
 
 K, DROP = 1e4, 0.5
@@ -31,8 +30,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         source="",
         frame=8 * h,
     )
-    run_ = get_peer(variant.peer).build(scene, {**variant.settings, "stiffness": K, "steps": 8})
-    path = record(run_, scene)["box"]
+    knob = {"stiffness": K} if variant.peer in ("rigidarea", "literal") else {}
+    path = run_scene(variant, scene, steps=8, **knob)["box"]
     if not np.all(np.isfinite(path)):
         return "not finite", math.inf
     moving = path[:, VX] ** 2 + path[:, VY] ** 2 + box_moment(1.0, 1.0, 1.0) * path[:, OMEGA] ** 2
@@ -61,8 +60,9 @@ def atlas_map() -> Map:
         y=Axis("tilt at landing (degrees)", (0.0, 1.0, 5.0, 15.0, 30.0, 45.0), (0.0, 5.0, 30.0)),
         measure="largest energy / first energy",
         limit=1.05,
-        variants={"rigidarea": Variant("rigidarea", {}), "literal": Variant("literal", {})},
+        variants=engines(rigidarea={"peer": "rigidarea"}, box2d={"substeps": 1}),
         run=run,
         source="ω = sqrt(k L/m): the longest chord sets the step",
         theory=theory,
+        theory_of=("rigidarea", "literal"),
     )

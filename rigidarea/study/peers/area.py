@@ -10,7 +10,7 @@ import pymunk
 import rigidarea
 
 from ..scene import Body, Circle, Polygon, Scene
-from .base import Run, Settings, drive, samplings
+from .base import Run, Settings, drive, has_curves, rigid_only, samplings
 from .chipmunk import SpaceRun, add_pivots, make_body, surface
 
 
@@ -88,10 +88,6 @@ class FrameRun(SpaceRun):
                 body.position = (math.nan, math.nan)
 
 
-def _curved(scene: Scene) -> bool:
-    return any(not isinstance(shape, Polygon) for body in scene.bodies for shape in body.shapes)
-
-
 class Area:
     """Rigid level, equal steps: their number from the stiffness and `phase` (ω h) at the start, then kept."""
 
@@ -99,8 +95,8 @@ class Area:
     ours = True
 
     def refuses(self, scene: Scene) -> str:
-        """Nothing."""
-        return ""
+        """What only elastic bodies answer."""
+        return rigid_only(scene)
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Stiffness × phase × sampling."""
@@ -119,7 +115,7 @@ class Area:
         if "gears" in scene.tags:  # clearances are finer than what convex pieces can follow
             return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
         known = samplings(scene, quick)
-        if known == [{}] and _curved(scene):
+        if known == [{}] and has_curves(scene):
             return [{"sampling": value} for value in ((1e-4, 1e-5) if quick else (1e-3, 1e-4, 1e-5))]
         return known
 

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..scene import ANGLE, Array, Scene, Trace
+from ..scene import ANGLE, Array, Polygon, Scene, Trace
 
 Settings = Mapping[str, Any]
 """Knobs of one run: plain numbers and strings, so that they can be written down and compared."""
@@ -52,6 +52,11 @@ class Peer(Protocol):
         """Set the scene up."""
 
 
+def rigid_only(scene: Scene) -> str:
+    """Why an engine of rigid bodies cannot do the scene; empty if it can."""
+    return "bodies are rigid: they give back the restitution that is put in" if scene.deforms else ""
+
+
 def drive(step: Callable[..., object], count: int, *arguments: object) -> None:
     """Call `step(*arguments)` `count` times without a Python-level loop (the calls run inside C)."""
     deque(starmap(step, repeat(arguments, count)), maxlen=0)
@@ -72,6 +77,11 @@ def record(run: Run, scene: Scene, frames: int | None = None) -> Trace:
         found[:, :, ANGLE] = np.unwrap(found[:, :, ANGLE], axis=0)
     times = scene.frame * np.arange(len(found), dtype=np.float64)
     return Trace(tuple(body.name for body in scene.bodies), times, found)
+
+
+def has_curves(scene: Scene) -> bool:
+    """Whether anything in the scene is more than a polygon."""
+    return any(not isinstance(shape, Polygon) for body in scene.bodies for shape in body.shapes)
 
 
 def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..decompose import convex_pieces
 from ..scene import Array, Body, Circle, Polygon, Scene
-from .base import Run, Settings, drive, samplings
+from .base import Run, Settings, drive, rigid_only, samplings
 
 MOST_VERTICES = 8
 """Of a Box2D polygon (B2_MAX_POLYGON_VERTICES)."""
@@ -34,7 +34,7 @@ class WorldRun:
         steps, substeps = settings["steps"], settings["substeps"]
         self.steps, self.substeps, self.h = steps, substeps, scene.frame / steps
         gravity = tuple(self.unit * g for g in scene.gravity)
-        hertz = 30.0
+        hertz = settings.get("hertz", 30.0)
         if settings["stiff"]:
             # The stiffest contact that Box2D allows: it caps the frequency at a quarter of the substep rate.
             hertz = max(hertz, 0.25 * substeps / self.h)
@@ -132,7 +132,7 @@ class WorldRun:
 class Box2D:
     """Box2D v3 as its documentation advises: metre-sized bodies, a fixed step with substeps.
 
-    Settings: `steps` a frame; `substeps` a step; `stiff` (contact frequency at its cap instead of 30 Hz);
+    Settings: `steps` a frame; `substeps` a step; `stiff` (contact frequency at its cap instead of 30 Hz, or `hertz`);
     `length`, how many metres long a typical body is (its tolerances are fixed in metres, and it is made for
     bodies of 0.1 to 10 m); `sampling` of curves. The restitution threshold is lowered to 0.01 m/s, since the
     scenes want slow bounces.
@@ -142,12 +142,12 @@ class Box2D:
     ours = False
 
     def refuses(self, scene: Scene) -> str:
-        """Nothing, if `pyb2d3` is installed."""
+        """What only elastic bodies answer; everything if `pyb2d3` is not installed."""
         try:
             import pyb2d3  # noqa: F401
         except ImportError:
             return "pyb2d3 is not installed (extra: studies)"
-        return ""
+        return rigid_only(scene)
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Steps × substeps × contact softness × sampling."""

@@ -11,7 +11,7 @@ from pymunk._chipmunk_cffi import lib
 
 from ..decompose import convex_pieces
 from ..scene import Array, Body, Circle, Curve, Polygon, Scene
-from .base import Run, Settings, drive, samplings
+from .base import Run, Settings, drive, rigid_only, samplings
 
 
 def make_body(body: Body) -> pymunk.Body:
@@ -111,8 +111,8 @@ class Chipmunk:
     ours = False
 
     def refuses(self, scene: Scene) -> str:
-        """Nothing: every scene can be put together from convex shapes."""
-        return ""
+        """What only elastic bodies answer; all else can be put together from convex shapes."""
+        return rigid_only(scene)
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Steps × iterations × slop × sampling."""

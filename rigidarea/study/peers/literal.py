@@ -1,17 +1,21 @@
 """The paper's method as printed: its node gate (Alg. 1) and its nodal direction (Eq. 8-15), with q = 0.5.
 
 Alg. 1 goes on only where at least one node of each body lies inside the other. Everything else is
-rigidarea's. For the atlas: the gate is a Python callback, so that costs would say nothing.
+rigidarea's. Outlines get nodes along their edges, as the paper's meshes have them (`spacing`, over the body size; none:
+the corners alone, as a game has them). For the atlas: the gate is a Python callback, so that costs would say nothing.
 """
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 import pymunk
 import shapely
 
+from ...kernel.jit import njit
+from ...outline import Outline
 from ..scene import Array, Scene
 from .area import Area, StepRun, area_space
 from .base import Run, Settings
@@ -20,32 +24,39 @@ EXPONENT = 0.5
 """q of Eq. 12, the paper's choice."""
 
 
-def _placed(shape: pymunk.Shape) -> Array:
-    """Nodes (n, 2) of a shape's outline in the world."""
-    body, nodes = shape.body, np.concatenate(shape.outline.rings)  # type: ignore[attr-defined]
-    assert body is not None
-    c, s = np.cos(body.angle), np.sin(body.angle)
-    return nodes @ np.array(((c, s), (-s, c))) + np.array(body.position)
+@njit
+def any_inside(nodes: Array, edges: Array, x: float, y: float, c: float, s: float) -> bool:
+    """Whether one of `nodes` (n, 2) lies inside the rings of `edges` (m, 4); nodes' pose in the edges' coordinates."""
+    for i in range(len(nodes)):
+        px, py = x + c * nodes[i, 0] - s * nodes[i, 1], y + s * nodes[i, 0] + c * nodes[i, 1]
+        inside = False
+        for k in range(len(edges)):
+            x0, y0, x1, y1 = edges[k]
+            if (y0 > py) != (y1 > py) and px < x0 + (py - y0) / (y1 - y0) * (x1 - x0):
+                inside = not inside
+        if inside:
+            return True
+    return False
 
 
-def nodes_inside(one: pymunk.Shape, other: pymunk.Shape) -> int:
-    """How many nodes of `one` lie inside `other`."""
-    body = other.body
-    assert body is not None
-    c, s = np.cos(body.angle), np.sin(body.angle)
-    local = (_placed(one) - np.array(body.position)) @ np.array(((c, -s), (s, c)))
-    polygon = other.outline.polygon  # type: ignore[attr-defined]
-    return int(np.count_nonzero(shapely.contains_xy(polygon, local[:, 0], local[:, 1])))
+def has_node_inside(one: pymunk.Shape, other: pymunk.Shape) -> bool:
+    """Whether a node of `one` lies inside `other`."""
+    a, b = one.body, other.body
+    assert a is not None and b is not None
+    turn = a.angle - b.angle
+    x, y = (a.position - b.position).rotated(-b.angle)
+    nodes, edges = one.nodes, other.edges  # type: ignore[attr-defined]
+    return bool(any_inside(nodes, edges, x, y, math.cos(turn), math.sin(turn)))
 
 
 def gate(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
     """Alg. 1, lines 1-12: no contact unless each body has a node inside the other."""
     a, b = arbiter.shapes
-    arbiter.process_collision = nodes_inside(a, b) > 0 and nodes_inside(b, a) > 0
+    arbiter.process_collision = has_node_inside(a, b) and has_node_inside(b, a)
 
 
 class Literal(Area):
-    """The paper's method; the settings are those of `Area`."""
+    """The paper's method; the settings are those of `Area`, and `spacing`."""
 
     name = "literal"
     ours = False
@@ -56,13 +67,19 @@ class Literal(Area):
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space whose contacts have to pass the gate."""
-        import rigidarea
-
-        space, bodies, contact = area_space(scene, {**settings, "direction": "nodal", "exponent": EXPONENT})
+        more = {k: v for k, v in settings.items() if k != "spacing"}
+        spacing = settings.get("spacing", math.inf) * scene.size
+        space, bodies, contact = area_space(scene, {**more, "direction": "nodal", "exponent": EXPONENT})
         for shape in space.shapes:
-            if not hasattr(shape, "outline"):
-                shape.outline = rigidarea.Outline.from_pymunk(shape)  # type: ignore[attr-defined]
+            outline = Outline.from_pymunk(shape)
+            if math.isfinite(spacing):
+                outline = Outline.from_shapely(shapely.segmentize(outline.polygon, spacing))
+            shape.outline = outline  # type: ignore[attr-defined]
+            rings = [np.asarray(ring) for ring in outline.rings]
+            shape.nodes = np.concatenate(rings)  # type: ignore[attr-defined]
+            shape.edges = np.concatenate([np.hstack((r, np.roll(r, -1, 0))) for r in rings])  # type: ignore[attr-defined]
             shape.collision_type = 1
+            contact.refresh(shape)
         space.on_collision(1, 1, pre_solve=gate)
         return StepRun(scene, space, bodies, contact, settings.get("steps"))
 

@@ -7,12 +7,13 @@ import numpy as np
 
 from ...outline import Outline
 from ...shapes import involute_gear
-from ..scene import OMEGA, Body, Curve, Pivot, Rings, Scene, Trace
+from ..scene import OMEGA, Body, Curve, Elastic, Pivot, Rings, Scene, Trace
 
 TEETH, MODULE, BACKLASH = (20, 30), 0.05, 0.02
 """Backlash in modules, half of it cut from each gear."""
 SPEED, BRAKE, MASS = 2.0, 5.0, 5.0
 """Driver's speed (rad/s), the driven gear's brake (N m) and mass (kg)."""
+STEEL = Elastic(207e9, 0.29, 0.01, 0.3 * MODULE)
 RADII = tuple(MODULE * teeth / 2 for teeth in TEETH)
 
 
@@ -44,7 +45,9 @@ def scene() -> Scene:
     # Centred in mesh, then turned against its own motion until the working flanks touch: half the backlash.
     centred = math.pi + math.pi / TEETH[1]
     touching = centred + BACKLASH * MODULE / 2 / RADII[1]
-    driver = Body("driver", (_curve(TEETH[0]),), angular_velocity=SPEED, kind="kinematic")
+    driver = Body(
+        "driver", (_curve(TEETH[0]),), angular_velocity=SPEED, mass=MASS, kind="kinematic", elastic=STEEL
+    )
     driven = Body(
         "driven",
         (_curve(TEETH[1]),),
@@ -53,13 +56,14 @@ def scene() -> Scene:
         angular_velocity=-SPEED * TEETH[0] / TEETH[1],
         mass=MASS,
         moment=gear(TEETH[1]).moment(MASS),
+        elastic=STEEL,
     )
     return Scene(
         name="gears",
         title="involute gears, 20 : 30",
         bodies=(driver, driven),
         gravity=(0.0, 0.0),
-        pivots=(Pivot("driven", BRAKE),),
+        pivots=(Pivot("driven", BRAKE, turns=-1),),
         duration=2.0,
         error_name="rms error of ratio, relative",
         error=error,

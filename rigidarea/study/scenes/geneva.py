@@ -8,13 +8,15 @@ import numpy as np
 from ...outline import Outline
 from ...shapes.geneva import Geneva
 from ...shapes.geneva import geneva as make
-from ..scene import ANGLE, Body, Circle, Curve, Pivot, Rings, Scene, Trace
+from ..scene import ANGLE, Body, Circle, Curve, Elastic, Pivot, Rings, Scene, Trace
 
 SLOTS, CENTRES, PIN = 6, 0.05, 0.008
 SPEED, LEAD, MASS, BRAKE = math.pi, 0.3, 0.1, 2e-3
 """Driver's speed (rad/s); how far before entry and after exit it runs (rad); wheel's mass (kg); brake (N
 m).
 """
+STEEL = Elastic(207e9, 0.29, 0.005, 0.002)
+"""Of the wheel."""
 
 
 @cache
@@ -70,6 +72,7 @@ def scene() -> Scene:
             parts.wheel_angle(start),
             mass=MASS,
             moment=parts.wheel.moment(MASS),
+            elastic=STEEL,
         ),
     )
     return Scene(
@@ -77,7 +80,7 @@ def scene() -> Scene:
         title="Geneva drive, six slots",
         bodies=bodies,
         gravity=(0.0, 0.0),
-        pivots=(Pivot("wheel", BRAKE),),
+        pivots=(Pivot("wheel", BRAKE, turns=-1),),
         duration=2 * (parts.entry_angle + LEAD) / SPEED,
         error_name="rms angle error / index angle",
         error=error,

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..scene import Body, G, Scene, Trace, disc, slab_with_hole
+from ..scene import Body, Elastic, G, Scene, Trace, disc, slab_with_hole
 
 HOLE, PIN, BOUNCES = 1.0, 0.9, 3
 CLEARANCE = HOLE - PIN
@@ -13,6 +13,8 @@ DROP = 0.3 * CLEARANCE
 of radius ρ).
 """
 PERIOD = 2 * math.sqrt(2 * DROP / G)
+STEEL = Elastic(207e9, 0.29, 0.01, 0.05)
+"""Of the pin."""
 
 
 def height(t: np.ndarray) -> np.ndarray:
@@ -35,7 +37,7 @@ def scene() -> Scene:
     return Scene(
         name="journal_bounce",
         title="elastic pin in a journal",
-        bodies=(journal, disc("pin", PIN, (0.0, DROP - CLEARANCE))),
+        bodies=(journal, disc("pin", PIN, (0.0, DROP - CLEARANCE), elastic=STEEL)),
         elasticity=1.0,
         duration=BOUNCES * PERIOD,
         error_name="position over three bounces / drop",

@@ -2,11 +2,13 @@
 
 import math
 
-from ..scene import Body, Scene, disc, slab_with_hole
+from ..scene import Body, Elastic, Scene, disc, slab_with_hole
 from .bowl_slide import path_error, period, swing
 
 HOLE, PIN, START = 1.0, 0.9, math.radians(60)
 RHO = HOLE - PIN
+STEEL = Elastic(207e9, 0.29, 0.01, 0.05)
+"""Of the pin."""
 
 
 def scene() -> Scene:
@@ -16,7 +18,7 @@ def scene() -> Scene:
     return Scene(
         name="journal_swing",
         title="smooth pin in a journal",
-        bodies=(journal, disc("pin", PIN, start)),
+        bodies=(journal, disc("pin", PIN, start, elastic=STEEL)),
         duration=2 * period(RHO, START),
         error_name="position over two periods / arc",
         error=lambda trace: path_error(trace, "pin", RHO, swing(trace.times, RHO, START)),

@@ -1,9 +1,11 @@
 """A perfectly elastic ball keeps its height for ever."""
 
-from ..scene import G, Scene, Trace, disc, floor
+from ..scene import Elastic, G, Scene, Trace, disc, floor
 from .bounce import apex, flight
 
 DROP, RADIUS, BOUNCES = 0.5, 0.25, 10
+STEEL = Elastic(207e9, 0.29, 0.01, 0.02)
+"""Of the ball."""
 
 
 def error(trace: Trace) -> float:
@@ -17,7 +19,7 @@ def scene() -> Scene:
     return Scene(
         name="superball",
         title="elastic ball, ten bounces",
-        bodies=(floor(), disc("ball", RADIUS, (0.0, RADIUS + DROP))),
+        bodies=(floor(), disc("ball", RADIUS, (0.0, RADIUS + DROP), elastic=STEEL)),
         elasticity=1.0,
         duration=(start + 3 * stop) / 4,
         error_name="relative error of tenth apex",
