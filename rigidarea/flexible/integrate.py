@@ -162,8 +162,9 @@ class Simulation:
         self.scratch = nodal.scratch(sum(len(b.points) for b in self.boundaries))
         self._buffers = Buffers(
             np.zeros((n, 4)), np.full((n, 4), np.inf), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)),
-            np.zeros((3 * n, 3 * n)), np.zeros(3 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
-            np.array([-1, 0, 0]), np.zeros(1),
+            np.zeros((6 * n, 6 * n)), np.zeros(6 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
+            np.zeros(3 * n, np.int64), np.array([-1, 0, 0]), np.zeros((REGIONS_KEPT * n, 20)),
+            np.zeros(1),
         )  # fmt: skip
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)

@@ -317,9 +317,7 @@ def contact(
             continue
         xc = _turn(r, s.x, s.y, n_a, n_b, q, xc, yc)
         if spread:
-            r["force"], r["give"] = resultant(
-                a, wa, pose_a, b, wb, pose_b, r["nx"], r["ny"], s.edge, n_a, n_b, r["force"], k * r["chord"]
-            )
+            resultant(a, wa, pose_a, b, wb, pose_b, r, s.edge, n_a, n_b, k * r["chord"])
             distribute(
                 a,
                 wa,

@@ -37,7 +37,12 @@ REGION = np.dtype(
     ]
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
-    + [("x_chord", "f8"), ("y_chord", "f8"), ("give", "f8")]  # give: see ``condense``
+    + [("x_chord", "f8"), ("y_chord", "f8")]
+    + [
+        ("give", "f8"),
+        ("node_a", "i8"),
+        ("node_b", "i8"),
+    ]  # see ``condense``; nodes under the middle of the arcs
 )
 CROSSING = np.dtype(
     [("a", "i8"), ("b", "i8"), ("ta", "f8"), ("tb", "f8"), ("x", "f8"), ("y", "f8"), ("enter", "i8"), ("next_a", "i8"),

@@ -18,7 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal, segment
-from rigidarea.flexible.boundary import Boundary, Work, clear_loads, to_nodes
+from rigidarea.flexible.boundary import Boundary, Work, add_load, clear_loads, to_nodes
+from rigidarea.flexible.condense import hub_row
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.kernel.jit import kernel
 
@@ -148,17 +149,19 @@ class Buffers(NamedTuple):
     matrix: Array
     rhs: Array
     load: Array  # (b, 3) generalised contact forces
-    tangent: Array  # (3 b, 3 b)
-    row: Array  # (3 b,)
+    tangent: Array  # (6 b, 6 b) of the contacts: frames, then hub loads (x, y, moment)
+    row: Array  # (6 b,)
     force: Array  # (2,)
     regions: Array  # (REGIONS_KEPT, 5)
     modal_residual: Array
+    column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
     counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
+    springs: Array  # (REGIONS_KEPT b, 20) of the regions: bodies, nodes, direction, stiffness, force, tangent row
     apart: Array  # (1,) largest difference of a region's k A from the force that it hands on (``condense``)
 
 
 @kernel
-def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-untyped-def]
+def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untyped-def]
     """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``region``."""
     buf.counts[1] += 1
     buf.load[:] = 0.0
@@ -194,7 +197,7 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
             return n_pairs
         if n_pairs == 0:
             continue
-        qa, qb = q[first[ia] : first[ia + 1]], q[first[ib] : first[ib + 1]]
+        qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
         if st.sts:
             n = segment.contact(
                 a, works[ia], pa, qa, b, works[ib], pb, qb, n_pairs, buf.counts[1], st.k, st.q, st.spread, s
@@ -215,6 +218,11 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
                 buf.regions[total, 0] = r["force"]
                 buf.regions[total, 1], buf.regions[total, 2] = r["nx"], r["ny"]
                 buf.regions[total, 3], buf.regions[total, 4] = r["x"], r["y"]
+            stiff = st.k * r["chord"] * r["give"]
+            if st.spread and total < len(buf.springs):
+                spring = buf.springs[total]
+                spring[0], spring[1], spring[2], spring[3] = ia, ib, r["node_a"], r["node_b"]
+                spring[4], spring[5], spring[6], spring[7] = r["nx"], r["ny"], stiff, r["force"]
             total += 1
             buf.row[:] = 0.0
             for side in range(2):
@@ -226,11 +234,27 @@ def _contact(bodies, works, first, buf, q, pairs, st, s):  # type: ignore[no-unt
                 ax, ay = r["x_chord"] - buf.pose[j, 0], r["y_chord"] - buf.pose[j, 1]
                 buf.row[3 * j], buf.row[3 * j + 1] = sign * r["nx"], sign * r["ny"]
                 buf.row[3 * j + 2] = sign * (ax * r["ny"] - ay * r["nx"])
-            for m in range(6):
-                row = 3 * (ia if m < 3 else ib) + m % 3
-                for c in range(6):
-                    col = 3 * (ia if c < 3 else ib) + c % 3
-                    buf.tangent[row, col] += st.k * r["chord"] * r["give"] * buf.row[row] * buf.row[col]
+                if st.spread and not st.sts and sy.pinned[j] + sy.driven[j] > 0:
+                    node = r["node_a"] if side == 0 else r["node_b"]
+                    hub = 3 * (len(bodies) + j)
+                    hub_row(
+                        bodies[j],
+                        works[j],
+                        buf.pose[j],
+                        sign * r["nx"],
+                        sign * r["ny"],
+                        node,
+                        buf.row[hub : hub + 3],
+                    )
+            for m in range(12):
+                row = 3 * ((ia if m % 2 == 0 else ib) + (0 if m < 6 else len(bodies))) + (m // 2) % 3
+                if total <= len(buf.springs):
+                    buf.springs[total - 1, 8 + m] = buf.row[row]
+                if buf.row[row] == 0.0:
+                    continue
+                for c in range(12):
+                    col = 3 * ((ia if c % 2 == 0 else ib) + (0 if c < 6 else len(bodies))) + (c // 2) % 3
+                    buf.tangent[row, col] += stiff * buf.row[row] * buf.row[col]
             if not st.sts:
                 turn = st.k * r["chord"] ** 3 / 12.0
                 buf.tangent[3 * ia + 2, 3 * ia + 2] += turn
@@ -281,11 +305,18 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
         for i in range(sy.first[b], sy.first[b + 1]):
             works[b].mobility[i - sy.first[b]] = 1.0 / (b_acc + sy.viscous[i] * b_vel + sy.square[i])
     t_new = t + h
-    n3 = 3 * n_b
+    n3 = n_unknown = 3 * n_b
+    for b in range(n_b):
+        for kind in range(3):
+            if (sy.pinned[b] if kind < 2 else sy.driven[b]) == 1:
+                buf.column[3 * b + kind] = n_unknown
+                n_unknown += 1
+            else:
+                buf.column[3 * b + kind] = -1
     change = 1.0
     for iteration in range(1, NEWTON_LIMIT + 1):
         _poses(state.x, buf)
-        code = _contact(bodies, works, sy.first, buf, state.q, pairs, st, s)
+        code = _contact(bodies, works, sy, buf, state.q, pairs, st, s)
         if code < 0:
             return code
         m, rhs = buf.matrix, buf.rhs
@@ -350,13 +381,9 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                     rhs[k + i] *= -scale
             if sy.fixed[b] == 1:
                 continue
-            n_hub = (2 if sy.pinned[b] == 1 else 0) + (1 if sy.driven[b] == 1 else 0)
-            if n_hub == 0:
-                continue
-            base = row
             # rows of the constraints: which hub component (0, 1 world displacement, 2 rotation)
             for kind in range(3):
-                if (kind < 2 and sy.pinned[b] == 0) or (kind == 2 and sy.driven[b] == 0):
+                if buf.column[k + kind] < 0:
                     continue
                 if kind == 0:
                     g = state.x[b, 0] + arm_x - sy.anchor[b, 0]
@@ -376,7 +403,7 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                 e1 = -sn if kind == 0 else (c if kind == 1 else 0.0)
                 e2 = 1.0 if kind == 2 else 0.0
                 for kind2 in range(3):
-                    if (kind2 < 2 and sy.pinned[b] == 0) or (kind2 == 2 and sy.driven[b] == 0):
+                    if buf.column[k + kind2] < 0:
                         continue
                     d0 = c if kind2 == 0 else (sn if kind2 == 1 else 0.0)
                     d1 = -sn if kind2 == 0 else (c if kind2 == 1 else 0.0)
@@ -392,13 +419,23 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                         pe = e0 * bd.modes[-3, j] + e1 * bd.modes[-2, j] + e2 * bd.modes[-1, j]
                         pd = d0 * bd.modes[-3, j] + d1 * bd.modes[-2, j] + d2 * bd.modes[-1, j]
                         value += pe * pd / (b_acc + sy.viscous[i] * b_vel + sy.square[i])
-                    m[row, base + (kind2 if kind2 < 2 else (2 if sy.pinned[b] == 1 else 0))] += value / scale
+                    m[row, buf.column[k + kind2]] += value / scale
                 # modes move the hub by their own residual in this iteration
                 for i in range(lo, hi):
                     j = i - lo
                     pe = e0 * bd.modes[-3, j] + e1 * bd.modes[-2, j] + e2 * bd.modes[-1, j]
                     rhs[row] += pe * buf.modal_residual[i] / (b_acc + sy.viscous[i] * b_vel + sy.square[i])
                 row += 1
+        for i in range(n3 if st.spread else 0):  # contacts on bodies that are held by their hubs
+            row_i = buf.column[i]
+            if row_i < 0:
+                continue
+            for j in range(n3):
+                if sy.fixed[j // 3] == 0:
+                    m[j, row_i] += buf.tangent[j, n3 + i]
+                m[row_i, j] -= buf.tangent[n3 + i, j]
+                if buf.column[j] >= 0:
+                    m[row_i, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scale
         done = (worst <= TOLERANCE * reference or change < ROUNDING) and worst_g <= CLOSURE
         # static flexibility answers to the loads of the evaluation before: look twice while there are any
         if done and (iteration > 1 or not st.spread or buf.counts[2] == 0):
@@ -441,6 +478,31 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
             w.hub_load[1] = -sn * state.mu[b, 0] + c * state.mu[b, 1]
             rate = state.v[b, 2] + _hub_rate(bd, state.dq[lo:hi])
             w.hub_load[2] = state.mu[b, 2] + sy.torque[b] - sy.damper[b] * rate
+        if st.spread and not st.sts:  # what the contact forces change by goes to the middle of each region
+            for i in range(min(buf.counts[2], len(buf.springs))):
+                spring = buf.springs[i]
+                df = 0.0
+                for n in range(12):
+                    b = int(spring[n % 2])
+                    if n < 6:
+                        df -= spring[8 + n] * rhs[3 * b + (n // 2) % 3]
+                    elif buf.column[3 * b + (n // 2) % 3] >= 0:
+                        df -= spring[8 + n] * rhs[buf.column[3 * b + (n // 2) % 3]] / scale
+                df = max(spring[6] * df, -spring[7])
+                for side in range(2):
+                    b, node = int(spring[side]), int(spring[2 + side])
+                    fx, fy = (df if side == 1 else -df) * spring[4], (df if side == 1 else -df) * spring[5]
+                    c, sn = buf.pose[b, 2], buf.pose[b, 3]
+                    fx, fy = c * fx + sn * fy, -sn * fx + c * fy
+                    bd, w = bodies[b], works[b]
+                    add_load(w.node_load, w.node_flag, w.loaded, node, fx, fy)
+                    for k in range(sy.first[b], sy.first[b + 1]):
+                        j = k - sy.first[b]
+                        d = w.mobility[j] * (bd.modes[2 * node, j] * fx + bd.modes[2 * node + 1, j] * fy)
+                        state.q[k] += d
+                        state.dq[k] += b_vel * d
+                        state.ddq[k] += b_acc * d
+                        state.auxq[k] += correction * b_acc * d
         buf.rhs[-2], buf.rhs[-1] = worst, reference
     return NO_CONVERGENCE
 
@@ -538,4 +600,4 @@ def replay(bodies, works, sy, q, pairs, st, s, buf, x):  # type: ignore[no-untyp
     """One contact evaluation for each recorded frame position x (n, b, 3)."""
     for n in range(len(x)):
         _poses(x[n], buf)
-        _contact(bodies, works, sy.first, buf, q, pairs, st, s)
+        _contact(bodies, works, sy, buf, q, pairs, st, s)
