@@ -108,6 +108,8 @@ def maps() -> dict[str, Map]:
 
     found = {}
     for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
+        if info.name.startswith("_"):
+            continue
         made: Map = importlib.import_module(f"{package.__name__}.{info.name}").atlas_map()
         if made.name != info.name:
             raise ValueError(f"map module {info.name!r} defines a map called {made.name!r}")

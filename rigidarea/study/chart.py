@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -33,6 +34,7 @@ PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
 def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
     """Run one setting and measure its error (null if the run failed): the task of the sweep."""
     described = get_scene(scene)
+    warm(scene, peer)
     run = Stopwatch(get_peer(peer).build(described, settings))
     error = described.measure(record(run, described))
     return {
@@ -40,6 +42,14 @@ def evaluate(scene: str, peer: str, settings: dict[str, Any]) -> Row:
         "steps_per_frame": run.steps,
         "rough_s_per_s": run.seconds / described.duration,
     }
+
+
+@cache
+def warm(scene: str, peer: str) -> None:
+    """Build and step once a process: what is compiled or loaded on first use is not part of a cost."""
+    described = get_scene(scene)
+    engine = get_peer(peer)
+    engine.build(described, engine.settings(described, quick=True)[0]).advance(1)
 
 
 def jobs(names: Sequence[str], peer_names: Sequence[str], quick: bool) -> list[Task]:

@@ -21,6 +21,9 @@ PASS_COLOUR = "#BFE3F7"
 FAIL_COLOURS = ("#D55E00", "#E69F00", "#CC79A7", "#F0E442", "#009E73", "#000000")
 ENGINES = ("rigidarea", "pymunk", "box2d", "literal")
 """Columns of the overview and of the page."""
+CORNERS = "literal, corners"
+TITLES = {"literal": "the paper's: mesh nodes", CORNERS: "the paper's: corners as nodes"}
+"""What the page calls the paper's method."""
 PAGE = ("step_size", "buckling", "corner", "mass_ratio", "overlap_depth", "tunnel")
 """Maps of the page."""
 TICKS = 6
@@ -43,10 +46,10 @@ def places(axis: Axis, values: Sequence[float], at: Array) -> Array:
 def _label(axis: Axis, value: float) -> str:
     if axis.names:
         return axis.names[round(value)]
-    if axis.log and (value >= 1e4 or value < 1e-2):
+    if axis.log and (value >= 1e3 or value < 1e-2):
         power = math.floor(math.log10(value) + 1e-9)
         factor = value / 10**power
-        return f"$10^{{{power}}}$" if abs(factor - 1) < 1e-6 else f"{value:.0e}".replace("e-0", "e-")
+        return f"$10^{{{power}}}$" if abs(factor - 1) < 1e-6 else f"{factor:.0f}e{power}"
     return f"{value:.3g}"
 
 
@@ -89,7 +92,8 @@ def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
     handles = _swatches(colours) + _lines(axes)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), fontsize=8.5)
     figure.suptitle(chart.title, fontsize=11)
-    figure.supxlabel(chart.x.label, fontsize=9.5)
+    for ax in axes[-1]:  # constrained layout puts a common label under the legend
+        ax.set_xlabel(chart.x.label.replace(" / ", "\n/ ") if columns > 3 else chart.x.label, fontsize=9)
     figure.supylabel(chart.y.label, fontsize=9.5)
     return save(figure, out, f"atlas-{chart.name}")
 
@@ -108,7 +112,7 @@ def _swatches(colours: dict[str, str]) -> list[Any]:
 def _lines(axes: Any) -> list[Any]:
     """Legend handles of theory, once each."""
     found: dict[str, Any] = {}
-    for ax in axes.flat:
+    for ax in np.ravel(axes):
         for handle, label in zip(*ax.get_legend_handles_labels(), strict=True):
             found.setdefault(label, handle)
     return list(found.values())
@@ -155,28 +159,33 @@ def page(report: Row, out: Path) -> list[Path]:
     charts = [get_map(name) for name in PAGE if any(row["map"] == name for row in report["results"])]
     if not charts:
         return []
-    figure = plt.figure(figsize=(10, 0.4 + 2.05 * len(charts)), layout="constrained")
+    figure = plt.figure(figsize=(10, 0.2 + 2.05 * len(charts)))
     strips = figure.subfigures(len(charts), 1, squeeze=False)[:, 0]
     for strip, chart in zip(strips, charts, strict=True):
         rows = [row for row in report["results"] if row["map"] == chart.name]
-        axes = strip.subplots(1, len(ENGINES), sharex=True, sharey=True, squeeze=False)
-        colours = _colours([row for row in rows if row["peer"] in ENGINES])
-        for ax, name in zip(axes.flat, ENGINES, strict=True):
-            here = [row["verdict"] == PASS for row in rows if row["peer"] == name]
-            if not here:
+        axes = strip.subplots(1, len(ENGINES) + 1, width_ratios=(*[1.0] * len(ENGINES), 0.9), squeeze=False)[
+            0
+        ]
+        strip.subplots_adjust(left=0.085, right=0.98, bottom=0.25, top=0.77, wspace=0.12)
+        corners = any(row["peer"] == CORNERS for row in rows)
+        names = [CORNERS if name == "literal" and corners else name for name in ENGINES]
+        colours = _colours([row for row in rows if row["peer"] in names])
+        for ax, name in zip(axes, names, strict=False):
+            if any(row["peer"] == name for row in rows):
+                _cells(ax, chart, rows, name, colours, 5)
+                ax.set_title(TITLES.get(name, name), fontsize=8.5)
+            else:
                 ax.set_axis_off()
-                continue
-            _cells(ax, chart, rows, name, colours, 5)
-            ax.set_title("the paper's method, literally" if name == "literal" else name, fontsize=8.5)
+            if ax is not axes[0]:
+                ax.set_yticklabels([])
+        axes[-1].set_axis_off()
+        axes[-1].legend(
+            handles=_swatches(colours) + _lines(axes), loc="center left", fontsize=8, handlelength=1.4,
+            bbox_to_anchor=(-0.1, 0.5),
+        )  # fmt: skip
         strip.suptitle(chart.title, fontsize=10, fontweight="bold", x=0.01, ha="left")
-        strip.supxlabel(chart.x.label, fontsize=8.5)
-        axes[0, 0].set_ylabel(chart.y.label, fontsize=8.5)
-        strip.legend(
-            handles=_swatches(colours) + _lines(axes),
-            loc="outside right center",
-            fontsize=8,
-            handlelength=1.4,
-        )
+        strip.supxlabel(chart.x.label, fontsize=8.5, x=0.45)
+        axes[0].set_ylabel(chart.y.label, fontsize=8.5)
     return save(figure, out, "atlas-page")
 
 

@@ -34,6 +34,17 @@ def test_half_the_cost():
     assert found.error_ratio_at_matched_cost == 1e-3 / 1e-2  # at a cost of 50 they are one setting behind
 
 
+def test_mean_over_a_range():
+    """At a tenth the cost down to an error of 1e-2, and ten times the cost at 1e-3: in between on the average."""
+    ours = [Point(0.1, 1e-1), Point(1, 1e-2), Point(1000, 1e-3)]
+    found = compare(ours, THEIRS)
+    assert found.cost_ratio_at_matched_error == pytest.approx(10)
+    assert found.cost_ratio_low == pytest.approx(0.1)
+    assert found.cost_ratio_high == pytest.approx(10)
+    # thirteen errors from 1e-3 to 1e-1: the first six lie below 1e-2
+    assert found.cost_ratio_mean == pytest.approx((10**6 * 0.1**7) ** (1 / 13))
+
+
 def test_less_accurate():
     """Where we do not reach their best error, the match is at ours, and the worst ratio is infinite."""
     found = compare([Point(1, 1e-2)], THEIRS)

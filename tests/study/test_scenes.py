@@ -8,6 +8,7 @@ from scipy.integrate import quad, solve_ivp
 
 from rigidarea.study.scene import G, Trace, scenes
 from rigidarea.study.scenes import (
+    bars,
     bowl_roll,
     bowl_slide,
     dome,
@@ -274,6 +275,27 @@ def test_impacts_keep_momentum():
     assert masses @ speeds == pytest.approx(mass_chain.V)
     assert masses @ speeds**2 == pytest.approx(mass_chain.V**2)
     assert np.all(np.diff(speeds) > 0)  # none catches the next one up
+
+
+def test_bars_by_waves():
+    """Saint-Venant's answer from the wave equation, d'Alembert's two waves moved cell by cell (exact for h = c Δt)."""
+    short, long = 40, 80
+    right, left = (
+        np.zeros(short + long),
+        np.zeros(short + long),
+    )  # velocity is their sum, pressure their difference
+    right[:short] = left[:short] = bars.V / 2
+    for _ in range(6 * long):
+        from_short, from_long = right[short - 1], left[short]
+        onwards, back = np.empty_like(right), np.empty_like(left)
+        onwards[1:], back[:-1] = right[:-1], left[1:]
+        onwards[0], back[-1] = left[0], right[-1]  # free ends reflect
+        if from_short < from_long:  # tension: the joint opens, two free ends
+            onwards[short], back[short - 1] = from_long, from_short
+        right, left = onwards, back
+    velocity = right + left
+    means = velocity[:short].mean(), velocity[short:].mean()
+    assert means == pytest.approx(bars.after(), abs=1e-12)
 
 
 def test_overhang_is_stable():

@@ -53,7 +53,7 @@ def atlas_map() -> Map:
             rigidarea={"peer": "rigidarea", "phase": 0.5},
             pymunk={"steps": 16},
             box2d={"steps": 4},
-            literal=None,
+            literal={"spacing": 1.0},  # the chords are shorter
         ),
         run=run,
         source="pendulum of length ρ = R − r",

@@ -5,27 +5,15 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import ANGLE, Body, Scene, Y, box, box_moment, floor
+from ..scene import ANGLE, Y
+from ._drop import dropped
 
 LIMIT = 0.1
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """How deep the lowest corner gets below the floor within two seconds (sides)."""
-    tilt = math.radians(x)
-    reach = math.sqrt(0.5) * math.cos(math.radians(45) - tilt)
-    body = Body("box", (box(1.0, 1.0),), (0.0, reach + y), tilt, moment=box_moment(1.0, 1.0, 1.0))
-    scene = Scene(
-        name="corner",
-        title="",
-        bodies=(floor(), body),
-        friction=0.5,
-        elasticity=0.2,
-        duration=2.0,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
-    )
+    scene = dropped("corner", x, y, 0.2)
     settings = {"stiffness": 1e4} if variant.peer == "literal" else {}
     path = run_scene(variant, scene, **settings)["box"]
     turn = np.mod(path[:, ANGLE], math.pi / 2)

@@ -5,7 +5,8 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import OMEGA, VX, VY, Array, Body, G, Scene, Y, box, box_moment, floor
+from ..scene import OMEGA, VX, VY, Array, G, Y, box_moment
+from ._drop import dropped
 
 K, DROP = 1e4, 0.5
 OMEGA_FLAT = math.sqrt(K * G)
@@ -14,22 +15,7 @@ OMEGA_FLAT = math.sqrt(K * G)
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """Largest energy after the first touch over the energy before; `x` is ω h lying flat, `y` the tilt."""
-    tilt = math.radians(y)
-    reach = math.sqrt(0.5) * math.cos(math.radians(45) - tilt)
-    body = Body("box", (box(1.0, 1.0),), (0.0, reach + DROP), tilt, moment=box_moment(1.0, 1.0, 1.0))
-    h = x / OMEGA_FLAT
-    scene = Scene(
-        name="landing",
-        title="",
-        bodies=(floor(), body),
-        friction=0.5,
-        elasticity=0.5,
-        duration=2.0,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
-        frame=8 * h,
-    )
+    scene = dropped("landing", y, DROP, 0.5, 8 * x / OMEGA_FLAT)
     knob = {"stiffness": K} if variant.peer in ("rigidarea", "literal") else {}
     path = run_scene(variant, scene, steps=8, **knob)["box"]
     if not np.all(np.isfinite(path)):

@@ -42,7 +42,7 @@ def theory() -> list[tuple[str, Array, Array]]:
     """ω h = 2 of the light box between two contacts: ω² = 2 k s/m (heavy box at rest)."""
     ratio = np.logspace(0, 4, 30)
     omega = np.sqrt(2 * ratio * G / SINKING)
-    return [("ω h = 2 (area contact, undamped)", ratio, omega / 2 / 60)]
+    return [("ω h = 2, undamped", ratio, omega / 2 / 60)]
 
 
 def atlas_map() -> Map:

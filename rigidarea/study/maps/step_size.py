@@ -71,7 +71,7 @@ def theory() -> list[tuple[str, Array, Array]]:
     e = np.linspace(0.02, 1.0, 50)
     zeta = np.array([damping_ratio(float(value)) for value in e])
     explicit = 2 * (np.sqrt(1 + zeta**2) - zeta)
-    return [("4 − 2hc′ − (ωh)² = 0", limit(zeta), e), ("explicit damping: 2(√(1+ζ²) − ζ)", explicit, e)]
+    return [("4 − 2hc′ − (ωh)² = 0", limit(zeta), e), ("explicit damping", explicit, e)]
 
 
 def atlas_map() -> Map:

@@ -65,4 +65,5 @@ def atlas_map() -> Map:
         run=run,
         source="discrete detection: v h < thickness + side",
         theory=theory,
+        theory_of=("pymunk", "box2d"),
     )

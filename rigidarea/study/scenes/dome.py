@@ -4,41 +4,18 @@ import math
 
 import numpy as np
 
-from ..scene import Body, Circle, G, Scene, Trace, disc
+from ..scene import Array, Body, Circle, G, Scene, Trace, disc
+from ._motion import slide_and_fly
 
 DOME, RADIUS, START = 1.0, 0.2, 0.3
 RHO = DOME + RADIUS
 
 
-def motion(t: np.ndarray) -> tuple[np.ndarray, float]:
-    """Places (n, 2) at times `t`, and the time of leaving: θ'' = (g/ρ) sin θ from rest, then a parabola."""
-    from scipy.integrate import solve_ivp
-
-    angle = math.acos(2 / 3 * math.cos(START))
-
-    def leaves(_: float, y: np.ndarray) -> float:
-        return float(y[0] - angle)
-
-    leaves.terminal = True  # type: ignore[attr-defined]
-    found = solve_ivp(
-        lambda _, y: (y[1], G / RHO * math.sin(y[0])),
-        (0.0, 10.0),
-        (START, 0.0),
-        method="DOP853",
-        events=leaves,
-        dense_output=True,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    events, path = found.t_events, found.sol
-    assert events is not None and path is not None  # asked for above
-    left = float(events[0][0])
-    theta = path(np.minimum(t, left))[0]
-    place = RHO * np.column_stack((np.sin(theta), np.cos(theta)))
-    speed = math.sqrt(G * RHO * math.cos(angle))  # N = 0: m v²/ρ = m g cos θ
-    flying = np.maximum(t - left, 0.0)[:, None]
-    velocity = speed * np.array((math.cos(angle), -math.sin(angle)))
-    return place + flying * velocity - np.array((0.0, G / 2)) * flying**2, left
+def motion(t: Array) -> tuple[Array, float]:
+    """Places (n, 2) at times `t`, and the time of leaving, where m v²/ρ = m g cos θ, θ from the top."""
+    leaving = math.pi - math.acos(2 / 3 * math.cos(START))  # from the lowest point, as is the start
+    place, left = slide_and_fly(RHO, math.pi - START, 0.0, leaving, t)
+    return place, left
 
 
 def error(trace: Trace) -> float:

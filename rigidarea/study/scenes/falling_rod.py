@@ -4,33 +4,23 @@ import math
 
 import numpy as np
 
-from ..scene import ANGLE, Body, G, Polygon, Scene, Trace, X, floor
+from ..scene import ANGLE, Array, Body, G, Polygon, Scene, Trace, X, floor
+from ._motion import angle
 from .ladder import LENGTH, THICK, moment
 
 START = math.radians(70)
 H = LENGTH / 2
 
 
-def angle_at(t: np.ndarray) -> np.ndarray:
+def angle_at(t: Array) -> Array:
     """Angle above the floor at times `t`: (I + m h² cos² θ) θ'' = m h² θ'² sin θ cos θ − m g h cos θ."""
-    from scipy.integrate import solve_ivp
-
     inertia = moment(1.0)
 
-    def rates(_: float, y: np.ndarray) -> tuple[float, float]:
+    def rates(_: float, y: Array) -> tuple[float, float]:
         s, c = math.sin(y[0]), math.cos(y[0])
         return y[1], (H**2 * y[1] ** 2 * s * c - G * H * c) / (inertia + H**2 * c * c)
 
-    found = solve_ivp(
-        rates,
-        (0.0, float(np.max(t)) or 1.0),
-        (START, 0.0),
-        method="DOP853",
-        t_eval=t,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    return np.asarray(found.y[0])
+    return angle(rates, START, t)
 
 
 def error(trace: Trace) -> float:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from ..scene import ANGLE, Body, G, Polygon, Scene, Trace, floor
+from ..scene import ANGLE, Array, Body, G, Polygon, Scene, Trace, floor
+from ._motion import angle
 
 LENGTH, THICK, START = 2.0, 0.1, math.radians(60)
 """A rhombus, so that its two tips are the ladder's ends; START is the angle above the floor."""
@@ -37,20 +38,9 @@ def leaving_time() -> float:
     return float(quad(integrand, 0.0, math.sqrt(START - leaving_angle()), epsabs=1e-13)[0])
 
 
-def angle_at(t: np.ndarray) -> np.ndarray:
+def angle_at(t: Array) -> Array:
     """Angle above the floor at times `t`, while both ends touch."""
-    from scipy.integrate import solve_ivp
-
-    found = solve_ivp(
-        lambda _, y: (y[1], -P2 * math.cos(y[0])),
-        (0.0, float(np.max(t)) or 1.0),
-        (START, 0.0),
-        method="DOP853",
-        t_eval=t,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    return np.asarray(found.y[0])
+    return angle(lambda _, y: (y[1], -P2 * math.cos(y[0])), START, t)
 
 
 def error(trace: Trace) -> float:

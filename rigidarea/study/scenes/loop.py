@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from ..scene import Body, G, Scene, Trace, disc, slab_with_hole
+from ..scene import Array, Body, G, Scene, Trace, disc, slab_with_hole
+from ._motion import slide_and_fly
 
 HOLE, RADIUS = 1.0, 0.1
 RHO = HOLE - RADIUS
@@ -18,39 +19,12 @@ def leaving_angle() -> float:
     return math.acos((2 - THROW) / 3)
 
 
-def motion(t: np.ndarray) -> tuple[np.ndarray, float]:
-    """Places (n, 2) at times `t`, and the time of leaving.
+def motion(t: Array) -> tuple[Array, float]:
+    """Places (n, 2) at times `t`, and the time of leaving, where m v²/ρ = −m g cos θ.
 
-    On the wall: θ'' = −(g/ρ) sin θ from θ = 0 with θ' = v₀/ρ. In the air: a parabola. Valid until the disc
-    meets the wall again.
+    Valid until the disc meets the wall again.
     """
-    from scipy.integrate import solve_ivp
-
-    angle = leaving_angle()
-
-    def leaves(_: float, y: np.ndarray) -> float:
-        return float(y[0] - angle)
-
-    leaves.terminal = True  # type: ignore[attr-defined]
-    found = solve_ivp(
-        lambda _, y: (y[1], -G / RHO * math.sin(y[0])),
-        (0.0, 10.0),
-        (0.0, SPEED / RHO),
-        method="DOP853",
-        events=leaves,
-        dense_output=True,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    events, path = found.t_events, found.sol
-    assert events is not None and path is not None  # asked for above
-    left = float(events[0][0])
-    theta = path(np.minimum(t, left))[0]
-    place = RHO * np.column_stack((np.sin(theta), -np.cos(theta)))
-    speed = math.sqrt(-G * RHO * math.cos(angle))  # N = 0: m v²/ρ = −m g cos θ
-    flying = np.maximum(t - left, 0.0)[:, None]
-    velocity = speed * np.array((math.cos(angle), math.sin(angle)))
-    return place + flying * velocity - np.array((0.0, G / 2)) * flying**2, left
+    return slide_and_fly(RHO, 0.0, SPEED, leaving_angle(), t)
 
 
 def error(trace: Trace) -> float:

@@ -4,13 +4,14 @@ import itertools
 
 import numpy as np
 
-from ..scene import VX, Scene, Trace, disc
+from ..scene import Array, Scene
+from ._row import row
 
 RADIUS, GAP, V = 0.25, 0.05, 1.0
 MASSES = (1.0, 0.5, 0.25, 0.125)
 
 
-def after() -> np.ndarray:
+def after() -> Array:
     """Velocities (n,) after every pair has met once; each disc ends slower than the next, so none meet
     again.
     """
@@ -21,31 +22,16 @@ def after() -> np.ndarray:
     return speeds
 
 
-def error(trace: Trace) -> float:
-    """Largest velocity error relative to the last disc's speed."""
-    exact = after()
-    found = np.array([trace[f"disc{i}"][-1, VX] for i in range(len(MASSES))])
-    return float(np.max(np.abs(found - exact)) / exact[-1])
-
-
 def scene() -> Scene:
     """Masses halve three times, e = 1, no gravity."""
-    pitch = 2 * RADIUS + GAP
-    discs = tuple(
-        disc(f"disc{i}", RADIUS, (i * pitch - (0.2 if i == 0 else 0.0), 0.0), m, velocity=(V * (i == 0), 0.0))
-        for i, m in enumerate(MASSES)
-    )
-    return Scene(
-        name="mass_chain",
-        title="impact along a chain of masses",
-        bodies=discs,
-        gravity=(0.0, 0.0),
-        elasticity=1.0,
-        duration=0.6,
-        error_name="velocity, relative",
-        error=error,
-        source="Huygens' chain: v Π 2 m_i/(m_i + m_(i+1))",
-        size=2 * RADIUS,
-        pressure=V**2 / (2 * RADIUS) ** 3,
-        tags=frozenset({"impact"}),
+    return row(
+        "mass_chain",
+        "impact along a chain of masses",
+        "Huygens' chain: v Π 2 m_i/(m_i + m_(i+1))",
+        RADIUS,
+        GAP,
+        0.2,
+        MASSES,
+        V,
+        after(),
     )

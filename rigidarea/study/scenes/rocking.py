@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from ..scene import ANGLE, Body, G, Scene, Trace, box, box_moment, floor
+from ..scene import ANGLE, Array, Body, G, Scene, Trace, box, box_moment, floor
+from ._motion import angle
 
 WIDTH, HEIGHT, MU = 0.4, 2.0, 2.0
 ALPHA = math.atan(WIDTH / HEIGHT)
@@ -18,22 +19,11 @@ def housner_quarter(tilt: float = TILT) -> float:
     return math.acosh(1 / (1 - tilt / ALPHA)) / P
 
 
-def tilt_at(t: np.ndarray) -> np.ndarray:
+def tilt_at(t: Array) -> Array:
     """Tilt at times `t`: θ'' = −p² sin(α − θ), from rest at θ₀; no small-angle assumption, up to the
     impact.
     """
-    from scipy.integrate import solve_ivp
-
-    found = solve_ivp(
-        lambda _, y: (y[1], -(P**2) * math.sin(ALPHA - y[0])),
-        (0.0, float(np.max(t)) or 1.0),
-        (TILT, 0.0),
-        method="DOP853",
-        t_eval=t,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    return np.asarray(found.y[0])
+    return angle(lambda _, y: (y[1], -(P**2) * math.sin(ALPHA - y[0])), TILT, t)
 
 
 def quarter() -> float:

@@ -4,7 +4,8 @@ import math
 
 import numpy as np
 
-from ..scene import ANGLE, G, Scene, Trace, block, floor
+from ..scene import ANGLE, Array, G, Scene, Trace, block, floor
+from ._motion import angle
 
 WIDTH, HEIGHT, MU = 0.5, 1.0, 2.0
 ALPHA = math.atan(WIDTH / HEIGHT)
@@ -16,21 +17,9 @@ P2 = 3 * G / (4 * R)
 DURATION = 0.75
 
 
-def rotation(t: np.ndarray) -> np.ndarray:
+def rotation(t: Array) -> Array:
     """Angle turned at times `t`: φ'' = p² sin(φ + θ − α), from rest."""
-    from scipy.integrate import solve_ivp
-
-    end = float(np.max(t)) or 1.0
-    found = solve_ivp(
-        lambda _, y: (y[1], P2 * math.sin(y[0] + THETA - ALPHA)),
-        (0.0, end),
-        (0.0, 0.0),
-        method="DOP853",
-        t_eval=t,
-        rtol=1e-12,
-        atol=1e-12,
-    )
-    return np.asarray(found.y[0])
+    return angle(lambda _, y: (y[1], P2 * math.sin(y[0] + THETA - ALPHA)), 0.0, t)
 
 
 def error(trace: Trace) -> float:
