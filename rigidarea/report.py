@@ -84,7 +84,10 @@ def plain(value: Any) -> Any:
 
 
 def write_json(value: Any, file: str | Path | None) -> None:
-    """Write to `file`, its folder made; to standard output for "-"; nothing for None."""
+    """Write to `file`, its folder made; to standard output for "-"; nothing for None.
+
+    A file is replaced as a whole: an interrupt leaves the one before, never half a file.
+    """
     if file is None:
         return
     text = json.dumps(plain(value), indent=1, ensure_ascii=False, allow_nan=False) + "\n"
@@ -93,7 +96,12 @@ def write_json(value: Any, file: str | Path | None) -> None:
         return
     path = Path(file)
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
+    if path.exists() and not path.is_file():  # a device or a pipe
+        path.write_text(text)
+        return
+    part = path.with_name(path.name + ".part")
+    part.write_text(text)
+    part.replace(path)
 
 
 def output_arguments(parser: argparse.ArgumentParser, out: Path) -> None:

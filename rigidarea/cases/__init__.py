@@ -6,9 +6,13 @@
 from __future__ import annotations
 
 import argparse
+import json
 import os
+import sys
 from pathlib import Path
 from typing import Any
+
+from ..report import write_json
 
 NAMES = ("hertz", "pin-joint", "patch", "geneva", "gearbox")
 MODES = ("rigid", "compliant", "modal")
@@ -35,10 +39,27 @@ def cache_directory() -> Path:
 def run(args: argparse.Namespace) -> dict[str, Any]:
     """Runs ``args.name`` and returns its JSON object; figures go to ``args.out`` (none if it is missing or None).
 
-    Raises ValueError for options the case has no use for, and for mesh sizes it cannot mesh.
+    The object is also kept in ``args.out``/NAME.json while it grows: an interrupted run leaves there, and in
+    ``args.json`` if that was asked for, what was computed until then. Raises ValueError for options the case has
+    no use for, and for mesh sizes it cannot mesh.
     """
     out = getattr(args, "out", None)
-    out = None if out is None else Path(out)
+    if out is None:
+        return _run(args, None)
+    file = Path(out) / f"{args.name}.json"
+    file.unlink(missing_ok=True)
+    try:
+        told = _run(args, Path(out))
+    except KeyboardInterrupt:
+        if file.exists():
+            print(f"interrupted: what was computed is in {file}", file=sys.stderr)
+            write_json(json.loads(file.read_text()), getattr(args, "json", None))
+        raise
+    write_json(told, file)
+    return told
+
+
+def _run(args: argparse.Namespace, out: Path | None) -> dict[str, Any]:
     name, cache = args.name, cache_directory()
     if name in ("hertz", "patch"):
         if args.mode is not None or args.mesh is not None or args.contact != "area":

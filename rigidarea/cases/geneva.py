@@ -1,4 +1,4 @@
-"""A Geneva mechanism (the paper's section 3.4, Fig. 15–20, Tables 3 and 4).
+"""A Geneva mechanism (the paper's section 3.4, Fig. 14–20, Tables 3 and 4).
 
 Left open by the paper and chosen here: the crank's start angle (so that first contact is due at the paper's 0.0329
 s), the wheel's rim (no locking arc takes part in the contact: as in the paper, the damper alone holds the wheel),
@@ -7,11 +7,15 @@ crank. E is 207×10⁸ Pa as its Table 4 prints; k = 6×10⁸ N/m² without the 
 
 Eq. 41 divides by 1/φ_eff, which is no number: errors are given as a part of the index angle 2π/n, and beside it as
 a part of the mean |φ_eff|.
+
+Steps. The paper's cost has its minimum at 0.4 ms and rises beyond, as its Newton iterations grow. Here they grow too,
+from 3 to 10 a step, but slower than the number of steps falls, so the cost goes on falling until steps have to be
+halved, at 0.1 s and more, where the whole engagement is a few steps and accuracy is long gone: what bounds the step
+is accuracy, not cost (Fig. 19, ``steps``).
 """
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.cases import report
+from rigidarea.cases.mechanism import step_sweep, timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Record, Simulation
@@ -32,11 +37,31 @@ K, DAMPER, SPEED, STEP, RHO = 6e8, 0.1, np.pi, 2e-4, 0.8
 DUE = 0.0329  # s, the paper's time of first contact
 MESH = 1.0  # mm
 REFINE = 16  # contact points a mesh edge: on the pin a sagitta of 0.1 µm
+STEPS = (
+    5e-5,
+    1e-4,
+    2e-4,
+    4e-4,
+    5e-4,
+    8e-4,
+    1.6e-3,
+    3.2e-3,
+    6.4e-3,
+    0.0125,
+    0.025,
+    0.03,
+    0.04,
+    0.05,
+    0.1,
+    0.2,
+)
+PLAY_S = 6.4e-3  # s, in which the pin crosses the play and touches: the shortest event
 PAPER: dict[str, Any] = {
     "rms_percent": 1.13,
     "contact_due_s": 0.0329,
     "contact_s": 0.0414,
     "contact_delay_ms": 8.5,
+    "cheapest_step_s": 4e-4,
 }
 
 
@@ -172,48 +197,14 @@ def run(
     out: Path | None = None,
     cache: Path | None = None,
     duration: float = 10.0,
+    sweeps: bool = True,
 ) -> dict[str, Any]:
     """Six slots over 10 s; then 4, 5 and 8 slots, stiffer contacts, and the sweep of steps (1 s each)."""
-    clock = report.Clock()
-    sim, start = simulation(mode, mesh_mm, contact, cache=cache)
-    clock.setup()
-    begin = time.perf_counter()
-    r = through_hook(duration) if mode == "rigid" and contact == "area" else sim.run(duration, STEP)
-    results: dict[str, Any] = {**measure(r, start, 6), "run_s": time.perf_counter() - begin}
-    report.say("geneva: other numbers of slots")
-    results["slot_numbers"] = []
-    for n in (4, 5, 6, 8):
-        s, a = simulation(mode, mesh_mm, contact, n, cache=cache)
-        results["slot_numbers"].append(measure(s.run(4.4, STEP), a, n))
-    results["stiffness"] = []
-    for k in (K / 4, K, 4 * K):
-        s, a = simulation("rigid", mesh_mm, contact, k=k)
-        results["stiffness"].append({"k": k, **measure(s.run(1.0, STEP), a, 6)})
-    report.say("geneva: steps")
-    steps, histories = [], {}
-    for h in (5e-5, 1e-4, 2e-4, 3e-4, 4e-4, 5e-4, 8e-4, 1.2e-3, 2.5e-3, 5e-3):
-        s, a = simulation("rigid", mesh_mm, contact)
-        begin = time.perf_counter()
-        try:
-            record = s.run(1.0, h)
-        except RuntimeError as error:
-            steps.append({"step_s": h, "failed": str(error)})
-            continue
-        # at first touch the pin closes the play within a few ms: fewer than ten steps do not resolve it
-        steps.append(
-            {
-                "step_s": h,
-                "run_s": time.perf_counter() - begin,
-                "under_resolved": bool(h > RESOLVED),
-                "steps_halved": int(record.halved.sum()),
-                **measure(record, a, 6),
-            }
-        )
-        if h in (2e-4, 5e-4, 8e-4):
-            histories[h] = record
-    results["steps"] = steps
-    if out is not None:
-        _figures(out, r, start, sim, results, histories)
+
+    def make(slots: int = 6, **keys: Any) -> tuple[Simulation, float]:
+        return simulation(mode, mesh_mm, contact, slots, cache=cache, **keys)
+
+    sim, start = make()
     settings = {
         "mode": mode,
         "mesh_mm": mesh_mm,
@@ -225,99 +216,34 @@ def run(
         "start_angle_deg": float(np.degrees(start)),
         "refine": REFINE,
     }
-    return report.result("geneva", settings, results, PAPER, clock, duration)
+    case = report.Case("geneva", settings, PAPER, duration, out)
+    make()
+    case.clock.setup()
+    make()[0].run(STEP, STEP)  # compiles, or loads from the cache
+    through = mode == "rigid" and contact == "area"
+    r, seconds = timed(lambda: through_hook(duration) if through else sim.run(duration, STEP))
+    case.keep(**measure(r, start, 6), **seconds)
+    records = {}
+    if sweeps:
+        report.say("geneva: other numbers of slots")
+        rows: list[dict[str, Any]] = []
+        for n in (4, 5, 6, 8):
+            s, a = make(n)
+            rows.append(measure(s.run(4.4, STEP), a, n))
+            case.keep(slot_numbers=rows)
+        report.say("geneva: stiffness, steps")
+        stiffness: list[dict[str, Any]] = []
+        for k in (K / 4, K, 4 * K):
+            s, a = make(k=k)
+            stiffness.append({"k": k, **measure(s.run(1.0, STEP), a, 6)})
+            case.keep(stiffness=stiffness)
+        steps: list[dict[str, Any]] = []
+        for row, record in step_sweep(lambda: make()[0], lambda r: measure(r, start, 6), STEPS, 1.0, PLAY_S):
+            steps.append(row)
+            records[row["step_s"]] = record
+            case.keep(steps=steps)
+    if out is not None:
+        from rigidarea.cases import geneva_figures
 
-
-RESOLVED = 6e-4  # s: a tenth of the 6.4 ms in which the pin crosses the play
-
-
-def _figures(
-    out: Path,
-    r: Record,
-    start: float,
-    sim: Simulation,
-    results: dict[str, Any],
-    histories: dict[float, Record],
-) -> None:
-    turned = -(r.hub[:, 1] - r.hub[0, 1])
-    force = np.hypot(*r.force.T)
-    fig, ax = report.figure(9, 4)
-    ax.plot(r.t, np.degrees(turned), color=report.BLUE)
-    ax.set(xlabel="time (s)", ylabel="angle of the driven wheel (°)")
-    report.save(fig, out, "geneva_fig15")
-    fig, axes = report.figure(9, 6, 2, 1, sharex=True)
-    first = r.t <= 1
-    theta = start + SPEED * r.t[first]
-    touch, entry = first_touch(6), np.pi / 3
-    exact = np.where(theta < touch, 0, np.where(theta > entry, np.nan, ideal(6, theta) + np.pi / 6))
-    axes[0].plot(r.t[first], np.degrees(exact), "--", color=report.BLACK, lw=2, label="φ_eff, Eq. 40")
-    axes[0].plot(r.t[first], np.degrees(turned[first]), color=report.BLUE, label="ours")
-    axes[0].set(ylabel="angle (°)")
-    axes[0].legend()
-    axes[1].plot(r.t[first], np.degrees(turned[first] - exact), color=report.RED)
-    axes[1].set(xlabel="time (s)", ylabel="ours − φ_eff (°)")
-    report.save(fig, out, "geneva_fig16")
-    fig, ax = report.figure(9, 4)
-    ax.plot(r.t, force, color=report.BLUE)
-    ax.set(xlabel="time (s)", ylabel="contact force (N)")
-    report.save(fig, out, "geneva_fig17")
-    # one instant of the engagement, nodal forces
-    s, _ = simulation("compliant", MESH)
-    s.run(0.25, STEP)
-    fig, ax = report.figure(7, 6)
-    for i, colour, name in ((0, report.RED, "pin"), (1, report.BLUE, "wheel")):
-        w, b = s.works[i], s.boundaries[i]
-        c, sn = np.cos(s.state.x[i, 2]), np.sin(s.state.x[i, 2])
-        p = b.points @ np.array([[c, sn], [-sn, c]]) + s.state.x[i, :2]
-        first_ring = np.flatnonzero(b.ring == 0)
-        first_ring = np.append(first_ring, first_ring[0])
-        ax.plot(1e3 * p[first_ring, 0], 1e3 * p[first_ring, 1], "-", lw=1, color=colour)
-        on = w.touched[: w.touched[-1]]
-        ax.quiver(
-            1e3 * w.position[on, 0],
-            1e3 * w.position[on, 1],
-            w.point_load[on, 0],
-            w.point_load[on, 1],
-            color=colour,
-            width=0.003,
-            label=name,
-            scale=6 * np.abs(w.point_load).max(),
-        )
-    x, y = 1e3 * s.state.x[0, :2]
-    ax.set(
-        xlim=(x - 5, x + 5),
-        ylim=(y - 5, y + 5),
-        aspect="equal",
-        xlabel="x (mm)",
-        ylabel="y (mm)",
-        title="t = 0.25 s",
-    )
-    ax.legend()
-    report.save(fig, out, "geneva_fig18")
-    ok = [x for x in results["steps"] if "failed" not in x]
-    fig, ax = report.figure()
-    h = [1e4 * x["step_s"] for x in ok]
-    ax.semilogx(h, [x["run_s"] for x in ok], "o-", color=report.BLUE, label="wall time")
-    bad = [x for x in ok if x["under_resolved"]]
-    ax.plot(
-        [1e4 * x["step_s"] for x in bad],
-        [x["run_s"] for x in bad],
-        "x",
-        ms=12,
-        color=report.RED,
-        label="under-resolved",
-    )
-    twin = ax.twinx()
-    twin.plot(h, [x["newton_iterations_mean"] for x in ok], "s--", color=report.ORANGE)
-    twin.set_ylabel("mean Newton iterations", color=report.ORANGE)
-    ax.set(xlabel="time step (10⁻⁴ s)", ylabel="wall time of 1 s (s)", ylim=(0, None))
-    ax.legend()
-    report.save(fig, out, "geneva_fig19")
-    fig, axes = report.figure(9, 7, 3, 1, sharex=True, sharey=True)
-    for ax, step in zip(axes, (2e-4, 5e-4, 8e-4), strict=True):
-        if step in histories:
-            keep = histories[step].t <= 0.8
-            ax.plot(histories[step].t[keep], histories[step].iterations[keep], ".", ms=3, color=report.BLUE)
-        ax.set(ylabel="iterations", title=f"h = {step:g} s")
-    axes[-1].set_xlabel("time (s)")
-    report.save(fig, out, "geneva_fig20")
+        geneva_figures.draw(out, r, start, case.results, records, cache)
+    return case.finish()

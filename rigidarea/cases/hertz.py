@@ -126,78 +126,61 @@ def predicted(division: int, full: bool = False, cache: Path | None = None) -> d
     x, keep = s.position[:, 0], s.pressure > 0.3 * peak  # the rim of the contact is blurred by the mesh
     slope, square = np.polyfit(x[keep] ** 2, s.pressure[keep] ** 2, 1, w=np.sqrt(s.weight[keep]))
     width, top = np.sqrt(-square / slope), np.sqrt(square)
+    exact = peak * np.sqrt(np.maximum(1 - (x / theory) ** 2, 0))
+    off = np.sqrt((s.weight @ (s.pressure - exact) ** 2) / (s.weight @ exact**2))
     return {
         "division": division,
         "nodes": nodes,
-        "approach_m": d1,
+        "approach_m": float(d1),
         "half_width_m": float(width),
         "p_max_pa": float(top),
         "half_width_error_percent": 100 * float(width / theory - 1),
         "p_max_error_percent": 100 * float(top / peak - 1),
+        "pressure_error_percent": 100 * float(off),  # root mean square over the contact
         "x": x,
         "pressure": s.pressure,
     }
 
 
+COUNTS = (250, 500, 1000, 2000, 5000, 10000)  # boundary nodes of a disc; the paper: 500, 1000, 5000
+
+
+def mesh_study(a: float) -> tuple[dict[str, Any], dict[int, dict[str, Any]]]:
+    """The calibrated benchmark on all meshes for one half-width (Fig. 5), with fitted orders; and its curves."""
+    peak = 2 * FORCE / (np.pi * a)  # Eq. 31
+    curves = {n: calibrated(n, a) for n in COUNTS}
+    rows = [
+        {
+            "nodes": n,
+            "element_m": 2 * RADIUS * np.sin(np.pi / n),
+            "half_width_m": c["half_width_m"],
+            "force_n": c["force_n"],
+            "p_max_pa": float(c["pressure_balanced"].max()),
+            "p_max_error_percent": 100 * abs(float(c["pressure_balanced"].max()) / peak - 1),
+            "p_max_pa_literal": float(c["pressure"].max()),
+            "p_max_error_percent_literal": 100 * abs(float(c["pressure"].max()) / peak - 1),
+        }
+        for n, c in curves.items()
+    ]
+    # circles are no parabolas: the error has a floor of order (a/R)², so orders are fitted to each one's own limit
+    order = {}
+    for kind in ("", "_literal"):
+        value = np.array([r["p_max_pa" + kind] for r in rows])
+        h = np.array([r["element_m"] for r in rows[:4]])
+        order["order" + kind] = float(np.polyfit(np.log(h), np.log(np.abs(value[:4] - value[-1])), 1)[0])
+    return {"half_width_theory_m": a, "p_max_theory_pa": peak, "meshes": rows, **order}, curves
+
+
+def predicted_order(studies: list[dict[str, Any]]) -> float:
+    """Fitted order, in the element size, of the error of the FE statics' whole pressure profile."""
+    h = np.log([1.0 / s["division"] for s in studies])
+    return float(np.polyfit(h, np.log([s["pressure_error_percent"] for s in studies]), 1)[0])
+
+
 def run(
-    out: Path | None = None, divisions: tuple[int, ...] = (8, 16, 32), cache: Path | None = None
+    out: Path | None = None, divisions: tuple[int, ...] = (4, 8, 16, 32), cache: Path | None = None
 ) -> dict[str, Any]:
     """Both readings, calibrated and predicted; figures 4 and 5 redrawn into ``out``."""
-    clock = report.Clock()
-    counts = (250, 500, 1000, 2000, 5000, 10000)
-    readings: dict[str, Any] = {}
-    curves = {}
-    for name, radius in (("equations", 0.5 * RADIUS), ("printed", RADIUS)):
-        a = half_width(radius)
-        peak = 2 * FORCE / (np.pi * a)  # Eq. 31
-        rows = []
-        for n in counts:
-            c = curves[name, n] = calibrated(n, a)
-            rows.append(
-                {
-                    "nodes": n,
-                    "element_m": 2 * RADIUS * np.sin(np.pi / n),
-                    "half_width_m": c["half_width_m"],
-                    "force_n": c["force_n"],
-                    "p_max_pa": float(c["pressure_balanced"].max()),
-                    "p_max_error_percent": 100 * abs(float(c["pressure_balanced"].max()) / peak - 1),
-                    "p_max_pa_literal": float(c["pressure"].max()),
-                    "p_max_error_percent_literal": 100 * abs(float(c["pressure"].max()) / peak - 1),
-                }
-            )
-        # circles are no parabolas: the error has a floor of order (a/R)², so orders are fitted to each one's own limit
-        order = {}
-        for kind in ("", "_literal"):
-            value = np.array([r["p_max_pa" + kind] for r in rows])
-            h = np.array([r["element_m"] for r in rows[:4]])
-            order["order" + kind] = float(np.polyfit(np.log(h), np.log(np.abs(value[:4] - value[-1])), 1)[0])
-        readings[name] = {"half_width_theory_m": a, "p_max_theory_pa": peak, "meshes": rows, **order}
-    clock.setup()
-    report.say("hertz: predicted, full FE statics")
-    studies = [predicted(d, cache=cache) for d in divisions]
-    full = predicted(divisions[min(1, len(divisions) - 1)], True, cache)
-    best = studies[-1]
-    at = readings["equations"]["meshes"][counts.index(5000)]
-    results = {
-        **{
-            key: at[key]
-            for key in (
-                "half_width_m",
-                "p_max_pa",
-                "p_max_error_percent",
-                "force_n",
-                "p_max_error_percent_literal",
-            )
-        },
-        "nodes": 5000,
-        "predicted_half_width_error_percent": best["half_width_error_percent"],
-        "predicted_p_max_error_percent": best["p_max_error_percent"],
-        "readings": readings,
-        "predicted": [{k: v for k, v in s.items() if k not in ("x", "pressure")} for s in studies],
-        "predicted_full_kinematics": {k: v for k, v in full.items() if k not in ("x", "pressure")},
-    }
-    if out is not None:
-        _figures(out, readings, curves, best)
     settings = {
         "radius_m": RADIUS,
         "young_pa": YOUNG,
@@ -207,60 +190,108 @@ def run(
         "stiffness_predicted_pa_per_m": STIFF,
         "divisions": list(divisions),
     }
-    return report.result("hertz", settings, results, PAPER, clock, 0.0)
+    case = report.Case("hertz", settings, PAPER, 0.0, out)
+    readings: dict[str, Any] = {}
+    curves: dict[Any, Any] = {}
+    for name, radius in (("equations", 0.5 * RADIUS), ("printed", RADIUS)):
+        readings[name], found = mesh_study(half_width(radius))
+        curves |= {(name, n): c for n, c in found.items()}
+    at = readings["equations"]["meshes"][COUNTS.index(5000)]
+    case.keep(**{key: at[key] for key in at if key != "element_m"}, readings=readings)
+    case.clock.setup()
+    report.say("hertz: predicted, full FE statics")
+    studies = []
+    for d in divisions:
+        studies.append(predicted(d, cache=cache))
+        case.keep(predicted=[_numbers(s) for s in studies])
+    full = predicted(divisions[min(1, len(divisions) - 1)], True, cache)
+    best = studies[-1]
+    case.keep(
+        predicted_half_width_error_percent=best["half_width_error_percent"],
+        predicted_p_max_error_percent=best["p_max_error_percent"],
+        predicted_full_kinematics=_numbers(full),
+        predicted_order=predicted_order(studies),
+    )
+    if out is not None:
+        _figures(out, readings, curves, studies, case.results["predicted_order"])
+    return case.finish()
 
 
-def _figures(out: Path, readings: dict[str, Any], curves: dict[Any, Any], best: dict[str, Any]) -> None:
-    fig, axes = report.figure(10, 4.2, 1, 2)
+def _numbers(study: dict[str, Any]) -> dict[str, Any]:
+    return {k: v for k, v in study.items() if k not in ("x", "pressure")}
+
+
+def _figures(
+    out: Path,
+    readings: dict[str, Any],
+    curves: dict[Any, Any],
+    studies: list[dict[str, Any]],
+    order: float,
+) -> None:
+    """Fig. 4, both readings and the prediction; Fig. 5, and the prediction's convergence."""
+    fig, axes = report.figure(10, 4.6, 1, 2)
     x = np.linspace(-1, 1, 400)
-    for ax, name in zip(axes, ("equations", "printed"), strict=True):
+    titles = {
+        "equations": "R* = R/2, as Eq. 27 says: p_max",
+        "printed": "R* = R, as the paper prints (6.61 and 6.59 Pa): p_max",
+    }
+    for ax, name in zip(axes, titles, strict=True):
         a, peak = readings[name]["half_width_theory_m"], readings[name]["p_max_theory_pa"]
-        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=report.BLUE, lw=2, label="Hertz")
-        for n, marker, colour in (
-            (500, "o", report.RED),
-            (1000, "s", report.GREEN),
-            (5000, ".", report.BLACK),
+        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=report.SKY, lw=4, label=f"Hertz: {peak:.3f} Pa")
+        for n, marker, colour, every in (
+            (500, "o", report.RED, 1),
+            (1000, "s", report.GREEN, 1),
+            (5000, ".", report.BLACK, 3),
         ):
             c = curves[name, n]
             ax.plot(
                 c["x"],
                 c["pressure"],
                 marker,
-                ms=4,
+                ms=5,
                 color=colour,
-                label=f"Alg. 3, {n} nodes",
-                fillstyle="none",
+                markevery=every,
+                fillstyle="none" if marker != "." else "full",
+                label=f"Alg. 3, {n} nodes: {c['pressure'].max():.3f} Pa",
             )
-        ax.set(
-            xlabel="x (m)",
-            ylabel="contact pressure (Pa)",
-            title={"equations": "R* = R/2, as Eq. 27 says", "printed": "R* = R, as the paper prints"}[name],
-        )
-        ax.legend(loc="lower center")
-    axes[0].plot(best["x"], best["pressure"], "-", color=report.ORANGE, lw=1, label="predicted, FE statics")
-    axes[0].legend(loc="lower center")
+        ax.set(xlabel="x (m)", ylabel="contact pressure (Pa)")
+        ax.set_title(titles[name], fontsize=10)
+    best = studies[-1]
+    axes[0].plot(
+        best["x"],
+        best["pressure"],
+        "-",
+        color=report.ORANGE,
+        lw=1,
+        label=f"predicted, FE statics: {best['p_max_pa']:.3f} Pa",
+    )
+    for ax in axes:
+        ax.legend(loc="lower center", fontsize=9)
     report.save(fig, out, "hertz_fig4")
-    fig, ax = report.figure()
+    fig, (left, right) = report.figure(11, 5.2, 1, 2, width_ratios=(3, 2))
     for name, colour in (("equations", report.BLUE), ("printed", report.RED)):
-        rows = readings[name]["meshes"]
-        h = [r["element_m"] for r in rows]
-        ax.loglog(
-            h,
-            [r["p_max_error_percent_literal"] for r in rows],
-            "o--",
-            color=colour,
-            fillstyle="none",
-            label=f"Alg. 3 literally, a = {readings[name]['half_width_theory_m']:.3f} m,"
-            f" order {readings[name]['order_literal']:.2f}",
-        )
-        ax.loglog(
-            h,
-            [r["p_max_error_percent"] for r in rows],
-            "s-",
-            color=colour,
-            label=f"balanced, same a, order {readings[name]['order']:.2f}",
-        )
-    ax.axhline(0.37, color=report.BLACK, ls=":", label="the paper: 0.37 %")
-    ax.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
-    ax.legend()
+        study = readings[name]
+        h = [r["element_m"] for r in study["meshes"]]
+        for kind, style, text in (("_literal", "o--", "Alg. 3 literally"), ("", "s-", "balanced")):
+            left.loglog(
+                h,
+                [r["p_max_error_percent" + kind] for r in study["meshes"]],
+                style,
+                color=colour,
+                fillstyle="none" if kind else "full",
+                label=f"{text}, a = {study['half_width_theory_m']:.3f} m, order {study['order' + kind]:.2f}",
+            )
+    left.axhline(0.37, color=report.BLACK, ls=":", label="the paper, 5000 nodes: 0.37 %")
+    left.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
+    left.set_title("calibrated; orders towards each one's own limit (circles are no parabolas)", fontsize=10)
+    size = half_width(0.5 * RADIUS) / np.array([s["division"] for s in studies])
+    error = np.array([s["pressure_error_percent"] for s in studies])
+    right.loglog(size, error, "o-", color=report.BLUE, label=f"order {order:.2f}")
+    right.set(xlabel="element size (m)", ylabel="RMS error of the pressure profile (%)")
+    right.set_title("predicted, FE statics", fontsize=10)
+    right.set_xticks(size, [f"{x:.3f}" for x in size])
+    right.set_yticks([0.5, 1, 2, 5], ["0.5", "1", "2", "5"])
+    right.minorticks_off()
+    right.legend()
+    fig.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=2, fontsize=9)
     report.save(fig, out, "hertz_fig5")

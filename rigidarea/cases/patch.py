@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from rigidarea.cases import report
 from rigidarea.flexible import nodal
-from rigidarea.flexible.boundary import build, workspace
+from rigidarea.flexible.boundary import Work, build, workspace
 from rigidarea.flexible.element import Material, stiffness, stress
 from rigidarea.flexible.mesh import Mesh, triangulate
 from rigidarea.flexible.region import arcs
@@ -71,8 +71,8 @@ def rings(mesh: str) -> tuple[Array, Array]:
     return slave, master
 
 
-def press(gap: float, mesh: str) -> dict[str, Any]:
-    """One row of the patch test: both decompositions of the contact force."""
+def press(gap: float, mesh: str) -> tuple[dict[str, Any], tuple[Work, Work]]:
+    """One row of the patch test, both decompositions of the contact force; and the loaded bodies, for the figures."""
     slave, master = rings(mesh)
     a, b = build([slave]), build([master])
     wa, wb = workspace(a), workspace(b)
@@ -118,13 +118,13 @@ def press(gap: float, mesh: str) -> dict[str, Any]:
         )  # the face: corner and side nodes have other normals
         literal.append(float((alpha * depth[inner]).mean()))
     row["master_slave_ratio_literal"] = literal[1] / literal[0]
+    row["pressure_literal_pa_m"] = literal  # slave, master
     row["stress_spread_relative"] = stress_spread(slave, wa.point_load, r["force"])
     wa.position[:], wb.position[:] = (
         slave + pose_a[:2],
         master,
     )  # the figures draw all points, not the near ones
-    row["state"] = (wa, wb)
-    return row
+    return row, (wa, wb)
 
 
 def stress_spread(ring: Array, loads: Array, force: float) -> float:
@@ -152,8 +152,12 @@ def run(out: Path | None = None) -> dict[str, Any]:
     """All gaps and meshes; figures 11 to 13 redrawn."""
     clock = report.Clock()
     clock.setup()
-    rows = [press(g, m) for g in GAPS for m in MESHES]
-    states = [r.pop("state") for r in rows]
+    rows, states = [], []
+    for gap in GAPS:
+        for mesh in MESHES:
+            row, state = press(gap, mesh)
+            rows.append(row)
+            states.append(state)
     if out is not None:
         _figures(out, rows, states)
     settings = {"slave_m": SLAVE, "master_m": MASTER, "k": K, "q": 1.0, "gaps_m": GAPS}
@@ -161,30 +165,40 @@ def run(out: Path | None = None) -> dict[str, Any]:
 
 
 def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
+    """Fig. 11 and 13 on one sheet, and Fig. 12 for all meshes."""
     fig, axes = report.figure(12, 7, 2, 3, sharex=True)
     for ax, row, (wa, wb) in zip(axes.ravel(), rows, states, strict=True):
+        largest = max(float(np.abs(w.point_load).max()) for w in (wa, wb))
         for w, colour, name in ((wa, report.RED, "slave"), (wb, report.BLUE, "master")):
             p = w.touched[: w.touched[-1]]
             shape = np.vstack([w.position, w.position[:1]])
             ax.plot(1e3 * shape[:, 0], 1e3 * shape[:, 1], ".-", ms=4, lw=0.8, color=colour)
-            ax.quiver(
+            arrows = ax.quiver(
                 1e3 * w.position[p, 0],
                 1e3 * w.position[p, 1],
                 w.point_load[p, 0],
                 w.point_load[p, 1],
                 color=colour,
                 width=0.004,
-                scale=7 * np.abs(w.point_load).max(),
-                label=name,
+                angles="xy",
+                scale_units="xy",
+                scale=largest / 4,
+                label=f"on the {name}",
             )
-        ax.set(title=f"gap {row['gap_mm']:.0f} mm, {row['mesh']}", ylim=(-16, 9), xlim=(-26, 26))
-    axes[0, 0].legend()
+        key = float(f"{0.5 * largest:.1g}")
+        ax.quiverkey(arrows, 0.5, 0.9, key, f"{key:g} N", labelpos="E", angle=90, color=report.BLACK)
+        ax.set(
+            title=f"gap {row['gap_mm']:.0f} mm, {row['mesh']} mesh",
+            ylim=(-9, 9),
+            xlim=(-26, 26),
+        )
     for ax in axes[-1]:
         ax.set_xlabel("x (mm)")
     for ax in axes[:, 0]:
         ax.set_ylabel("y (mm)")
+    fig.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncol=2)
     report.save(fig, out, "patch_fig11_13")
-    fig, ax = report.figure()
+    fig, ax = report.figure(9, 5)
     for (wa, wb), row, marker in zip(states[:3], rows[:3], "os^", strict=True):
         for w, colour, name in ((wa, report.RED, "slave"), (wb, report.BLUE, "master")):
             i = np.flatnonzero(w.pressure > 0)
@@ -196,11 +210,15 @@ def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
                 fillstyle="none",
                 label=f"{name}, {row['mesh']}",
             )
+    for value, colour, name in zip(
+        rows[0]["pressure_literal_pa_m"], (report.RED, report.BLUE), ("slave", "master"), strict=True
+    ):
+        ax.axhline(1e-3 * value, color=colour, ls="--", lw=1, label=f"the paper's Alg. 3, {name}, uniform")
     ax.set(
         xlabel="x (mm)",
         ylabel="pressure (kN/m)",
-        title="gap 2 mm: one pressure, both bodies, all meshes",
-        ylim=(0, None),
+        title="gap 2 mm: one pressure on both bodies and all meshes",
+        ylim=(80, 120),
     )
-    ax.legend(ncol=3, fontsize=8)
+    fig.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncol=4, fontsize=9)
     report.save(fig, out, "patch_fig12")

@@ -1,13 +1,14 @@
-"""What the cases share: the JSON object of a case, its clocks, and the look of its figures."""
+"""What the cases share: the JSON object of a case, kept on disk while it grows, its clocks, the look of its figures."""
 
 from __future__ import annotations
 
-import platform
 import sys
 import time
-from importlib.metadata import PackageNotFoundError, version
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+
+from rigidarea.report import envelope, write_json
 
 # Okabe–Ito, safe for colour-blind readers
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
@@ -43,32 +44,63 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def versions() -> dict[str, str]:
-    """Versions of what computes the figures."""
-    out = {"python": platform.python_version()}
-    for name in ("rigidarea", "numpy", "numba", "scipy", "shapely", "pymunk", "matplotlib"):
-        try:
-            out[name] = version(name)
-        except PackageNotFoundError:
-            continue
-    return out
-
-
 def result(
-    name: str, settings: dict[str, Any], results: Any, paper: Any, clock: Clock, simulated_s: float
+    name: str,
+    settings: Mapping[str, Any],
+    results: Any,
+    paper: Any,
+    clock: Clock,
+    simulated_s: float,
+    complete: bool = True,
 ) -> dict[str, Any]:
-    """The JSON object of a case (design 7)."""
-    return {
-        "command": f"case {name}",
-        "settings": settings,
-        "versions": versions(),
-        "machine": {"platform": platform.platform(), "processor": platform.machine()},
-        "results": results,
-        "paper": paper,
-        "wall_s": clock.wall(),
-        "setup_s": clock.setup_s,
-        "simulated_s": simulated_s,
-    }
+    """The JSON object of a case (design 7); ``complete`` is false in the file of a run that was interrupted."""
+    return envelope(
+        f"case {name}",
+        settings,
+        results,
+        paper=paper,
+        wall_s=clock.wall(),
+        setup_s=clock.setup_s,
+        simulated_s=simulated_s,
+        complete=complete,
+    )
+
+
+class Case:
+    """One run of a case. What ``keep`` is given is at once on disk, in ``out``/NAME.json (None: nowhere).
+
+    An interrupted run so leaves valid JSON of all that was computed until then, ``complete`` false.
+    """
+
+    def __init__(
+        self, name: str, settings: Mapping[str, Any], paper: Any, simulated_s: float, out: Path | None
+    ) -> None:
+        self.name, self.settings, self.paper, self.simulated_s, self.out = (
+            name,
+            settings,
+            paper,
+            simulated_s,
+            out,
+        )
+        self.clock = Clock()
+        self.results: dict[str, Any] = {}
+
+    def keep(self, **parts: Any) -> None:
+        """Adds results, or replaces those of the same name (rows that have grown), and writes the file."""
+        self.results |= parts
+        self._write(False)
+
+    def finish(self) -> dict[str, Any]:
+        """The JSON object, complete."""
+        return self._write(True)
+
+    def _write(self, complete: bool) -> dict[str, Any]:
+        told = result(
+            self.name, self.settings, self.results, self.paper, self.clock, self.simulated_s, complete
+        )
+        if self.out is not None:
+            write_json(told, self.out / f"{self.name}.json")
+        return told
 
 
 def figure(

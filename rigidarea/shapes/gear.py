@@ -112,7 +112,9 @@ def involute_gear(
     parts = [rising, tip[1:-1], rising[::-1] * (1, -1)]
     # half the space's, at the root circle
     root_angle = math.pi / teeth + math.atan2(fillet[0, 1], fillet[0, 0])
-    if root_angle > 1e-9:
+    if root_angle <= 1e-9:  # full rounding: the next tooth's fillet begins where this one ends
+        parts[-1] = parts[-1][:-1]
+    else:
         pitch = 2 * math.pi / teeth
         parts.append(
             sample_curve(

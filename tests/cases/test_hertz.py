@@ -22,5 +22,7 @@ def test_calibrated_and_predicted(tmp_path):
     assert abs(r["predicted_half_width_error_percent"]) < 1.0
     assert abs(r["predicted_p_max_error_percent"]) < 2.0
     coarse, fine = r["predicted"]
+    # linear elements: at most 2; the pressure's root at the rim alone would give 1
+    assert 1.0 < r["predicted_order"] < 2.2
     assert abs(fine["half_width_error_percent"]) < abs(coarse["half_width_error_percent"])
     assert (tmp_path / "hertz_fig4.png").exists() and (tmp_path / "hertz_fig5.png").exists()
