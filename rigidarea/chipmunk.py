@@ -25,10 +25,16 @@ FUNCTIONS = [
     "cpSpaceGetCurrentTimeStep",
     "cpShapeGetHashID",
     "cpShapeGetSensor",
+    "cpShapeGetBody",
+    "cpBodyGetType",
+    "cpBodyIsSleeping",
+    "cpSpaceEachBody",
+    "cpSpaceReindexShape",
+    "cpSpaceStep",
     "ext_cpCollisionPreSolveFunc",
 ]
-#: Bytes of a struct that are looked at; both structs are longer.
-_WINDOW = {"body": 208, "shape": 136}
+#: Bytes of a struct that are looked at; all are longer.
+_WINDOW = {"body": 208, "shape": 136, "space": 64}
 
 
 class LayoutError(RuntimeError):
@@ -101,11 +107,25 @@ def layout() -> dict[str, int]:
         "arbiter_state": "state",
         "arbiter_handlers": "handlerAB",
     }
+    found["body_angle"] = _find(memory, "body angle", [0.75])
+    # functions of the user's in the place of Chipmunk's own
+    for name in ("position_func", "velocity_func"):
+        own = np.frombuffer(
+            ffi.buffer(ffi.cast("char *", body._body), _WINDOW["body"]), dtype=np.uint64
+        ).copy()
+        setattr(body, name, lambda *arguments: None)
+        changed = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body), _WINDOW["body"]), dtype=np.uint64)
+        places = np.flatnonzero(own != changed)
+        if len(places) != 1:
+            raise LayoutError(f"{name}: expected one place in Chipmunk's body, found {len(places)}")
+        found[f"body_{name}"], found[name] = 8 * int(places[0]), int(own[places[0]])
     found |= {name: ffi.offsetof("struct cpArbiter", field) for name, field in arbiter.items()}
     found["handler_post_solve"] = ffi.offsetof("struct cpCollisionHandler", "postSolveFunc")
     # what a handler's post_solve is that pymunk has cleared, and one that nobody ever set
     found["unset_post_solve"] = address_of(ffi.addressof(lib, "DoNothing"))
     space = pymunk.Space()
+    space.gravity = (51.5, 52.5)
+    found["space_gravity"] = _find(window(space._space, "space"), "gravity", [51.5, 52.5])
     space.on_collision(1, 2)
     found["no_post_solve"] = address_of(space._handlers[1, 2]._handler.postSolveFunc)
     for i, name in enumerate(("handlerAB", "handlerBA", "handlerA", "handlerB")):

@@ -16,13 +16,14 @@ from pymunk._chipmunk_cffi import ffi, lib
 from . import hook, stepping
 from .chipmunk import LayoutError, address_of, layout
 from .energy import stored_energy
-from .kernel.force import CHORD, LAW_AREA, LAW_ENERGY, NODAL
+from .kernel.force import CHORD, FOLLOWED, LAW_AREA, LAW_ENERGY, NODAL
 from .outline import Outline, positive
 from .pairs import Memory, Pairs
 from .store import Store, load_law
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
+INTEGRATIONS = {"implicit": FOLLOWED, "explicit": math.inf}
 HOOKS = ("auto", "compiled", "python")
 
 #: One row a contact region, as `AreaContact.regions` gives them.
@@ -65,8 +66,7 @@ class AreaContact:
         self._error: BaseException | None = None
         self._warned = False
         self._memory: Memory = {}
-        self._max_steps = 1000
-        self._phase = stepping.PHASE
+        self._limits: dict[str, float] = {"max_steps": 1000, "phase": stepping.PHASE}
         self._install(space)
 
     # --- attaching ---
@@ -90,8 +90,12 @@ class AreaContact:
         state["length"] = settings["length"] or 0.0
         state["stiffness"] = settings["stiffness"] or 0.0
         state["rest_speed"] = settings["rest_speed"] or 0.0
+        state["followed"] = INTEGRATIONS[settings["integration"]]
         state["epoch"] = next(_epochs)
         state["restoring"] = bool(self._memory)
+        state["touched"] = -1
+        for name, value in self._limits.items():
+            state[name] = value
         self.compiled = self._choose_hook(settings["hook"])
         self._register_shapes()
         self._hook = Hook(self)
@@ -99,8 +103,10 @@ class AreaContact:
         self._handler = space._handlers[None, None]
         self._state["global_handler"] = address_of(self._handler._handler)
         if self.compiled:
-            from . import machine
+            from . import frames, machine
 
+            self._state["shift_at"] = frames.shift_body.address
+            self._advance = frames.advance.ctypes
             self._handler._handler.preSolveFunc = ffi.cast(
                 "cpCollisionPreSolveFunc", machine.pre_solve.address
             )
@@ -190,7 +196,15 @@ class AreaContact:
         if body.body_type == pymunk.Body.DYNAMIC and not shape.sensor:
             inverse_mass = 1.0 / body.mass if body.mass > 0 else 0.0
             inverse_moment = 1.0 / body.moment if body.moment > 0 else 0.0
-        self._store.shape(shape._hashid, outline, outline.mirror, body.id, inverse_mass, inverse_moment)
+        self._store.shape(
+            shape._hashid,
+            address_of(shape._shape),
+            outline,
+            outline.mirror,
+            body.id,
+            inverse_mass,
+            inverse_moment,
+        )
         self._shapes[shape._hashid] = shape
 
     def refresh(self, shape: pymunk.Shape) -> None:
@@ -250,60 +264,131 @@ class AreaContact:
     @property
     def max_steps(self) -> int:
         """Most steps of one frame (default 1000); where it binds, a StepLimitWarning is given, once."""
-        return self._max_steps
+        return int(self._state["max_steps"])
 
     @max_steps.setter
     def max_steps(self, value: int) -> None:
-        if not isinstance(value, int | np.integer) or value < 1:
-            raise ValueError(f"max_steps must be a whole number >= 1, got {value!r}")
-        self._max_steps = int(value)
+        self._state["max_steps"] = self._limits["max_steps"] = _count(value, "max_steps")
 
     @property
     def phase(self) -> float:
         """Largest phase of the stiffest contact in one step (radians); smaller is finer. See `stepping.PHASE`."""
-        return self._phase
+        return float(self._state["phase"])
 
     @phase.setter
     def phase(self, value: float) -> None:
-        self._phase = positive(value, "phase")
+        self._state["phase"] = self._limits["phase"] = positive(value, "phase")
 
     # --- stepping ---
 
-    def step(self, dt: float) -> int:
-        """Advance the space by one frame dt (time) in as many equal steps as its stiffest contact needs.
+    def step(self, dt: float, frames: int = 1, steps: int | None = None) -> int:
+        """Advance the space by `frames` frames of dt (time) each, every one in as many steps as it needs.
 
-        Returns the number of steps. Raises ValueError for dt that is not positive and finite, SimulationError
-        (naming body and step) when a body's position stops being finite; the state is then that of the last good
-        step.
+        A frame is cut into the steps that its stiffest contact asks for (`steps(dt)`), or into `steps` if given.
+        Second order in time (leapfrog), whatever the number of frames. Where nothing touches, for as long as nothing
+        can, one long step takes the place of many (in spaces without joints and damping, and where no callback of
+        the user's waits for every step).
+
+        Returns the number of steps taken. Raises ValueError for arguments out of range, SimulationError (naming body
+        and step) when a body's position stops being finite; the state is then that of the last good step.
         """
-        n = self.steps(dt)
-        space = self.space
+        positive(dt, "dt")
+        _count(frames, "frames")
+        if steps is not None:
+            _count(steps, "steps")
+        self._check_hooked()
+        self._register_shapes()
+        if self.space._bodies_to_check:
+            self.space.step(0.0)  # pymunk's check of new bodies
+        if not self.compiled or self.space.threaded or len(self.space._handlers) > 1:
+            return self._step_by_step(dt, frames, steps)
         self._watch.look()
-        for i in range(n):
-            space.step(dt / n)
-            if not self._watch.look():
-                raise SimulationError(f"{self._watch.put_back()}, after step {i + 1} of {n} of this frame")
-        return n
+        taken = self._run(dt, frames, steps or 0)
+        if not self._watch.look():
+            self._watch.put_back()
+            self._step_by_step(dt, frames, steps)  # once more, to find the step
+            raise SimulationError(f"the state is not finite after {taken} steps")
+        return taken
+
+    def _run(self, dt: float, frames: int, steps: int) -> int:
+        """All frames in machine code: see `frames.advance`."""
+        space = self.space
+        state = self._state
+        state["ballistic"] = not space._constraints and space.damping == 1.0
+        state["stop"] = state["wanted"] = 0
+        space._locked = True
+        try:
+            taken = self._advance(address_of(space._space), dt, frames, steps, len(self._store.known_shapes))
+        finally:
+            space._locked = False
+        if self._error is not None:
+            _raise(space, _post_step_key(self), self)
+        if space._add_later or space._remove_later:
+            raise RuntimeError("expected no change of the space from within a run of frames")
+        if state["wanted"]:
+            self._warn(int(state["wanted"]), dt)
+        return int(taken)
+
+    def _step_by_step(self, dt: float, frames: int, steps: int | None) -> int:
+        """The same in Python, in equal steps through pymunk, for whom every step counts."""
+        space = self.space
+        total = 0
+        for _ in range(frames):
+            n = steps or self.steps(dt)
+            h = dt / n
+            self._watch.look()
+            self._shift(-0.5 * h)
+            for i in range(n):
+                space.step(h)
+                if not self._watch.look():
+                    raise SimulationError(
+                        f"{self._watch.put_back()}, after step {i + 1} of {n} of this frame"
+                    )
+            self._shift(0.5 * h)
+            total += n
+        return total
+
+    def _shift(self, time: float) -> None:
+        """Drift all bodies by `time`."""
+        space = self.space
+        if self.compiled:
+            self._state["shift"], self._state["settle"] = time, 1
+            lib.cpSpaceEachBody(
+                space._space,
+                ffi.cast("cpSpaceBodyIteratorFunc", int(self._state["shift_at"])),
+                ffi.cast("void *", self._store.state.ctypes.data),
+            )
+            for shape in self._shapes.values():
+                if shape.body is not None and not shape.body.is_sleeping:
+                    lib.cpSpaceReindexShape(space._space, shape._shape)
+            return
+        for body in space.bodies:
+            if body.body_type != pymunk.Body.STATIC and not body.is_sleeping and body._position_func is None:
+                body.position += time * body.velocity
+                body.angle += time * body.angular_velocity
+                space.reindex_shapes_for_body(body)
 
     def steps(self, dt: float) -> int:
-        """The number of steps that `step(dt)` would take. Raises ValueError for dt not positive and finite."""
+        """The number of steps that `step(dt)` would take, with contact. Raises ValueError for dt not positive."""
         positive(dt, "dt")
         self._check_hooked()
         self._register_shapes()
-        frequency = self._frequency()
-        n = max(1, math.ceil(dt * frequency / self._phase))
-        if n > self._max_steps:
-            if not self._warned:
-                self._warned = True
-                warnings.warn(
-                    f"a frame of {dt:g} needs {n} steps (stiffest contact {frequency:.4g} rad per unit time) and "
-                    f"max_steps allows {self._max_steps}: contacts may be inaccurate or unstable. Lower the "
-                    "stiffness, or raise max_steps",
-                    StepLimitWarning,
-                    stacklevel=3,
-                )
-            n = self._max_steps
+        n = max(1, math.ceil(dt * self._frequency() / self.phase))
+        if n > self.max_steps:
+            self._warn(n, dt)
+            n = self.max_steps
         return n
+
+    def _warn(self, wanted: int, dt: float) -> None:
+        if not self._warned:
+            self._warned = True
+            warnings.warn(
+                f"a frame of {dt:g} needs {wanted} steps (stiffest contact {self._frequency():.4g} rad per unit "
+                f"time) and max_steps allows {self.max_steps}: contacts may be inaccurate. Lower the stiffness, or "
+                "raise max_steps",
+                StepLimitWarning,
+                stacklevel=4,
+            )
 
     def _frequency(self) -> float:
         store = self._store
@@ -378,8 +463,7 @@ class AreaContact:
                 settings |= {name: float(self._state[name]) for name in ("stiffness", "rest_speed", "length")}
         return {
             "_settings": settings,
-            "_max_steps": self._max_steps,
-            "_phase": self._phase,
+            "_limits": dict(self._limits),
             "_memory": memory,
         }
 
@@ -410,11 +494,16 @@ class Hook:
         except Exception as error:  # cffi would print it and go on: keep it, raise it after the step
             if contact._error is None:
                 contact._error = error
-                space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
+                contact._state["stop"] = 1
+                space.add_post_step_callback(_raise, _post_step_key(contact), contact)
 
     def separate(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
         if self.contact._space is space:
             self.contact._pairs.end(arbiter)
+
+
+def _post_step_key(contact: AreaContact) -> tuple[str, int]:
+    return "rigidarea", id(contact)
 
 
 def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
@@ -435,6 +524,12 @@ def _not_negative(value: float, name: str) -> float:
     return float(value)
 
 
+def _count(value: int, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+    return int(value)
+
+
 def _one_of(value: str, name: str, known: Any) -> str:
     if value not in known:
         raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
@@ -451,6 +546,7 @@ def attach(
     direction: str = "chord",
     exponent: float = 1.0,
     rest_speed: float | None = None,
+    integration: str = "implicit",
     hook: str = "auto",
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
@@ -461,6 +557,9 @@ def attach(
         k A^2 / (2 length), conservative between any two outlines; length None: the largest body's size).
     direction: "chord" (exact and independent of the sampling), or "nodal" (Eq. 8-15, weights depth^exponent).
     rest_speed: first touch slower than this (length/time) rests instead of bouncing. None: from gravity.
+    integration: what becomes of a contact too stiff for the step (phase w h above 1/2). "implicit": an impact becomes
+        an impulse, a curved contact's spring is taken at the end of the step, a flat one's as stiff as the step can
+        follow; stable at any step. "explicit": F = k A at the step's place, stable up to w h = 2 (in a stack 1).
     hook: "compiled" (machine code), "python" (the same, readable and slow), "auto" (compiled where it can run).
 
     Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
@@ -479,6 +578,7 @@ def attach(
         "direction": _one_of(direction, "direction", DIRECTIONS),
         "exponent": _not_negative(exponent, "exponent"),
         "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
+        "integration": _one_of(integration, "integration", INTEGRATIONS),
         "hook": _one_of(hook, "hook", HOOKS),
     }
     handler = space._handlers.get((None, None))

@@ -26,7 +26,20 @@ from pymunk._chipmunk_cffi import lib
 
 from .kernel.force import Motion
 from .kernel.jit import kernel
-from .kernel.pair import DONE, GROW_REGIONS, GROW_WORK, NOT_FINITE, Pose, Surface, pair_pull
+from .kernel.pair import (
+    DONE,
+    GROW_REGIONS,
+    GROW_WORK,
+    NOT_FINITE,
+    Pose,
+    Surface,
+    expected,
+    meet_body,
+    pair_pull,
+    put_in,
+    remember_pull,
+    take_out,
+)
 from .store import Store, load_law
 
 #: Requests of machine code to Python.
@@ -112,6 +125,20 @@ def pre_solve(
     for row, motion in zip(rows, (motion_a, motion_b)):
         store.tables.shapes[row]["inverse_mass"] = motion.inverse_mass
         store.tables.shapes[row]["inverse_moment"] = motion.inverse_moment
+    pair = store.tables.pairs[p]
+    met = [store.tables.bodies[store.tables.shapes[row]["body"]] for row in rows]
+    for body in met:
+        if body.stamp != stamp:
+            meet_body(body, stamp)
+    if pair.stamp == stamp - 1:
+        take_out(met[0], -pair.fx, -pair.fy, pair.moment_a)
+        take_out(met[1], pair.fx, pair.fy, pair.moment_b)
+    motion_a, motion_b = (
+        expected(motion, row, *space.gravity, *body.force, body.torque)
+        if motion.inverse_mass > 0.0
+        else motion
+        for motion, row, body in zip((motion_a, motion_b), met, (a.body, b.body))
+    )
     while True:
         status, pull = pair_pull(
             store.pool, store.tables, store.work, load_law(store.state[0]), p, *rows,
@@ -123,7 +150,11 @@ def pre_solve(
         ask({GROW_WORK: MORE_WORK, GROW_REGIONS: MORE_REGIONS, NOT_FINITE: BAD_STATE}[status], arbiter)
         if status == NOT_FINITE:
             return
-    for body, sign, moment in ((a.body, -1.0, pull.moment_a), (b.body, 1.0, pull.moment_b)):
+    remember_pull(store.tables.pairs[p], pull, stamp)
+    if store.tables.pairs[p].head >= 0:
+        store.state[0]["touched"] = stamp
+    for body, row, sign, moment in zip((a.body, b.body), met, (-1.0, 1.0), (pull.moment_a, pull.moment_b)):
         if body.body_type == pymunk.Body.DYNAMIC:
             body.force += pymunk.Vec2d(sign * pull.fx, sign * pull.fy)
             body.torque += moment
+            put_in(row, sign * pull.fx, sign * pull.fy, moment)

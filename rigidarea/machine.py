@@ -18,7 +18,22 @@ from .hook import BAD_STATE, MORE_REGIONS, MORE_WORK, NEW_PAIR, NEW_SHAPE, NOTHI
 from .kernel.force import Motion
 from .kernel.jit import callback, kernel
 from .kernel.memory import array_at
-from .kernel.pair import DONE, FREE_PAIRS, GROW_WORK, NOT_FINITE, Pose, Surface, end_pair, new_pair, pair_pull
+from .kernel.pair import (
+    DONE,
+    FREE_PAIRS,
+    GROW_WORK,
+    NOT_FINITE,
+    Pose,
+    Surface,
+    end_pair,
+    expected,
+    meet_body,
+    new_pair,
+    pair_pull,
+    put_in,
+    remember_pull,
+    take_out,
+)
 from .store import STATE, load_law, load_pool, load_tables, load_work
 
 #: Chipmunk's states of an arbiter (enum cpArbiterState).
@@ -39,13 +54,15 @@ _ask_python = types.ExternalFunction(
 
 
 @kernel(inline="always")
-def _floats(address: int, n: int) -> np.ndarray:
+def floats(address: int, n: int) -> np.ndarray:
+    """n floats of Chipmunk's memory."""
     return array_at(address, (n,), np.float64)
 
 
 @kernel(inline="always")
-def _address(address: int) -> int:
-    return array_at(address, (1,), np.uint64)[0]
+def word(place: int) -> int:
+    """A pointer in Chipmunk's memory."""
+    return array_at(place, (1,), np.uint64)[0]
 
 
 @kernel(inline="always")
@@ -59,50 +76,72 @@ def _row(s: Any, shape: int) -> int:
 
 @kernel(inline="always")
 def _motion(s: Any, body: int) -> Motion:
-    p = _floats(body + s.body_position, 2)
-    v = _floats(body + s.body_velocity, 2)
+    p = floats(body + s.body_position, 2)
+    v = floats(body + s.body_velocity, 2)
     return Motion(
         p[0],
         p[1],
         v[0],
         v[1],
-        _floats(body + s.body_spin, 1)[0],
-        _floats(body + s.body_inverse_mass, 1)[0],
-        _floats(body + s.body_inverse_moment, 1)[0],
+        floats(body + s.body_spin, 1)[0],
+        floats(body + s.body_inverse_mass, 1)[0],
+        floats(body + s.body_inverse_moment, 1)[0],
+        0.0,
+        0.0,
+        0.0,
     )
 
 
 @kernel(inline="always")
-def _pose(s: Any, body: int) -> Pose:
-    t = _floats(body + s.body_transform, 6)
+def pose_of(s: Any, body: int) -> Pose:
+    """Where a body is."""
+    t = floats(body + s.body_transform, 6)
     return Pose(t[4], t[5], t[0], t[1])
 
 
 @kernel(inline="always")
-def _push(s: Any, body: int, row: Any, stamp: int, fx: float, fy: float, moment: float) -> None:
-    """Add to the body's accumulators.
+def _meet(s: Any, body: int, row: Any, stamp: int) -> None:
+    """The step's first look at a body.
 
     Chipmunk puts a body to sleep between the hook and the step's velocities, with the accumulators full: what is
     still there, unchanged, when the body is met again would push it twice.
     """
-    f = _floats(body + s.body_force, 2)
-    t = _floats(body + s.body_torque, 1)
-    if row.stamp != stamp and f[0] == row.force_x and f[1] == row.force_y and t[0] == row.torque:
-        f[0] = 0.0
-        f[1] = 0.0
-        t[0] = 0.0
+    if row.stamp != stamp:
+        f = floats(body + s.body_force, 2)
+        t = floats(body + s.body_torque, 1)
+        if f[0] == row.force_x and f[1] == row.force_y and t[0] == row.torque:
+            f[0] = 0.0
+            f[1] = 0.0
+            t[0] = 0.0
+        meet_body(row, stamp)
+
+
+@kernel(inline="always")
+def _expected(s: Any, space: int, body: int, row: Any, m: Motion) -> Motion:
+    if m.inverse_mass == 0.0:
+        return m
+    g = floats(space + s.space_gravity, 2)
+    f = floats(body + s.body_force, 2)
+    return expected(m, row, g[0], g[1], f[0], f[1], floats(body + s.body_torque, 1)[0])
+
+
+@kernel(inline="always")
+def _push(s: Any, body: int, row: Any, fx: float, fy: float, moment: float) -> None:
+    """Add to the body's accumulators."""
+    f = floats(body + s.body_force, 2)
+    t = floats(body + s.body_torque, 1)
     f[0] += fx
     f[1] += fy
     t[0] += moment
-    row.stamp = stamp
     row.force_x = f[0]
     row.force_y = f[1]
     row.torque = t[0]
+    put_in(row, fx, fy, moment)
 
 
 @kernel(inline="always")
 def _post_solves(s: Any, handler: int) -> bool:
-    function = _address(handler + s.handler_post_solve)
+    function = word(handler + s.handler_post_solve)
     return function != s.no_post_solve and function != s.unset_post_solve
 
 
@@ -116,7 +155,7 @@ def _silence(s: Any, arbiter: int, space: int) -> None:
     state = array_at(arbiter + s.arbiter_state, (1,), np.int32)
     missed = _sleep_time(space) < np.inf or _post_solves(s, s.global_handler)
     for i in range(4):
-        missed = missed or _post_solves(s, _address(arbiter + s.arbiter_handlers + 8 * i))
+        missed = missed or _post_solves(s, word(arbiter + s.arbiter_handlers + 8 * i))
     if missed:
         array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = 0
         if state[0] == _IGNORE:
@@ -134,10 +173,10 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     s = array_at(at, (1,), STATE)[0]
     if array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] == 0:
         return
-    shape_a = _address(arbiter + s.arbiter_shape_a)
-    shape_b = _address(arbiter + s.arbiter_shape_a + 8)
-    body_a = _address(arbiter + s.arbiter_body_a)
-    body_b = _address(arbiter + s.arbiter_body_a + 8)
+    shape_a = word(arbiter + s.arbiter_shape_a)
+    shape_b = word(arbiter + s.arbiter_shape_a + 8)
+    body_a = word(arbiter + s.arbiter_body_a)
+    body_b = word(arbiter + s.arbiter_body_a + 8)
     sign = 1.0
     if _hash_id(shape_a) > _hash_id(shape_b):  # Chipmunk may exchange the two from step to step
         shape_a, shape_b = shape_b, shape_a
@@ -172,18 +211,29 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
             memory[0] = (s.epoch << _HALF) | np.uint64(p)
     p = np.int64(memory[0] & _LOWER)
 
-    normal = _floats(arbiter + s.arbiter_normal, 2)
-    given = _floats(arbiter + s.arbiter_surface, 2)
-    va = _floats(shape_a + s.shape_surface_velocity, 2)
-    vb = _floats(shape_b + s.shape_surface_velocity, 2)
+    normal = floats(arbiter + s.arbiter_normal, 2)
+    given = floats(arbiter + s.arbiter_surface, 2)
+    va = floats(shape_a + s.shape_surface_velocity, 2)
+    vb = floats(shape_b + s.shape_surface_velocity, 2)
     vx, vy = surface_velocity(
         va[0], va[1], vb[0], vb[1], normal[0], normal[1], sign * given[0], sign * given[1]
     )
     surface = Surface(
-        _floats(arbiter + s.arbiter_friction, 1)[0], _floats(arbiter + s.arbiter_elasticity, 1)[0], vx, vy
+        floats(arbiter + s.arbiter_friction, 1)[0], floats(arbiter + s.arbiter_elasticity, 1)[0], vx, vy
     )
     dt = _time_step(space)
     stamp = np.int64(_timestamp(space))
+    tables = load_tables(s)
+    row_a = tables.bodies[tables.shapes[sa].body]
+    row_b = tables.bodies[tables.shapes[sb].body]
+    _meet(s, body_a, row_a, stamp)
+    _meet(s, body_b, row_b, stamp)
+    pair = tables.pairs[p]
+    if pair.stamp == stamp - 1:
+        take_out(row_a, -pair.fx, -pair.fy, pair.moment_a)
+        take_out(row_b, pair.fx, pair.fy, pair.moment_b)
+    a = _expected(s, space, body_a, row_a, a)
+    b = _expected(s, space, body_b, row_b, b)
     while True:
         tables = load_tables(s)
         tables.shapes[sa].inverse_mass = a.inverse_mass
@@ -191,7 +241,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         tables.shapes[sb].inverse_mass = b.inverse_mass
         tables.shapes[sb].inverse_moment = b.inverse_moment
         status, pull = pair_pull(
-            load_pool(s), tables, load_work(s), load_law(s), p, sa, sb, _pose(s, body_a), _pose(s, body_b),
+            load_pool(s), tables, load_work(s), load_law(s), p, sa, sb, pose_of(s, body_a), pose_of(s, body_b),
             a, b, surface, dt, stamp,
         )  # fmt: skip
         if status == DONE:
@@ -205,10 +255,13 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         if s.request != NOTHING:
             return  # Python could not: it keeps the error
     tables = load_tables(s)
+    remember_pull(tables.pairs[p], pull, stamp)
+    if tables.pairs[p].head >= 0:
+        s.touched = stamp
     if a.inverse_mass > 0.0:
-        _push(s, body_a, tables.bodies[tables.shapes[sa].body], stamp, -pull.fx, -pull.fy, pull.moment_a)
+        _push(s, body_a, tables.bodies[tables.shapes[sa].body], -pull.fx, -pull.fy, pull.moment_a)
     if b.inverse_mass > 0.0:
-        _push(s, body_b, tables.bodies[tables.shapes[sb].body], stamp, pull.fx, pull.fy, pull.moment_b)
+        _push(s, body_b, tables.bodies[tables.shapes[sb].body], pull.fx, pull.fy, pull.moment_b)
 
 
 @callback(types.void(types.uintp, types.uintp, types.uintp))

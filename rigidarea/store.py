@@ -32,6 +32,8 @@ OFFSETS = [
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_data", "arbiter_shape_a"),
     *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process", "arbiter_state"),
     *("arbiter_handlers", "handler_post_solve", "no_post_solve", "unset_post_solve"),
+    *("space_gravity", "body_angle", "body_position_func", "body_velocity_func", "position_func"),
+    "velocity_func",
 ]
 STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
@@ -42,12 +44,23 @@ STATE = record(
         ("length", "f8"),
         ("exponent", "f8"),
         ("rest_speed", "f8"),
+        ("followed", "f8"),
         ("law", "i8"),
         ("direction", "i8"),
         ("request", "i8"),  # what machine code asks Python for
         ("restoring", "i8"),  # pairs are to be looked up in a copied space's memory
         ("global_handler", "u8"),  # address of Chipmunk's global handler
         ("epoch", "u8"),  # upper half of what is kept in arbiters: whose pairs they are
+        ("touched", "i8"),  # the last step in which anything touched
+        # a run of frames (`frames.py`)
+        ("phase", "f8"),
+        ("max_steps", "i8"),
+        ("shift_at", "u8"),  # address of `frames.shift_body`
+        ("shift", "f8"),  # time by which it moves bodies
+        ("settle", "i8"),  # 1: for good, so that everything sees it
+        ("ballistic", "i8"),  # 1: between contacts only gravity acts
+        ("wanted", "i8"),  # steps that a frame would have needed, where max_steps was less; else 0
+        ("stop", "i8"),  # 1: an error waits in Python
     ],
 )
 
@@ -97,7 +110,7 @@ def load_tables(s: Any) -> Tables:
 @kernel(inline="always")
 def load_law(s: Any) -> Law:
     """The force law of the space whose state record is s."""
-    return Law(s.stiffness, s.law, s.length, s.direction, s.exponent, s.rest_speed)
+    return Law(s.stiffness, s.law, s.length, s.direction, s.exponent, s.rest_speed, s.followed)
 
 
 class Store:
@@ -216,6 +229,7 @@ class Store:
     def shape(
         self,
         ident: int,
+        address: int,
         outline: HasRings,
         mirror: HasRings | None,
         body: int,
@@ -241,10 +255,11 @@ class Store:
             body_row = self._free_bodies.pop() if self._free_bodies else len(self._bodies)
             if body_row >= len(self.tables.bodies):
                 self.tables = self.tables._replace(bodies=np.resize(self.tables.bodies, 2 * body_row))
-            self.tables.bodies[body_row] = (-1, 0.0, 0.0, 0.0)
+            self.tables.bodies[body_row] = np.zeros((), BODY)
+            self.tables.bodies[body_row]["stamp"] = -1
         self._bodies[body] = body_row, shapes + 1
         self._body_of[ident] = body
-        self.tables.shapes[row] = (number, other, inverse_mass, inverse_moment, body_row)
+        self.tables.shapes[row] = (address, number, other, inverse_mass, inverse_moment, body_row)
 
     def forget(self, idents: Iterable[int]) -> None:
         """Free what the tables hold of shapes that are gone; outlines nobody has any more go with them in time."""
@@ -253,7 +268,7 @@ class Store:
                 continue
             row = int(self.slots[ident])
             self.slots[ident] = -1
-            self.tables.shapes[row] = (-1, -1, 0.0, 0.0, -1)
+            self.tables.shapes[row] = (0, -1, -1, 0.0, 0.0, -1)
             self._free.append(row)
             body = self._body_of.pop(ident)
             body_row, shapes = self._bodies[body]

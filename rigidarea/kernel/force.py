@@ -33,6 +33,11 @@ TANGENT_STIFFNESS = 2.0 / 7.0
 LEAST_RESTITUTION = 0.01
 #: A contact that has lasted this many radians of its own natural motion is no impact any more, but rest.
 REST_PHASE = 50.0
+#: (w h)^2 above which a step h is too long to follow a contact of frequency w: its spring is then taken implicitly,
+#: its impact as an impulse. (Symplectic Euler is stable up to 4, and in a stack up to 1.)
+FOLLOWED = 0.25
+#: The same between faces at rest, summed over a body's contacts, as a multiple.
+FLAT = 4.0
 #: A chord below this fraction of sqrt(area) is rounding: the direction is then taken from memory, or anew.
 NO_CHORD = 1e-6
 
@@ -44,6 +49,7 @@ REGION = record(
         ("next", "i4"),  # next region of the pair, or of the free list; -1: none
         ("resting", "i4"),  # 0: impact, 1: rest
         ("opened", "i4"),  # 1 once the bodies have moved apart within this contact
+        ("sudden", "i4"),  # 1: an impact too short for the step
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
@@ -67,6 +73,8 @@ REGION = record(
         ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
         ("depth", "f8"),  # its extent along n at first touch (length)
         ("straight", "f8"),  # longest straight stretch of both boundaries in it (length)
+        ("crowd", "f8"),  # of the two bodies' sums of rate2 over their contacts the larger (1/time^2)
+        ("curved", "i4"),  # 1: one of the two boundaries is a curve
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
         ("speed", "f8"),  # closing speed (length/time)
@@ -85,6 +93,9 @@ class Law(NamedTuple):
     direction: int  # CHORD or NODAL
     exponent: float  # q of Eq. 12, for NODAL
     rest_speed: float  # first touch slower than this: rest from the start (length/time)
+    followed: float = (
+        FOLLOWED  # (w h)^2 up to which a step follows a contact; infinity: always, stable or not
+    )
 
 
 class Motion(NamedTuple):
@@ -97,6 +108,9 @@ class Motion(NamedTuple):
     w: float  # (1/time)
     inverse_mass: float
     inverse_moment: float
+    ax: float = 0.0  # what everything but this region does to it in this step (length/time^2)
+    ay: float = 0.0
+    aw: float = 0.0  # (1/time^2)
 
 
 class Pull(NamedTuple):
@@ -224,56 +238,60 @@ def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float,
     return chord_y / length, -chord_x / length
 
 
-@kernel
-def region_force(
-    r: Any, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
-    surface_x: float, surface_y: float, dt: float, born: bool,
-) -> Pull:  # fmt: skip
-    """Force of region r (one REGION record: area, x, y, nx, ny, chord set; its memory is brought up to date).
+@kernel(inline="always")
+def _impact(
+    r: Any,
+    elastic: float,
+    elasticity: float,
+    speed: float,
+    coming: float,
+    inverse: float,
+    dt: float,
+    born: bool,
+) -> float:
+    """Normal force of an impact; what the region remembers of it is brought up to date.
 
-    Impacts. While closing, F = f (1 + a speed) with the a that in free flight returns `elasticity` exactly, whatever
-    f (design 2.4). While opening, F = f (1 - b), b such that the loss of the whole impact becomes (1 - e^2) of the
+    While closing, F = f (1 + a speed) with the a that in free flight returns `elasticity` exactly, whatever f
+    (design 2.4). While opening, F = f (1 - b), b such that the loss of the whole impact becomes (1 - e^2) of the
     kinetic energy at first touch: the same restitution again, but also where gravity, or anything else, acts during
     the impact (the plain law then returns up to 0.25 less, the softer the contact).
 
-    Rest. A bed of springs with dashpots beside them: a resultant along n, and, where the boundaries are straight, a
-    moment against the turning of one face on the other (else a box rocks on its face for ever). Not where they are
-    curved: a bed of dashpots would brake a rolling disc, as a damped foundation does, and no user expects that.
-
-    The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
-    resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
+    An impact shorter than the step has no course, only a result: the impulse that returns e, all at once.
     """
-    nx = r.nx
-    ny = r.ny
-    rax = r.x - a.x
-    ray = r.y - a.y
-    rbx = r.x - b.x
-    rby = r.y - b.y
-    ux = (a.vx - a.w * ray) - (b.vx - b.w * rby)
-    uy = (a.vy + a.w * rax) - (b.vy + b.w * rbx)
-    speed = ux * nx + uy * ny
-    slip = -ux * ny + uy * nx - (-surface_x * ny + surface_y * nx)
-    arm_a = rax * ny - ray * nx
-    arm_b = rbx * ny - rby * nx
-    inverse_masses = a.inverse_mass + b.inverse_mass
-    inverse = inverse_masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+    if r.sudden:
+        return max(0.0, (coming + min(1.0, elasticity) * r.first_speed) / (dt * inverse))
+    # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
+    # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
+    depth = r.area / r.chord
+    if r.opened:
+        force = elastic * (1.0 - r.withheld)
+        leaving = dt * (dt * force * inverse - speed)
+        if depth < leaving:
+            force *= 0.5 * (1.0 + depth / leaving)
+        return force
+    if born and depth < dt * speed:
+        elastic *= 0.5 * (1.0 + depth / (dt * speed))
+    force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse))
+    # damping slows down, it never turns the speed round within a step
+    force = min(force, max(elastic, speed / (dt * inverse)))
+    r.elastic = elastic
+    r.excess = force - elastic
+    return force
 
-    if law.law == LAW_AREA:
-        elastic = law.stiffness * r.area
-        stiffness = law.stiffness * r.chord
-    else:
-        elastic = law.stiffness * r.area * r.chord / law.length
-        stiffness = law.stiffness * r.chord * r.chord / law.length
-    r.rate2 = stiffness * inverse
-    step_phase = dt * math.sqrt(r.rate2)
 
+@kernel(inline="always")
+def _remember(
+    r: Any, elasticity: float, speed: float, inverse: float, rest_speed: float, dt: float, born: bool
+) -> None:
+    """Bring up to date what a region knows of its impact, and whether it is one."""
     if born:
         r.first_speed = speed
         r.spring = 0.0
         r.tangent_stiffness = 0.0
         r.phase = 0.0
         r.opened = 0
-        r.resting = 1 if speed <= law.rest_speed else 0
+        r.sudden = 0
+        r.resting = 1 if speed <= rest_speed else 0
         r.damping = 0.0 if r.resting else restitution_damping(elasticity) / speed
         r.work = 0.0
         r.loss = 0.0
@@ -281,7 +299,7 @@ def region_force(
         r.lasted = 0.0
         r.late = 0.5 * dt - min(dt, r.depth / speed) if speed > 0.0 else 0.0
         r.withheld = 0.0
-    r.phase += step_phase
+    r.phase += min(1.0, dt * math.sqrt(r.rate2))
     if not (born or r.opened):
         # what the last step's force did is now known: it acted while the speed went from the old to the present one
         moved = 0.5 * dt * (r.speed + speed)
@@ -300,39 +318,95 @@ def region_force(
     if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
         r.resting = 1
 
+
+@kernel
+def region_force(
+    r: Any, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
+    surface_x: float, surface_y: float, dt: float, born: bool,
+) -> Pull:  # fmt: skip
+    """Force of region r (one REGION record: area, x, y, nx, ny, chord set; its memory is brought up to date).
+
+    Impacts: see `_impact`. Rest: a bed of springs with dashpots beside them: a resultant along n, and, where the
+    boundaries are straight, a moment against the turning of one face on the other (else a box rocks on its face for
+    ever). Not where they are curved: a bed of dashpots would brake a rolling disc, as a damped foundation does, and
+    no user expects that.
+
+    The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
+    resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
+
+    Contacts too stiff for the step, (w h)^2 > `law.followed`. An impact becomes an impulse. At rest a curved contact's
+    spring is stretched to the end of the step, in part or, the stiffer, in whole (theta = 1 - (followed / (w h)^2)^2):
+    no stiffness is then too high. That needs the speeds that the rest of the world will give the bodies in this step
+    (`Motion.ax`), and so contacts are met one after the other, each with the force of those before it: Gauss and
+    Seidel's way. Between faces that would not do (what comes into touch within the step is not in the overlap yet):
+    there k is lowered to what the step can follow, for all contacts of a body alike, so that a face feels no seam.
+    """
+    nx = r.nx
+    ny = r.ny
+    rax = r.x - a.x
+    ray = r.y - a.y
+    rbx = r.x - b.x
+    rby = r.y - b.y
+    ux = (a.vx - a.w * ray) - (b.vx - b.w * rby)
+    uy = (a.vy + a.w * rax) - (b.vy + b.w * rbx)
+    speed = ux * nx + uy * ny
+    slip = -ux * ny + uy * nx - (-surface_x * ny + surface_y * nx)
+    # what the rest of the world adds to the relative velocity in this step
+    gx = dt * ((a.ax - a.aw * ray) - (b.ax - b.aw * rby))
+    gy = dt * ((a.ay + a.aw * rax) - (b.ay + b.aw * rbx))
+    coming = speed + gx * nx + gy * ny
+    arm_a = rax * ny - ray * nx
+    arm_b = rbx * ny - rby * nx
+    inverse_masses = a.inverse_mass + b.inverse_mass
+    inverse_moments = a.inverse_moment + b.inverse_moment
+    inverse = inverse_masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+
+    if law.law == LAW_AREA:
+        elastic = law.stiffness * r.area
+        stiffness = law.stiffness * r.chord
+    else:
+        elastic = law.stiffness * r.area * r.chord / law.length
+        stiffness = law.stiffness * r.chord * r.chord / law.length
+    r.rate2 = stiffness * inverse
+    phase2 = r.rate2 * dt * dt
+    stretched = 0.0 if phase2 <= law.followed else dt * (1.0 - (law.followed / phase2) ** 2)  # theta h
+
+    rest_speed = law.rest_speed
+    if stretched > 0.0:  # at rest is also what the world presses together within a step
+        rest_speed = max(rest_speed, 2.0 * (coming - speed))
+    _remember(r, elasticity, speed, inverse, rest_speed, dt, born)
+    if stretched > 0.0 and not r.resting:
+        r.sudden = 1
+    if r.resting and not r.curved:
+        stretched = 0.0
+        stiffest = max(phase2, r.crowd * dt * dt)
+        if stiffest > FLAT * law.followed:
+            softer = FLAT * law.followed / stiffest
+            elastic *= softer
+            stiffness *= softer
+
     couple = 0.0
     if r.resting:
         c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
-        force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
+        turning = a.w - b.w
+        if stretched > 0.0:
+            c += stiffness * stretched
+            force = max(0.0, (elastic + c * coming) / (1.0 + dt * c * inverse))
+            turning += dt * (a.aw - b.aw - force * (arm_a * a.inverse_moment + arm_b * b.inverse_moment))
+        else:
+            force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
         bed = c * r.straight**3 / (12.0 * r.chord)
-        couple = bed * (a.w - b.w) / (1.0 + dt * bed * (a.inverse_moment + b.inverse_moment))
+        couple = bed * turning / (1.0 + dt * bed * inverse_moments)
         most = force * r.chord / 6.0  # more would need the pressure to pull at one end
         couple = min(most, max(-most, couple))
     else:
-        # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
-        # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
-        depth = r.area / r.chord
-        if r.opened:
-            force = elastic * (1.0 - r.withheld)
-            leaving = dt * (dt * force * inverse - speed)
-            if depth < leaving:
-                force *= 0.5 * (1.0 + depth / leaving)
-        else:
-            if born and depth < dt * speed:
-                elastic *= 0.5 * (1.0 + depth / (dt * speed))
-            force = max(
-                0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse)
-            )
-            # damping slows down, it never turns the speed round within a step
-            force = min(force, max(elastic, speed / (dt * inverse)))
-            r.elastic = elastic
-            r.excess = force - elastic
+        force = _impact(r, elastic, elasticity, speed, coming, inverse, dt, born)
 
     tangential = 0.0
     if friction > 0.0:
-        arm_a = rax * nx + ray * ny
-        arm_b = rbx * nx + rby * ny
-        inverse_t = inverse_masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+        lean_a = rax * nx + ray * ny
+        lean_b = rbx * nx + rby * ny
+        inverse_t = inverse_masses + lean_a * lean_a * a.inverse_moment + lean_b * lean_b * b.inverse_moment
         kt = TANGENT_STIFFNESS * stiffness
         # the spring remembers a force; where the region shrinks the force shrinks with it, so no energy comes free
         if kt < r.tangent_stiffness:
@@ -342,7 +416,17 @@ def region_force(
         ct = 2.0 * math.sqrt(kt / inverse_t) if inverse_t > 0.0 else 0.0
         most = friction * force
         r.spring = min(most, max(-most, r.spring))
-        tangential = r.spring + ct * slip / (1.0 + dt * ct * inverse_t)
+        sliding = slip
+        if stretched > 0.0:
+            ct += kt * stretched
+            turn_a = force * arm_a + couple
+            turn_b = force * arm_b + couple
+            sliding += (
+                gy * nx
+                - gx * ny
+                - dt * (turn_a * a.inverse_moment * lean_a + turn_b * b.inverse_moment * lean_b)
+            )
+        tangential = r.spring + ct * sliding / (1.0 + dt * ct * inverse_t)
         tangential = min(most, max(-most, tangential))
     r.force = force
     r.friction = tangential

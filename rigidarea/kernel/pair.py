@@ -29,6 +29,7 @@ from .pool import Pool
 
 SHAPE = record(
     [
+        ("address", "u8"),  # of the shape; 0: none
         ("outline", "i4"),  # number in the pool
         ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
         ("inverse_mass", "f8"),  # of its body, as last seen; 0 for a sensor
@@ -39,10 +40,18 @@ SHAPE = record(
 
 BODY = record(
     [
-        ("stamp", "i8"),  # space step in which a contact last pushed it
+        ("stamp", "i8"),  # space step in which a contact last met it
         ("force_x", "f8"),  # what was in its accumulators after that
         ("force_y", "f8"),
         ("torque", "f8"),
+        ("met_x", "f8"),  # force of all its contacts met in that step
+        ("met_y", "f8"),
+        ("met_turn", "f8"),
+        ("old_x", "f8"),  # force, in the step before, of those not met yet
+        ("old_y", "f8"),
+        ("old_turn", "f8"),
+        ("met_rate", "f8"),  # sum of rate2 of all its regions in that step
+        ("old_rate", "f8"),  # in the step before
     ]
 )
 
@@ -54,6 +63,11 @@ PAIR = record(
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("side_b", "i4"),
         ("next", "i4"),  # in the free list
+        ("stamp", "i8"),  # space step of the pull
+        ("fx", "f8"),  # force on B (force)
+        ("fy", "f8"),
+        ("moment_a", "f8"),  # on each about its centre (force length)
+        ("moment_b", "f8"),
     ],
 )
 
@@ -110,7 +124,66 @@ def new_pair(tables: Tables, shape_a: int, shape_b: int) -> int:
         pair.side_a = 0
         pair.side_b = 0
         pair.next = -1
+        pair.stamp = -1
     return p
+
+
+@kernel
+def meet_body(body: Any, stamp: int) -> None:
+    """A step's first look at a body: what its contacts did is now what they did in the step before."""
+    last = body.stamp == stamp - 1
+    body.old_x = body.met_x if last else 0.0
+    body.old_y = body.met_y if last else 0.0
+    body.old_turn = body.met_turn if last else 0.0
+    body.met_x = 0.0
+    body.met_y = 0.0
+    body.met_turn = 0.0
+    body.old_rate = body.met_rate if last else 0.0
+    body.met_rate = 0.0
+    body.stamp = stamp
+
+
+@kernel(inline="always")
+def expected(
+    m: Motion, body: Any, gx: float, gy: float, fx: float, fy: float, turn: float
+) -> Motion:  # fmt: skip
+    """The body's motion with what everything but one pair will do to it in this step.
+
+    From gravity, the force (fx, fy, turn) that the step's earlier contacts and the user have put on it, and what the
+    contacts not met yet did in the step before.
+    """
+    return Motion(
+        m.x, m.y, m.vx, m.vy, m.w, m.inverse_mass, m.inverse_moment,
+        gx + (fx + body.old_x) * m.inverse_mass,
+        gy + (fy + body.old_y) * m.inverse_mass,
+        (turn + body.old_turn) * m.inverse_moment,
+    )  # fmt: skip
+
+
+@kernel
+def take_out(body: Any, fx: float, fy: float, turn: float) -> None:
+    """A pair that pushed the body in the step before is met: it has a new force now."""
+    body.old_x -= fx
+    body.old_y -= fy
+    body.old_turn -= turn
+
+
+@kernel
+def remember_pull(pair: Any, pull: Pull, stamp: int) -> None:
+    """For the next step's `take_out`."""
+    pair.stamp = stamp
+    pair.fx = pull.fx
+    pair.fy = pull.fy
+    pair.moment_a = pull.moment_a
+    pair.moment_b = pull.moment_b
+
+
+@kernel
+def put_in(body: Any, fx: float, fy: float, turn: float) -> None:
+    """What a pair that was met pushes the body with."""
+    body.met_x += fx
+    body.met_y += fy
+    body.met_turn += turn
 
 
 @kernel
@@ -139,7 +212,8 @@ def end_pair(tables: Tables, p: int) -> None:
 
 
 @kernel
-def _placed(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
+def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
+    """An outline (its head, its body's pose) as the first one sees it."""
     return relative(
         pose.x, pose.y, pose.c, pose.s, other_pose.x, other_pose.y, other_pose.c, other_pose.s,
         head.x, head.y, other.x, other.y,
@@ -152,7 +226,7 @@ def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Wo
 
     A tangle is undone by shifts of 1e-13 of the size: a tangle is rounding.
     """
-    rel = _placed(pool.heads[ia], a, pool.heads[ib], b)
+    rel = seen_from(pool.heads[ia], a, pool.heads[ib], b)
     n = overlap_kernel(pool, ia, pool, ib, rel, work)
     if n == TANGLED:
         size = 1e-13 * (pool.heads[ia].radius + pool.heads[ib].radius)
@@ -362,6 +436,13 @@ def pair_pull(
 
     loops = work.loops
     head_a = pool.heads[ia]
+    curved = head_a.round or pool.heads[ib].round
+    body_a = tables.bodies[tables.shapes[sa].body]
+    body_b = tables.bodies[tables.shapes[sb].body]
+    crowd = max(
+        body_a.old_rate if a.inverse_mass > 0.0 else 0.0,
+        body_b.old_rate if b.inverse_mass > 0.0 else 0.0,
+    )
     old = pair.head
     kept = -1
     fx = 0.0
@@ -436,7 +517,9 @@ def pair_pull(
             # the gradient's line of action: its moment about the centroid is -lever
             x -= wy * loop.lever / chord
             y += wx * loop.lever / chord
-        region.straight = min(loop.straight, chord)
+        region.crowd = crowd
+        region.curved = 1 if curved else 0
+        region.straight = 0.0 if curved else min(loop.straight, chord)
         if born:
             region.depth = _extent(work, loop.start, loop.stop, pose_a, wx, wy)
         region.area = area
@@ -449,6 +532,16 @@ def pair_pull(
             region, law, a, b, surface.friction, surface.elasticity, surface.vx, surface.vy, dt, born
         )
         finite = finite and math.isfinite(region.speed + region.slip)
+        a = Motion(
+            a.x, a.y, a.vx, a.vy, a.w, a.inverse_mass, a.inverse_moment,
+            a.ax - pull.fx * a.inverse_mass, a.ay - pull.fy * a.inverse_mass, a.aw + pull.moment_a * a.inverse_moment,
+        )  # fmt: skip
+        b = Motion(
+            b.x, b.y, b.vx, b.vy, b.w, b.inverse_mass, b.inverse_moment,
+            b.ax + pull.fx * b.inverse_mass, b.ay + pull.fy * b.inverse_mass, b.aw + pull.moment_b * b.inverse_moment,
+        )  # fmt: skip
+        body_a.met_rate += region.rate2
+        body_b.met_rate += region.rate2
         fx += pull.fx
         fy += pull.fy
         moment_a += pull.moment_a

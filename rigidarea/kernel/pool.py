@@ -33,6 +33,7 @@ HEAD = record(
         ("box", "i4"),  # node n of the hierarchy is boxes[box + n]
         ("leaves", "i4"),  # a power of two
         ("convex", "i4"),  # and small enough to be clipped
+        ("round", "i4"),  # its edges are the samples of a curve
         ("x", "f8"),  # middle of the bounding box, body frame (length)
         ("y", "f8"),
         ("radius", "f8"),  # about that middle (length)
@@ -67,6 +68,8 @@ class HasRings(Protocol):
 
 #: Outlines of more points are not clipped, convex or not.
 MOST_CLIPPED = 21
+#: Sampled closer than this fraction of the extent to an arc, an edge is taken for a part of it.
+ROUND = 1e-3
 #: Depth at which `face` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
 FACE_DEPTH = 0.02
 
@@ -157,6 +160,37 @@ def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
 
 
 @njit
+def _round(points: np.ndarray, following: np.ndarray) -> bool:
+    """Whether most of the boundary is a sampled curve: edges so short, turning so little, that no arc is far away.
+
+    An edge of length l in a curve that turns by t at its ends lies within l t / 8 of the arc.
+    """
+    n = len(points)
+    low = np.array([points[:, 0].min(), points[:, 1].min()])
+    high = np.array([points[:, 0].max(), points[:, 1].max()])
+    near = ROUND * (high - low).max()
+    turn = np.empty(n)  # at the end of edge i
+    length = np.empty(n)
+    for i in range(n):
+        j = following[i]
+        k = following[j]
+        ux = points[j, 0] - points[i, 0]
+        uy = points[j, 1] - points[i, 1]
+        vx = points[k, 0] - points[j, 0]
+        vy = points[k, 1] - points[j, 1]
+        turn[i] = abs(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy))
+        length[i] = math.hypot(ux, uy)
+    total = 0.0
+    curved = 0.0
+    for i in range(n):
+        j = following[i]
+        total += length[j]
+        if length[j] * max(turn[i], turn[j]) <= 8.0 * near:
+            curved += length[j]
+    return curved > 0.5 * total
+
+
+@njit
 def _clippable(points: np.ndarray) -> bool:
     """Whether every point lies left of every edge's line: a convex outline cut along its edges stays itself.
 
@@ -178,8 +212,8 @@ def _clippable(points: np.ndarray) -> bool:
 @njit
 def _prepare(
     points: np.ndarray, starts: np.ndarray, x: float, y: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, float, float, float]]:
-    """Everything of one outline but its rings: following, ring_of, boxes, (leaves, convex, radius, face, face_arm).
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, bool, float, float, float]]:
+    """Everything of one outline but its rings: following, ring_of, boxes, and the numbers of its head.
 
     From its points about the middle of its box, where its rings start in them, and its centroid (x, y).
     """
@@ -195,7 +229,7 @@ def _prepare(
     radius = 0.0
     for i in range(n):
         radius = max(radius, math.hypot(points[i, 0], points[i, 1]))
-    return following, ring_of, boxes, (leaves, convex, radius, face, arm)
+    return following, ring_of, boxes, (leaves, convex, _round(points, following), radius, face, arm)
 
 
 def pack(outlines: Sequence[HasRings]) -> Pool:
@@ -215,7 +249,8 @@ def pack(outlines: Sequence[HasRings]) -> Pool:
         points = np.ascontiguousarray(rings - middle, dtype=np.float64)
         x, y = outline.centroid
         following, ring_of, boxes, numbers = _prepare(points, starts, x - middle[0], y - middle[1])
-        head["leaves"], head["convex"], head["radius"], head["face"], head["face_arm"] = numbers
+        for name, number in zip(("leaves", "convex", "round", "radius", "face", "face_arm"), numbers):
+            head[name] = number
         head["point"], head["ring"], head["box"] = n_points, n_rings, n_boxes
         head["count"], head["rings"] = len(points), len(starts) - 1
         ends = np.stack([starts[:-1], starts[1:]], axis=1).astype(np.int32)
