@@ -56,7 +56,7 @@ def light_load(
 
     a, b = (build([o.rings[0]]) for o in gb.outlines(addendum, 1e-9))
     wa, wb = workspace(a), workspace(b)
-    s, none = nodal.scratch(4000), np.zeros(0)
+    s, none = nodal.scratch(len(a.points) + len(b.points)), np.zeros(0)
     stamp = 0
 
     def evaluate(phi: float, psi: float) -> Array:

@@ -13,8 +13,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import kernel
-
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -26,8 +24,10 @@ class Boundary(NamedTuple):
 
     points (n, 2); next, previous, ring (n,); low, high (n,) FE boundary nodes of the carrying edge and share (n,) in
     [0, 1), the weight of ``high``; centre (t, 2), radius (t,), left, right (t,) the tree (a leaf has left < 0 and
-    holds edges right … right - left - 1); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last
-    three rows the hub's (x, y, rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if not used.
+    holds edges right … right - left - 1); box (t, 6) of a leaf, along its chord: centre, direction, half length and
+    half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
+    rotation); shapes (m, 2 f + 3) the same with each mode in one piece; flexibility (2 f + 3, 2 f + 3), or (0, 0) if
+    not used.
     """
 
     points: Array
@@ -41,7 +41,9 @@ class Boundary(NamedTuple):
     radius: Array
     left: Ints
     right: Ints
+    box: Array
     modes: Array
+    shapes: Array
     flexibility: Array
 
 
@@ -58,10 +60,20 @@ class Work(NamedTuple):
     touched: Ints  # (n + 1,) contact points that carry load; [-1] their number
     node_load: Array  # (f, 2) force on an FE boundary node, body frame
     node_flag: NDArray[np.bool_]  # (f,) listed in ``loaded``
-    leaf_stamp: Ints  # (t,)
     hub_load: Array  # (3,) force and moment on the hub, body frame
     loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
     mobility: Array  # (m,) what a force on a mode moves it within the step, 1/(M' + C' + ω²)
+
+
+def _box(p: Array) -> Array:
+    """The box of a chain of points (k, 2) along the line from its first to its last."""
+    d = p[-1] - p[0]
+    length = float(np.hypot(*d))
+    u = d / length if length > 0.0 else np.array([1.0, 0.0])
+    along, across = p @ u, p @ [-u[1], u[0]]
+    x, y = 0.5 * (along.min() + along.max()), 0.5 * (across.min() + across.max())
+    half = 0.5 * np.ptp(along), 0.5 * np.ptp(across)
+    return np.array([x * u[0] - y * u[1], x * u[1] + y * u[0], *u, *half])
 
 
 def build(
@@ -76,6 +88,7 @@ def build(
     nxt, prv, ring = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
     centre: list[Array] = []
     radius: list[float] = []
+    box: list[Array] = []
     left: list[int] = []
     right: list[int] = []
 
@@ -84,6 +97,7 @@ def build(
         c = 0.5 * (p.min(0) + p.max(0))
         centre.append(c)
         radius.append(float(np.linalg.norm(p - c, axis=1).max()))
+        box.append(_box(p))
         left.append(0)
         right.append(0)
         return len(centre) - 1
@@ -104,6 +118,7 @@ def build(
         start += len(r)
     centre.append(np.zeros(2))  # node 0, the root, is filled in last
     radius.append(np.inf)
+    box.append(np.zeros(6))
     left.append(0)
     right.append(0)
     start = 0
@@ -117,19 +132,27 @@ def build(
         radius.append(
             float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b]))
         )
+        box.append(np.zeros(6))
         left.append(a)
         right.append(b)
         roots.append(len(centre) - 1)
     top = roots[0]
-    centre[0], radius[0], left[0], right[0] = centre[top], radius[top], left[top], right[top]
+    centre[0], radius[0], box[0], left[0], right[0] = (
+        centre[top],
+        radius[top],
+        box[top],
+        left[top],
+        right[top],
+    )
     identity = (np.arange(n), np.arange(n), np.zeros(n))
     low, high, share = identity if carriers is None else carriers
     f = int(max(low.max(), high.max())) + 1
+    modes = np.zeros((2 * f + 3, 0)) if modes is None else np.ascontiguousarray(modes, float)
     return Boundary(
         points, nxt, prv, ring,
         np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
-        np.array(centre), np.array(radius), np.array(left), np.array(right),
-        np.zeros((2 * f + 3, 0)) if modes is None else np.ascontiguousarray(modes, float),
+        np.array(centre), np.array(radius), np.array(left), np.array(right), np.array(box), modes,
+        np.ascontiguousarray(modes.T),
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
     )  # fmt: skip
 
@@ -139,164 +162,6 @@ def workspace(b: Boundary) -> Work:
     n, f = len(b.points), (len(b.modes) - 3) // 2
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
-        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.full(len(b.left), -1),
-        np.zeros(3), np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]),
+        np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
+        np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]),
     )  # fmt: skip
-
-
-@kernel(inline="always")
-def place(b: Boundary, w: Work, pose: Array, modal: Array, start: int, count: int, stamp: int) -> None:
-    """World positions of ``count`` contact points from ``start`` on along the perimeter, each once an evaluation.
-
-    pose is (x, y, cos θ, sin θ). Displacements are u = Φ q + C f of the carrying edge's two FE nodes; f are the node
-    loads of the evaluation before. One call places a run of points: handing over the tuples costs more than a point.
-    """
-    points, following, low, high, share, modes, flex = (
-        b.points,
-        b.next,
-        b.low,
-        b.high,
-        b.share,
-        b.modes,
-        b.flexibility,
-    )
-    position, position_stamp = w.position, w.position_stamp
-    u, u_stamp, load, loaded, hub = w.displacement, w.displacement_stamp, w.node_load, w.loaded, w.hub_load
-    n_modes, static = modes.shape[1], flex.shape[0] > 0
-    px, py, c, s = pose[0], pose[1], pose[2], pose[3]
-    i = start
-    for _ in range(count):
-        if position_stamp[i] != stamp:
-            position_stamp[i] = stamp
-            x, y = points[i, 0], points[i, 1]
-            if n_modes > 0 or static:
-                for end in range(2):
-                    weight = share[i] if end == 1 else 1.0 - share[i]
-                    if weight == 0.0:
-                        continue
-                    node = high[i] if end == 1 else low[i]
-                    if u_stamp[node] != stamp:
-                        u_stamp[node] = stamp
-                        ux = uy = 0.0
-                        for k in range(n_modes):
-                            ux += modes[2 * node, k] * modal[k]
-                            uy += modes[2 * node + 1, k] * modal[k]
-                        if static:  # C is symmetric: a load's row, for neighbouring nodes next to each other
-                            for k in range(loaded[-1]):
-                                j = loaded[k]
-                                fx, fy = load[j, 0], load[j, 1]
-                                ux += flex[2 * j, 2 * node] * fx + flex[2 * j + 1, 2 * node] * fy
-                                uy += flex[2 * j, 2 * node + 1] * fx + flex[2 * j + 1, 2 * node + 1] * fy
-                            last = flex.shape[0] - 3
-                            for k in range(3):
-                                ux += flex[last + k, 2 * node] * hub[k]
-                                uy += flex[last + k, 2 * node + 1] * hub[k]
-                        u[node, 0] = ux
-                        u[node, 1] = uy
-                    x += weight * u[node, 0]
-                    y += weight * u[node, 1]
-            position[i, 0] = px + c * x - s * y
-            position[i, 1] = py + s * x + c * y
-        i = following[i]
-
-
-@kernel
-def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
-    """``place`` for a single point, as a call: for the rare point that no candidate leaf holds."""
-    place(b, w, pose, modal, i, 1, stamp)
-
-
-@kernel(inline="always")
-def place_leaves(
-    b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
-) -> None:
-    """Places the points of all candidate leaves of one body (``side`` 0: A, 1: B)."""
-    first, size, done = b.right, b.left, w.leaf_stamp
-    for k in range(n_pairs):
-        leaf = pairs[k, side]
-        if done[leaf] != stamp:
-            done[leaf] = stamp
-            place(b, w, pose, modal, first[leaf], 1 - size[leaf], stamp)
-
-
-@kernel
-def candidates(
-    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, stack: Ints, out: Ints
-) -> int:
-    """Pairs of leaves whose circles come within ``margin``: fills ``out`` (k, 2), returns their number, -1 if full.
-
-    Circles do not mind rotation, so the trees are built once, in the body frames. ``margin`` covers the deformation
-    and, where a list is kept for several evaluations, the motion between them.
-    """
-    # pose of b in the frame of a
-    c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
-    s = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
-    dx, dy = pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]
-    tx = pose_a[2] * dx + pose_a[3] * dy
-    ty = -pose_a[3] * dx + pose_a[2] * dy
-    count, top = 0, 1
-    stack[0, 0] = stack[0, 1] = 0
-    while top > 0:
-        top -= 1
-        i, j = stack[top, 0], stack[top, 1]
-        ex = tx + c * b.centre[j, 0] - s * b.centre[j, 1] - a.centre[i, 0]
-        ey = ty + s * b.centre[j, 0] + c * b.centre[j, 1] - a.centre[i, 1]
-        reach = a.radius[i] + b.radius[j] + margin
-        if ex * ex + ey * ey > reach * reach:
-            continue
-        if a.left[i] < 0 and b.left[j] < 0:
-            if count == len(out):
-                return -1
-            out[count, 0] = i
-            out[count, 1] = j
-            count += 1
-        elif b.left[j] < 0 or (a.left[i] >= 0 and a.radius[i] >= b.radius[j]):
-            stack[top, 0], stack[top, 1] = a.left[i], j
-            stack[top + 1, 0], stack[top + 1, 1] = a.right[i], j
-            top += 2
-        else:
-            stack[top, 0], stack[top, 1] = i, b.left[j]
-            stack[top + 1, 0], stack[top + 1, 1] = i, b.right[j]
-            top += 2
-    return count
-
-
-@kernel(inline="always")
-def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
-    """Adds a force to point i and remembers that it is loaded. (Arrays, not their tuple: see ``place``.)"""
-    if not flag[i]:
-        flag[i] = True
-        touched[touched[-1]] = i
-        touched[-1] += 1
-    load[i, 0] += fx
-    load[i, 1] += fy
-
-
-@kernel(inline="always")
-def clear_loads(w: Work) -> None:
-    """Forgets the contact points' loads."""
-    touched, load, pressure, flag = w.touched, w.point_load, w.pressure, w.point_flag
-    for k in range(touched[-1]):
-        i = touched[k]
-        load[i, 0] = load[i, 1] = pressure[i] = 0.0
-        flag[i] = False
-    touched[-1] = 0
-
-
-@kernel(inline="always")
-def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
-    """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
-    load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched
-    low, high, share = b.low, b.high, b.share
-    for k in range(loaded[-1]):
-        load[loaded[k], 0] = load[loaded[k], 1] = 0.0
-        flag[loaded[k]] = False
-    loaded[-1] = 0
-    for k in range(touched[-1]):
-        i = touched[k]
-        fx = pose[2] * point_load[i, 0] + pose[3] * point_load[i, 1]
-        fy = -pose[3] * point_load[i, 0] + pose[2] * point_load[i, 1]
-        s = share[i]
-        add_load(load, flag, loaded, low[i], (1.0 - s) * fx, (1.0 - s) * fy)
-        if s > 0.0:
-            add_load(load, flag, loaded, high[i], s * fx, s * fy)

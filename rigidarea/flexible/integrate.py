@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, workspace
-from rigidarea.flexible.region import MANY, SLICED, TORN
+from rigidarea.flexible.scratch import MANY, SLICED, TORN
 from rigidarea.flexible.step import (
     HALVINGS,
     REGIONS_KEPT,

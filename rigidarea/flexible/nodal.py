@@ -15,285 +15,181 @@ also loads the node outside). Shape functions keep resultant and first moment, s
 line through the centroid, both to rounding, and equal and opposite for the two bodies. For q = 1 the solution is
 α = k, β = 0 with no equation to solve: the resultant of the local law p = k d *is* k A at the centroid. d is the
 penetration along the common direction instead of Eq. 9's along each node's normal; the two agree where the
-perimeters are parallel to the chord. Forces are repulsive wherever α + β (x − x_c) is positive; where a
-strongly one-sided region with q ≠ 1 would make it negative, the q = 1 field is used, which never pulls.
+perimeters are parallel to the chord.
 
-``literal`` keeps the paper's own version, for the cases that verify it.
+This module has the usual region, whose two arcs are graphs over the chord, with q = 1: one walk along both arcs, in
+closed form. ``slabs`` has the rest: other q, arcs that fold back, several arcs a body. ``literal`` has the paper's
+own version, for the cases that verify it.
 """
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, add_load, candidates
+from rigidarea.flexible import slabs
+from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import resultant
-from rigidarea.flexible.region import CROSSING, MANY, REGION, arcs, area_and_centroid, find_regions
+from rigidarea.flexible.literal import literal as literal
+from rigidarea.flexible.literal import literal_alpha as literal_alpha
+from rigidarea.flexible.place import add_load, displace_near
+from rigidarea.flexible.quadrature import quadrature as quadrature
+from rigidarea.flexible.region import all_arcs, arcs, area_and_centroid, find_regions
+from rigidarea.flexible.scratch import MANY, Scratch
+from rigidarea.flexible.scratch import scratch as scratch
+from rigidarea.flexible.search import search as search
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# Three-point Gauss on [0, 1]: exact for q = 2 with linear shape functions
-GAUSS_X = (0.5 - 0.5 * 0.6**0.5, 0.5, 0.5 + 0.5 * 0.6**0.5)
-GAUSS_W = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
+WALL = 1e-9  # width over that of the region below which a piece stands along the force: no slope, no pressure
 
 
-@kernel
-def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
-    """Makes x grow along an arc; overhanging parts get no width, so no load. True if there were any."""
-    bent = False
-    top = 0.0
+@kernel(forceinline=True)
+def _straight(x: Array, n: int, chord: float) -> bool:
+    """Whether an arc is a graph over the chord; what rounding folds back, or beyond the ends, is put straight."""
+    slack = 1e-12 * chord
+    graph = True
+    last = 0.0
     for k in range(1, n + 1):
-        if x[side, k] < top - 1e-12 * chord or x[side, k] > chord * (1.0 + 1e-12):
-            bent = True
-        top = min(max(x[side, k], top), chord)
-        x[side, k] = top
-    return bent
+        graph &= (x[k] >= last - slack) & (x[k] <= chord + slack)
+        last = min(max(x[k], last), chord)
+        x[k] = last if graph else x[k]
+    return graph
 
 
-@kernel
-def _moments(x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float) -> tuple[float, float, float]:
-    """∫ d^q (x − x_c)^i dx for i = 0, 1, 2 over the merged pieces of both arcs."""
-    s0 = s1 = s2 = 0.0
+@kernel(forceinline=True)
+def _slope(x: Array, y: Array, k: int, wall: float = 0.0) -> float:
+    """Slope of piece k; a piece no wider than ``wall`` stands along the force and has none."""
+    width = x[k + 1] - x[k]
+    return (y[k + 1] - y[k]) / width if width > wall else 0.0
+
+
+@kernel(forceinline=True)
+def _rate(x: Array, t: Array, k: int) -> float:
+    """How the parameter on the edge grows along piece k."""
+    width = x[k + 1] - x[k]
+    return (t[k, 1] - t[k, 0]) / width if width > 0.0 else 0.0
+
+
+@kernel(forceinline=True)
+def _lean(xa: Array, ya: Array, xb: Array, yb: Array, n_a: int, n_b: int) -> float:
+    """∫ d (slope of A + slope of B)/2 dx over two graphs: see ``_turn``."""
+    wall = WALL * xa[n_a]
+    lean = lo = d0 = 0.0
     i = j = 0
-    lo = 0.0
-    while i < n_a and j < n_b:
-        hi = min(x[0, i + 1], x[1, j + 1])
-        if hi > lo:
-            ga = (y[0, i + 1] - y[0, i]) / (x[0, i + 1] - x[0, i])
-            gb = (y[1, j + 1] - y[1, j]) / (x[1, j + 1] - x[1, j])
-            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
-            slope = gb - ga
-            for g in range(3):
-                e = GAUSS_X[g] * (hi - lo)
-                p = GAUSS_W[g] * (hi - lo) * max(d0 + slope * e, 0.0) ** q
-                z = lo + e - xc
-                s0 += p
-                s1 += p * z
-                s2 += p * z * z
-            lo = hi
-        if x[0, i + 1] <= lo:
+    ga, gb = _slope(xa, ya, 0, wall), _slope(xb, yb, 0, wall)
+    while True:
+        if xa[i + 1] <= xb[j + 1]:
+            hi = xa[i + 1]
+            d1 = yb[j] + gb * (hi - xb[j]) - ya[i + 1]
+            lean += (d0 + d1) * (hi - lo) * (ga + gb)
             i += 1
+            if i == n_a:
+                break
+            ga = _slope(xa, ya, i, wall)
         else:
+            hi = xb[j + 1]
+            d1 = yb[j + 1] - ya[i] - ga * (hi - xa[i])
+            lean += (d0 + d1) * (hi - lo) * (ga + gb)
             j += 1
-    return s0, s1, s2
+            if j == n_b:
+                break
+            gb = _slope(xb, yb, j, wall)
+        lo, d0 = hi, d1
+    return 0.25 * lean
 
 
-@kernel(inline="always")
-def distribute(
-    a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, x: Array, y: Array, edge: Ints, t: Array,
-    n_a: int, n_b: int, force: float, area: float, xc: float, chord: float, q: float,
-) -> None:  # fmt: skip
-    """Adds the nodal loads of one region to both bodies; ``force`` is k A, (nx, ny) the direction of the force on B.
-
-    Arcs as ``region.arcs`` leaves them (x is straightened in place).
-    """
-    # Both arcs, not "or": each must be straightened.
-    bent_a = _straighten(x, 0, n_a, chord)
-    bent_b = _straighten(x, 1, n_b, chord)
-    linear = q == 1.0 and not (bent_a or bent_b)
-    if linear:
-        alpha, beta = force / area, 0.0
-    else:
-        s0, s1, s2 = _moments(x, y, n_a, n_b, q, xc)
-        det = s0 * s2 - s1 * s1
-        if s0 <= 0.0 or det <= 0.0:
-            return
-        alpha, beta = force * s2 / det, -force * s1 / det
-        if min(alpha - beta * xc, alpha + beta * (chord - xc)) < 0.0:
-            q = 1.0
-            s0, s1, s2 = _moments(x, y, n_a, n_b, q, xc)
-            alpha, beta = force / s0, 0.0
-    i = j = 0
-    lo = 0.0
-    next_a, next_b = a.next, b.next
-    load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
-    load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
-    a_low = a_high = b_low = b_high = 0.0
-    while i < n_a and j < n_b:
-        hi = min(x[0, i + 1], x[1, j + 1])
-        if hi > lo:
-            width_a = 1.0 / (x[0, i + 1] - x[0, i])
-            width_b = 1.0 / (x[1, j + 1] - x[1, j])
-            ga = (y[0, i + 1] - y[0, i]) * width_a
-            gb = (y[1, j + 1] - y[1, j]) * width_b
-            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
-            slope = gb - ga
-            sa = (t[0, i, 1] - t[0, i, 0]) * width_a
-            sb = (t[1, j, 1] - t[1, j, 0]) * width_b
-            if linear:  # p and the shape functions are linear: their product in closed form
-                w = (hi - lo) / 6.0
-                p0, p1 = alpha * d0 * w, alpha * (d0 + slope * (hi - lo)) * w
-                total = 3.0 * (p0 + p1)
-                t0, t1 = t[0, i, 0] + sa * (lo - x[0, i]), t[0, i, 0] + sa * (hi - x[0, i])
-                f = p0 * (2.0 * t0 + t1) + p1 * (t0 + 2.0 * t1)
-                a_high += f
-                a_low += total - f
-                t0, t1 = t[1, j, 0] + sb * (lo - x[1, j]), t[1, j, 0] + sb * (hi - x[1, j])
-                f = p0 * (2.0 * t0 + t1) + p1 * (t0 + 2.0 * t1)
-                b_high += f
-                b_low += total - f
-                lo = hi
-            else:
-                for g in range(3):
-                    e = GAUSS_X[g] * (hi - lo)
-                    z = lo + e
-                    d = max(d0 + slope * e, 0.0)
-                    p = (alpha + beta * (z - xc)) * (d if q == 1.0 else d**q) * GAUSS_W[g] * (hi - lo)
-                    ta = t[0, i, 0] + sa * (z - x[0, i])
-                    tb = t[1, j, 0] + sb * (z - x[1, j])
-                    a_low += p * (1.0 - ta)
-                    a_high += p * ta
-                    b_low += p * (1.0 - tb)
-                    b_high += p * tb
-                lo = hi
-        if x[0, i + 1] <= lo:
-            add_load(load_a, flag_a, touched_a, edge[0, i], -a_low * nx, -a_low * ny)
-            add_load(load_a, flag_a, touched_a, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
-            a_low = a_high = 0.0
-            i += 1
-            # the vertex between two pieces is a node inside: its pressure, Eq. 12 (none on a wall along the force)
-            if i < n_a and x[0, i + 1] - x[0, i - 1] > 1e-9 * chord:
-                v = _height(x, y, 1, j, x[0, i]) - y[0, i]
-                wa.pressure[edge[0, i]] = (alpha + beta * (x[0, i] - xc)) * max(v, 0.0) ** q
-        else:
-            add_load(load_b, flag_b, touched_b, edge[1, j], b_low * nx, b_low * ny)
-            add_load(load_b, flag_b, touched_b, next_b[edge[1, j]], b_high * nx, b_high * ny)
-            b_low = b_high = 0.0
-            j += 1
-            if j < n_b and x[1, j + 1] - x[1, j - 1] > 1e-9 * chord:
-                v = y[1, j] - _height(x, y, 0, i, x[1, j])
-                wb.pressure[edge[1, j - 1]] = (alpha + beta * (x[1, j] - xc)) * max(v, 0.0) ** q
-    if i < n_a:
-        add_load(load_a, flag_a, touched_a, edge[0, i], -a_low * nx, -a_low * ny)
-        add_load(load_a, flag_a, touched_a, next_a[edge[0, i]], -a_high * nx, -a_high * ny)
-    if j < n_b:
-        add_load(load_b, flag_b, touched_b, edge[1, j], b_low * nx, b_low * ny)
-        add_load(load_b, flag_b, touched_b, next_b[edge[1, j]], b_high * nx, b_high * ny)
-
-
-@kernel
-def quadrature(
-    a: Boundary, b: Boundary, x: Array, y: Array, edge: Ints, t: Array, n_a: int, n_b: int, chord: float,
-    point: Ints, value: Array,
-) -> int:  # fmt: skip
-    """Gauss points of the merged arcs, for statics with a consistent tangent: their number.
-
-    point (g, 4): low and high point on A, low and high on B. value (g, 5): weight (length), share of A's high point,
-    of B's, thickness d, and x along the chord.
-    """
-    _straighten(x, 0, n_a, chord)
-    _straighten(x, 1, n_b, chord)
-    i = j = count = 0
-    lo = 0.0
-    while i < n_a and j < n_b:
-        hi = min(x[0, i + 1], x[1, j + 1])
-        if hi > lo:
-            wa, wb = x[0, i + 1] - x[0, i], x[1, j + 1] - x[1, j]
-            for g in range(3):
-                z = lo + GAUSS_X[g] * (hi - lo)
-                ra, rb = (z - x[0, i]) / wa, (z - x[1, j]) / wb
-                point[count, 0], point[count, 1] = edge[0, i], a.next[edge[0, i]]
-                point[count, 2], point[count, 3] = edge[1, j], b.next[edge[1, j]]
-                value[count, 0] = GAUSS_W[g] * (hi - lo)
-                value[count, 1] = t[0, i, 0] + ra * (t[0, i, 1] - t[0, i, 0])
-                value[count, 2] = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])
-                value[count, 3] = (y[1, j] + rb * (y[1, j + 1] - y[1, j])) - (
-                    y[0, i] + ra * (y[0, i + 1] - y[0, i])
-                )
-                value[count, 4] = z
-                count += 1
-            lo = hi
-        if x[0, i + 1] <= lo:
-            i += 1
-        else:
-            j += 1
-    return count
-
-
-@kernel
-def _height(x: Array, y: Array, side: int, k: int, at: float) -> float:
-    width = x[side, k + 1] - x[side, k]
-    return (
-        y[side, k] if width <= 0.0 else y[side, k] + (y[side, k + 1] - y[side, k]) * (at - x[side, k]) / width
-    )
-
-
-class Scratch(NamedTuple):
-    """Work arrays of one pair: candidate leaves, crossings, regions, and one region's arcs."""
-
-    stack: Ints
-    pairs: Ints
-    crossings: NDArray[np.void]
-    regions: NDArray[np.void]
-    x: Array
-    y: Array
-    edge: Ints
-    t: Array
-
-
-def scratch(points: int) -> Scratch:
-    """Arrays for boundaries of up to ``points`` points."""
-    return Scratch(
-        np.zeros((256, 2), np.int64), np.zeros((16384, 2), np.int64), np.zeros(512, CROSSING), np.zeros(1024, REGION),
-        np.zeros((2, points + 3)), np.zeros((2, points + 3)), np.zeros((2, points + 3), np.int64),
-        np.zeros((2, points + 3, 2)),
-    )  # fmt: skip
-
-
-@kernel
-def _turn(r: Any, x: Array, y: Array, n_a: int, n_b: int, q: float, xc: float, yc: float) -> float:
-    """Direction of the force by Eq. 13-15, and the arcs in axes across and along it; returns x of the centroid there.
+@kernel(forceinline=True)
+def _turn(x: Array, y: Array, n_a: int, n_b: int, lean: float) -> tuple[float, float]:
+    """Turns the arcs into axes across and along the force; returns cosine and sine.
 
     An edge's normal times its length is its chord turned by a quarter, so with heights b (arc of A) and t (arc of
-    B) over the chord the weighted mean normals are (∫ d^q b' dx, −∫ d^q dx) and (−∫ d^q t' dx, ∫ d^q dx), d = t −
-    b: the force leans from the chord's normal by the slope of the middle line. On a flank, whose curvature changes
-    along it, the chord alone would be off by a degree at a depth of a twentieth of the module.
+    B) over the chord the weighted mean normals of Eq. 13 are (∫ d^q b' dx, −∫ d^q dx) and (−∫ d^q t' dx, ∫ d^q dx),
+    d = t − b, and by Eq. 15 the force leans from the chord's normal by the slope of the middle line. On a flank,
+    whose curvature changes along it, the chord alone would be off by a degree at a depth of a twentieth of the
+    module.
     """
-    lean = weight = 0.0
-    i = j = 0
-    lo = 0.0
-    chord = r["chord"]
-    while i < n_a and j < n_b:
-        xa, xb = x[0, i + 1], x[1, j + 1]
-        hi = min(xa, xb, chord)
-        if hi > lo and xa - x[0, i] > 1e-9 * chord and xb - x[1, j] > 1e-9 * chord:
-            ga = (y[0, i + 1] - y[0, i]) / (xa - x[0, i])
-            gb = (y[1, j + 1] - y[1, j]) / (xb - x[1, j])
-            d0 = y[1, j] + gb * (lo - x[1, j]) - y[0, i] - ga * (lo - x[0, i])
-            d1 = d0 + (gb - ga) * (hi - lo)
-            w = (0.5 * (d0 + d1) if q == 1.0 else max(0.5 * (d0 + d1), 0.0) ** q) * (hi - lo)
-            lean += 0.5 * w * (ga + gb)
-            weight += w
-            lo = hi
-        if xa <= xb:
-            i += 1
-        else:
-            j += 1
-    if weight <= 0.0:
-        return xc
-    lean = min(max(lean / weight, -1.0), 1.0)  # beyond 45° the arcs are no graphs over the chord
+    lean = min(max(lean, -1.0), 1.0)  # beyond 45° the arcs are no graphs over the chord
     c = 1.0 / np.sqrt(1.0 + lean * lean)
     s = lean * c
-    for k in range(n_a + 1):
-        x[0, k], y[0, k] = c * x[0, k] + s * y[0, k], -s * x[0, k] + c * y[0, k]
-    for k in range(n_b + 1):
-        x[1, k], y[1, k] = c * x[1, k] + s * y[1, k], -s * x[1, k] + c * y[1, k]
-    nx, ny = r["nx"], r["ny"]
-    r["nx"], r["ny"] = c * nx - s * ny, c * ny + s * nx
-    return c * xc + s * yc
+    for side in range(2):
+        for k in range((n_a if side == 0 else n_b) + 1):
+            x[side, k], y[side, k] = c * x[side, k] + s * y[side, k], -s * x[side, k] + c * y[side, k]
+    return c, s
 
 
-@kernel
-def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
-    """Candidate leaf pairs into ``s.pairs``; their number, or MANY."""
-    return candidates(a, pose_a, b, pose_b, margin, s.stack, s.pairs)
+@kernel(forceinline=True)
+def _distribute(
+    a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, xa: Array, ya: Array, xb: Array, yb: Array,
+    edge_a: Ints, edge_b: Ints, ta: Array, tb: Array, n_a: int, n_b: int, k: float,
+) -> None:  # fmt: skip
+    """Adds the loads of one region, p = k d, to both bodies' points; (nx, ny) is the direction of the force on B.
+
+    Arcs as ``region.arcs`` leaves them, both graphs over the chord. Between two vertices p and the shape functions
+    are linear, so their product has a closed form.
+    """
+    load_a, flag_a, touched_a, pressure_a = wa.point_load, wa.point_flag, wa.touched, wa.pressure
+    load_b, flag_b, touched_b, pressure_b = wb.point_load, wb.point_flag, wb.touched, wb.pressure
+    wall = WALL * xa[n_a]
+    next_a, next_b = a.next, b.next
+    lo = d0 = a_low = a_high = b_low = b_high = carry_a = carry_b = 0.0
+    i = j = 0
+    ga, gb = _slope(xa, ya, 0), _slope(xb, yb, 0)
+    sa, sb = _rate(xa, ta, 0), _rate(xb, tb, 0)
+    ta0, tb0 = ta[0, 0], tb[0, 0]
+    while True:
+        on_a = xa[i + 1] <= xb[j + 1]
+        if on_a:
+            hi = xa[i + 1]
+            d1 = yb[j] + gb * (hi - xb[j]) - ya[i + 1]
+            ta1, tb1 = ta[i, 1], tb[j, 0] + sb * (hi - xb[j])
+        else:
+            hi = xb[j + 1]
+            d1 = yb[j + 1] - ya[i] - ga * (hi - xa[i])
+            ta1, tb1 = ta[i, 0] + sa * (hi - xa[i]), tb[j, 1]
+        w = k * (hi - lo) / 6.0
+        p0, p1 = w * d0, w * d1
+        total = 3.0 * (p0 + p1)
+        f = p0 * (2.0 * ta0 + ta1) + p1 * (ta0 + 2.0 * ta1)
+        a_low, a_high = a_low + (total - f), a_high + f
+        f = p0 * (2.0 * tb0 + tb1) + p1 * (tb0 + 2.0 * tb1)
+        b_low, b_high = b_low + (total - f), b_high + f
+        if on_a:
+            f = carry_a + a_low
+            add_load(load_a, flag_a, touched_a, edge_a[i], -f * nx, -f * ny)
+            carry_a, a_low, a_high = a_high, 0.0, 0.0
+            i += 1
+            if i == n_a:
+                break
+            ga, sa, ta1 = _slope(xa, ya, i), _rate(xa, ta, i), ta[i, 0]
+            if xa[i + 1] - xa[i - 1] > wall:
+                pressure_a[edge_a[i]] = k * max(d1, 0.0)  # Eq. 12, at a node inside
+        else:
+            f = carry_b + b_high
+            add_load(load_b, flag_b, touched_b, next_b[edge_b[j]], f * nx, f * ny)
+            carry_b, b_low, b_high = b_low, 0.0, 0.0
+            j += 1
+            if j == n_b:
+                break
+            gb, sb, tb1 = _slope(xb, yb, j), _rate(xb, tb, j), tb[j, 0]
+            if xb[j + 1] - xb[j - 1] > wall:
+                pressure_b[edge_b[j - 1]] = k * max(d1, 0.0)
+        lo, d0, ta0, tb0 = hi, d1, ta1, tb1
+    if i < n_a:
+        f = carry_a + a_low
+        add_load(load_a, flag_a, touched_a, edge_a[i], -f * nx, -f * ny)
+        carry_a, i = a_high, i + 1
+    add_load(load_a, flag_a, touched_a, next_a[edge_a[i - 1]], -carry_a * nx, -carry_a * ny)
+    if j < n_b:
+        f = carry_b + b_high
+        add_load(load_b, flag_b, touched_b, next_b[edge_b[j]], f * nx, f * ny)
+        carry_b, j = b_low, j + 1
+    add_load(load_b, flag_b, touched_b, edge_b[j - 1], carry_b * nx, carry_b * ny)
 
 
-@kernel
+@kernel(forceinline=True)
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, q: float, spread: bool, s: Scratch,
@@ -301,76 +197,44 @@ def contact(
     """Alg. 1–3 for one pair of bodies: fills ``s.regions`` and, if ``spread``, adds the loads of their points.
 
     k: stiffness, pressure (a force per area in 2-D). q: the pressure exponent. Returns the number of regions or an
-    error code of ``region``. The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
+    error code of ``scratch``. The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
     """
-    n = find_regions(a, wa, pose_a, qa, b, wb, pose_b, qb, s.pairs, n_pairs, stamp, s.crossings, s.regions)
+    displace_near(a, wa, qa, s.near[0], s.runs[0], stamp)
+    displace_near(b, wb, qb, s.near[1], s.runs[1], stamp)
+    n = find_regions(a, wa, pose_a, b, wb, pose_b, n_pairs, stamp, s)
+    x, y = s.x, s.y
     for i in range(n):
         r = s.regions[i]
-        n_a, n_b = arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, s.x, s.y, s.edge, s.t)
+        if r["arcs"] == 1:
+            n_a, n_b = arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, x, y, s.edge, s.t)
+        else:
+            n_a, n_b = all_arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, s)
         if n_a == MANY:
             return MANY
-        area, xc, yc = area_and_centroid(s.x, s.y, n_a, n_b)
-        r["area"], r["force"], r["give"] = area, k * area, 1.0  # Eq. 5
+        area, xc, yc = area_and_centroid(x, y, s.t, n_a, n_b)
         ux, uy = -r["ny"], r["nx"]
+        r["area"], r["force"], r["give"] = area, k * area, 1.0  # Eq. 5
         r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
         if area <= 0.0:
             continue
-        xc = _turn(r, s.x, s.y, n_a, n_b, q, xc, yc)
-        if spread:
-            resultant(a, wa, pose_a, b, wb, pose_b, r, s.edge, n_a, n_b, k * r["chord"])
-            distribute(
-                a,
-                wa,
-                b,
-                wb,
-                r["nx"],
-                r["ny"],
-                s.x,
-                s.y,
-                s.edge,
-                s.t,
-                n_a,
-                n_b,
-                r["force"],
-                area,
-                xc,
-                s.x[0, n_a],
-                q,
-            )
+        graphs = r["arcs"] == 1 and q == 1.0
+        graphs = graphs and _straight(x[0], n_a, r["chord"]) and _straight(x[1], n_b, r["chord"])
+        if graphs:
+            lean = _lean(x[0], y[0], x[1], y[1], n_a, n_b) / area
+        else:
+            lean = slabs.lean(x, y, s.t, n_a, n_b, q, s.cut)
+        c, sn = _turn(x, y, n_a, n_b, lean)
+        r["nx"], r["ny"] = c * uy + sn * ux, sn * uy - c * ux
+        if not spread:
+            continue
+        nx, ny = r["nx"], r["ny"]
+        resultant(a, wa, pose_a, b, wb, pose_b, r, s.edge, n_a, n_b, k * r["chord"])
+        xc = c * xc + sn * yc
+        if graphs and _straight(x[0], n_a, x[0, n_a]) and _straight(x[1], n_b, x[0, n_a]):
+            _distribute(
+                a, wa, b, wb, nx, ny, x[0], y[0], x[1], y[1], s.edge[0], s.edge[1], s.t[0], s.t[1], n_a, n_b,
+                r["force"] / area,
+            )  # fmt: skip
+        else:
+            slabs.distribute(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
     return n
-
-
-def literal(arc: Array, other: Array, q: float) -> tuple[Array, Array, Array, Array]:
-    """Eq. 8–11 for one body: the nodes of ``arc`` inside the other body, its two end points the crossings.
-
-    arc (n + 2, 2): crossing, nodes inside, crossing, in the order of the body's perimeter; other (m, 2): the other
-    body's arc between the same crossings. A node whose normal misses that arc (one on a side wall; the paper leaves
-    this case open) gets distance 0, so no force. Returns normals (n, 2) towards the other perimeter, distances (n,),
-    tributary lengths (n,), and the weights A_trib d^q (n,) of Eq. 13.
-    """
-    tangent = arc[2:] - arc[:-2]
-    normal = np.column_stack([-tangent[:, 1], tangent[:, 0]]) / np.hypot(*tangent.T)[:, None]  # Eq. 8
-    step = np.hypot(*np.diff(arc, axis=0).T)
-    tributary = 0.5 * (step[1:] + step[:-1])  # Eq. 11
-    p = arc[1:-1]
-    r, s = other[:-1], np.diff(other, axis=0)
-    cross = normal[:, None, 0] * s[None, :, 1] - normal[:, None, 1] * s[None, :, 0]
-    rel = r[None] - p[:, None]
-    with np.errstate(divide="ignore", invalid="ignore"):
-        along = (rel[..., 0] * s[None, :, 1] - rel[..., 1] * s[None, :, 0]) / cross
-        on = (rel[..., 0] * normal[:, None, 1] - rel[..., 1] * normal[:, None, 0]) / cross
-    along = np.where((on >= -1e-12) & (on <= 1 + 1e-12), along, np.inf)
-    pick = np.abs(along).argmin(1)
-    distance = along[np.arange(len(p)), pick]  # Eq. 9; its sign turns the normal to the other perimeter
-    distance = np.where(np.isfinite(distance), distance, 0.0)
-    normal = normal * np.where(distance < 0, -1.0, 1.0)[:, None]
-    distance = np.abs(distance)
-    return normal, distance, tributary, tributary * distance**q
-
-
-def literal_alpha(normal: Array, weight: Array, nodes: Array, centroid: Array, force: Array) -> float:
-    """α of Eq. 22: least squares over force and moment about the centroid, ``force`` (2,) the global force."""
-    f = weight[:, None] * normal
-    arm = nodes - centroid
-    b = np.array([f[:, 0].sum(), f[:, 1].sum(), (arm[:, 0] * f[:, 1] - arm[:, 1] * f[:, 0]).sum()])
-    return float(b[:2] @ force / (b @ b))

@@ -13,17 +13,42 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, add_load, place_leaves
-from rigidarea.flexible.nodal import Scratch
-from rigidarea.flexible.region import MANY
+from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.place import add_load, displace_near, place_near
+from rigidarea.flexible.region import strip
+from rigidarea.flexible.scratch import MANY, Scratch
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
 
 
-@kernel
+@kernel(forceinline=True)
+def _facing(
+    at_a: Array, next_a: Ints, low: int, high: int, at_b: Array, next_b: Ints, first_b: Ints, size_b: Ints,
+    pairs: Ints, start: int, end: int, reach: float, out: Ints,
+) -> int:  # fmt: skip
+    """Of the leaves of B paired with one of A, those not wholly outside A's leaf or deeper than ``reach``."""
+    ox, oy, ux, uy, above, below = strip(at_a, next_a, low, high)
+    above += reach * np.sqrt(ux * ux + uy * uy)
+    count = 0
+    for m in range(start, end):
+        leaf = pairs[m, 1]
+        low_b, high_b = first_b[leaf], first_b[leaf] - size_b[leaf]
+        j = next_b[high_b - 1]
+        lowest = highest = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
+        for j in range(low_b, high_b):
+            o = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
+            lowest, highest = min(lowest, o), max(highest, o)
+        if lowest <= above and highest >= below:
+            out[count] = leaf
+            count += 1
+    return count
+
+
+@kernel(forceinline=True)
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, reach: float, spread: bool, s: Scratch,
@@ -33,75 +58,91 @@ def contact(
     k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
     Returns the number of resultants, or MANY.
     """
-    # arrays out of the tuples once: inside the loops every access would count references
+    displace_near(a, wa, qa, s.near[0], s.runs[0], stamp)
+    displace_near(b, wb, qb, s.near[1], s.runs[1], stamp)
+    place_near(a, wa, pose_a, s.near[0], s.runs[0], stamp)
+    place_near(b, wb, pose_b, s.near[1], s.runs[1], stamp)
     next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
     next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
-    place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
-    place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
     load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
     load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
-    pairs, regions = s.pairs, s.regions
-    count = 0
-    last = -1
-    fx = fy = moment = stiff = 0.0
-    for m in range(n_pairs + 1):
-        leaf_a = pairs[m, 0] if m < n_pairs else -2
-        if (
-            leaf_a != last
-        ):  # pairs come grouped by the slave's leaf or not: a group is whatever is consecutive
-            if stiff > 0.0:
-                if count == len(regions):
-                    return MANY
-                r = regions[count]
-                f = np.hypot(fx, fy)
-                r["force"], r["nx"], r["ny"] = f, fx / f, fy / f
-                # the point of the line of action nearest to A's origin: the moment about that origin is kept
-                r["x"], r["y"] = pose_a[0] + r["ny"] * moment / f, pose_a[1] - r["nx"] * moment / f
-                r["x_chord"], r["y_chord"], r["chord"], r["area"] = r["x"], r["y"], stiff / k, f / k
-                r["give"] = 1.0
-                count += 1
-            fx = fy = moment = stiff = 0.0
-            last = leaf_a
-        if m == n_pairs:
-            break
-        leaf_b = pairs[m, 1]
-        for i in range(first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]):
+    pairs, regions, leaves = s.pairs, s.regions, s.edge[0]
+    count = end = 0
+    while end < n_pairs:
+        # a group of pairs with one leaf of the slave
+        start, leaf_a = end, pairs[end, 0]
+        while end < n_pairs and pairs[end, 0] == leaf_a:
+            end += 1
+        low, high = first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]
+        facing = _facing(
+            at_a, next_a, low, high, at_b, next_b, first_b, size_b, pairs, start, end, reach, leaves
+        )
+        fx = fy = moment = stiff = 0.0
+        for i in range(low, high if facing > 0 else low):
             i1 = next_a[i]
             px, py = at_a[i, 0], at_a[i, 1]
             tx, ty = at_a[i1, 0] - px, at_a[i1, 1] - py
-            length = np.hypot(tx, ty)
+            length = np.sqrt(tx * tx + ty * ty)
             tx, ty = tx / length, ty / length
             nx, ny = ty, -tx  # outward
-            for j in range(first_b[leaf_b], first_b[leaf_b] - size_b[leaf_b]):
-                j1 = next_b[j]
+            total = first = 0.0  # force on the edge, and its moment about the edge's start
+            for m in range(facing):
+                j = first_b[leaves[m]]
+                stop = j - size_b[leaves[m]]
                 rx, ry = at_b[j, 0] - px, at_b[j, 1] - py
-                sx, sy = at_b[j1, 0] - px, at_b[j1, 1] - py
-                x_r, x_s = rx * tx + ry * ty, sx * tx + sy * ty
-                if x_s >= x_r:  # facing the same way: no contact
-                    continue
-                lo, hi = max(0.0, x_s), min(length, x_r)
-                if hi <= lo:
-                    continue
-                g_r, g_s = rx * nx + ry * ny, sx * nx + sy * ny
-                if min(g_r, g_s) >= 0.0 or max(g_r, g_s) < -reach:
-                    continue
-                for g in range(2):
-                    x = lo + GAUSS[g] * (hi - lo)
-                    eta = (x_r - x) / (x_r - x_s)
-                    gap = g_r + eta * (g_s - g_r)
-                    if gap >= 0.0 or gap < -reach:
-                        continue
-                    w = 0.5 * (hi - lo) * k
-                    f = -gap * w
-                    xi = x / length
-                    if spread:
-                        add_load(load_a, flag_a, touched_a, i, -(1.0 - xi) * f * nx, -(1.0 - xi) * f * ny)
-                        add_load(load_a, flag_a, touched_a, i1, -xi * f * nx, -xi * f * ny)
-                        add_load(load_b, flag_b, touched_b, j, (1.0 - eta) * f * nx, (1.0 - eta) * f * ny)
-                        add_load(load_b, flag_b, touched_b, j1, eta * f * nx, eta * f * ny)
-                    fx += f * nx
-                    fy += f * ny
-                    hx, hy = px + x * tx - pose_a[0], py + x * ty - pose_a[1]
-                    moment += (hx * ny - hy * nx) * f
-                    stiff += w
+                x_s, g_s = rx * tx + ry * ty, rx * nx + ry * ny
+                carry = 0.0
+                while j < stop:
+                    j1 = next_b[j]
+                    x_r, g_r = x_s, g_s
+                    rx, ry = at_b[j1, 0] - px, at_b[j1, 1] - py
+                    x_s, g_s = rx * tx + ry * ty, rx * nx + ry * ny
+                    at_low, at_high = carry, 0.0
+                    # the master's edge faces the slave's, over it, and penetrates, no deeper than reach
+                    if (
+                        x_s < x_r
+                        and x_s < length
+                        and x_r > 0.0
+                        and min(g_r, g_s) < 0.0
+                        and max(g_r, g_s) >= -reach
+                    ):
+                        lo, hi = max(0.0, x_s), min(length, x_r)
+                        w, inverse = 0.5 * (hi - lo) * k, 1.0 / (x_r - x_s)
+                        for g in range(2):
+                            x = lo + GAUSS[g] * (hi - lo)
+                            eta = (x_r - x) * inverse
+                            gap = g_r + eta * (g_s - g_r)
+                            if -reach <= gap < 0.0:
+                                f = -gap * w
+                                at_low += f - eta * f
+                                at_high += eta * f
+                                total += f
+                                first += x * f
+                                stiff += w
+                    if spread and at_low != 0.0:
+                        add_load(load_b, flag_b, touched_b, j, at_low * nx, at_low * ny)
+                    carry = at_high
+                    j += 1
+                if spread and carry != 0.0:
+                    add_load(load_b, flag_b, touched_b, next_b[stop - 1], carry * nx, carry * ny)
+            if total != 0.0:
+                if spread:
+                    end_load = first / length
+                    f = end_load - total
+                    add_load(load_a, flag_a, touched_a, i, f * nx, f * ny)
+                    add_load(load_a, flag_a, touched_a, i1, -end_load * nx, -end_load * ny)
+                fx += total * nx
+                fy += total * ny
+                moment += ((px - pose_a[0]) * ny - (py - pose_a[1]) * nx) * total - first
+        if stiff > 0.0:
+            if count == len(regions):
+                return MANY
+            r = regions[count]
+            f = np.sqrt(fx * fx + fy * fy)
+            r["force"], r["nx"], r["ny"] = f, fx / f, fy / f
+            # the point of the line of action nearest to A's origin: the moment about that origin is kept
+            r["x"], r["y"] = pose_a[0] + r["ny"] * moment / f, pose_a[1] - r["nx"] * moment / f
+            r["x_chord"], r["y_chord"], r["chord"], r["area"] = r["x"], r["y"], stiff / k, f / k
+            r["give"] = 1.0
+            count += 1
     return count

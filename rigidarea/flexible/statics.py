@@ -85,11 +85,13 @@ def solve(
                 w.displacement[:] = u
                 w.displacement_stamp[:] = stamp
         n_pairs = nodal.search(a, pa, b, pb, 0.0 if stamp == 1 else 2.0 * _reach(wa, wb), s)
-        n = find_regions(a, wa, pa, none, b, wb, pb, none, s.pairs, n_pairs, stamp, s.crossings, s.regions)
+        n = find_regions(a, wa, pa, b, wb, pb, n_pairs, stamp, s)
         if n < 0:
             raise RuntimeError(
                 f"static contact: regions cannot be found (code {n}) after {stamp} evaluations"
             )
+        if (s.regions["arcs"][:n] > 1).any():
+            raise RuntimeError("static contact: expected one arc of each body a region, got several")
         rows = []
         for r in s.regions[:n]:
             n_a, n_b = arcs(a, wa, pa, none, b, wb, pb, none, r, stamp, s.x, s.y, s.edge, s.t)

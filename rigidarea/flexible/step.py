@@ -18,9 +18,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal, segment
-from rigidarea.flexible.boundary import Boundary, Work, add_load, clear_loads, to_nodes
+from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import hub_row
 from rigidarea.flexible.frame import inertia_forces
+from rigidarea.flexible.place import add_load, clear_loads, to_nodes
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -156,7 +157,9 @@ class Buffers(NamedTuple):
     modal_residual: Array
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
     counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
-    springs: Array  # (REGIONS_KEPT b, 20) of the regions: bodies, nodes, direction, stiffness, force, tangent row
+    springs: (
+        Array  # (REGIONS_KEPT b, 20) of the regions: bodies, nodes, direction, stiffness, force, tangent row
+    )
     apart: Array  # (1,) largest difference of a region's k A from the force that it hands on (``condense``)
 
 

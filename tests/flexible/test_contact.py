@@ -6,7 +6,8 @@ import shapely
 from shapely import affinity
 
 from rigidarea.flexible import nodal, segment
-from rigidarea.flexible.boundary import build, clear_loads, workspace
+from rigidarea.flexible.boundary import build, workspace
+from rigidarea.flexible.place import clear_loads
 
 NONE = np.zeros(0)
 
