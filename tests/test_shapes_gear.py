@@ -230,3 +230,11 @@ def test_the_gap_is_the_backlash_along_the_line_of_action():
 def test_bad_parameters_are_named(settings, message):
     with pytest.raises(ValueError, match=message):
         involute_gear(**{"module": 1.0, "teeth": 20, **settings})
+
+
+def test_a_rack_tip_rounded_all_over_leaves_no_land_at_the_root():
+    """Fillets of neighbouring teeth meet in one point, not in two a rounding error apart: an edge without length has
+    no direction, and a mesher would take it for a feature."""
+    ring = involute_gear(2e-3, 23, addendum=1.2, dedendum=1.45, tolerance=1e-7).rings[0]
+    edge = np.hypot(*(np.roll(ring, -1, 0) - ring).T)
+    assert edge.min() > 1e-6  # of the spacing that the tolerance asks for, 1e-5 and more
