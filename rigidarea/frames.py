@@ -157,8 +157,8 @@ def planned_steps(s: Any, shapes: int, stamp: int, dt: float) -> int:
     n = max(1.0, math.ceil(dt * frequency / s.phase))
     if n > s.max_steps:
         s.wanted = np.int64(min(n, 1e15))
-        return s.max_steps
-    return np.int64(n)
+        return int(s.max_steps)
+    return int(n)
 
 
 @callback(types.int64(types.uintp, types.float64, types.int64, types.int64, types.int64))
@@ -169,8 +169,8 @@ def advance(space: int, dt: float, frames: int, steps: int, shapes: int) -> int:
     g = floats(space + s.space_gravity, 2)
     gravity = math.hypot(g[0], g[1])
     total = 0
-    behind = 0.0  # time by which positions are behind
     for _ in range(frames):
+        behind = 0.0  # time by which positions are behind
         left = steps
         if steps == 0:
             left = planned_steps(s, shapes, np.int64(_timestamp(space)), dt)
@@ -183,7 +183,7 @@ def advance(space: int, dt: float, frames: int, steps: int, shapes: int) -> int:
             if s.ballistic and left > 1 and wait == 0 and s.touched != stamp and shapes <= MOST_SHAPES:
                 most = left * fine + behind
                 free = free_time(s, load_pool(s), load_tables(s), load_work(s), shapes, gravity, most)
-                taken = min(left, max(1, np.int64((free - behind) / fine)))
+                taken = int(min(float(left), max(1.0, (free - behind) / fine)))
                 patience = 1 if taken > 1 else min(2 * patience, MOST_PATIENCE)
                 wait = patience
             wait = max(0, wait - 1)
@@ -193,9 +193,9 @@ def advance(space: int, dt: float, frames: int, steps: int, shapes: int) -> int:
             behind = 0.5 * h
             left -= taken
             total += 1
+        _shift(space, s, at, behind, True)
         if s.stop != 0:
             break
-    _shift(space, s, at, behind, True)
     tables = load_tables(s)
     for i in range(shapes):
         if tables.shapes[i].outline >= 0:

@@ -384,6 +384,7 @@ def region_force(
             softer = FLAT * law.followed / stiffest
             elastic *= softer
             stiffness *= softer
+            elasticity = 0.0  # a spring of our own making must not swing
 
     couple = 0.0
     if r.resting:

@@ -1,4 +1,4 @@
-"""rigidarea itself: the rigid level, with equal steps and with its own choice of steps."""
+"""rigidarea itself, the rigid level: frames in so many steps, frames as the library cuts them, explicit steps."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ import pymunk
 import rigidarea
 
 from ..scene import Body, Circle, Polygon, Scene
-from .base import Run, Settings, drive, has_curves, rigid_only, samplings
+from .base import Run, Settings, has_curves, rigid_only, samplings
 from .chipmunk import SpaceRun, add_pivots, make_body, surface
 
 
@@ -35,7 +35,7 @@ def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pym
     """A space with the scene's bodies and area contact attached: (space, bodies, contact).
 
     Settings: `stiffness` in multiples of the scene's pressure (none: the library chooses); `sampling` of
-    curves over the body size; `phase`; any other setting goes to `rigidarea.attach`.
+    curves over the body size; `phase`; any other setting but `steps` goes to `rigidarea.attach`.
     """
     space = pymunk.Space()
     space.gravity = scene.gravity
@@ -73,23 +73,43 @@ class StepRun(SpaceRun):
 
 
 class FrameRun(SpaceRun):
-    """Frames as a user asks for them: `contact.step(1/60)` from Python."""
+    """Frames as a user asks for them, `contact.step(1/60, frames)`: all of them in one call, in machine code."""
 
-    def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any) -> None:
-        super().__init__(scene, space, bodies, contact.steps(scene.frame))
-        self.contact, self.frame = contact, scene.frame
+    def __init__(
+        self,
+        scene: Scene,
+        space: pymunk.Space,
+        bodies: list[pymunk.Body],
+        contact: Any,
+        steps: int | None = None,
+    ) -> None:
+        super().__init__(scene, space, bodies, contact.steps(scene.frame) if steps is None else steps)
+        self.contact, self.frame, self.wanted = contact, scene.frame, steps
 
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; a contact that fails leaves states that are not finite."""
         try:
-            drive(self.contact.step, frames, self.frame)
+            self.contact.step(self.frame, frames, self.wanted)
         except rigidarea.SimulationError:
             for body in self.bodies:
                 body.position = (math.nan, math.nan)
 
 
+def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
+    """As for the peers, and finer in gears (clearances are finer than convex pieces can follow); discs too."""
+    if "gears" in scene.tags:
+        return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
+    known = samplings(scene, quick)
+    if known == [{}] and has_curves(scene):
+        return [{"sampling": value} for value in ((1e-4, 1e-5) if quick else (1e-3, 1e-4, 1e-5))]
+    return known
+
+
 class Area:
-    """Rigid level, equal steps: their number from the stiffness and `phase` (ω h) at the start, then kept."""
+    """Frames in a given number of steps, contacts too stiff for the step taken implicitly (`integration`).
+
+    Settings: `stiffness`, `steps` a frame, `sampling`; see `area_space`.
+    """
 
     name = "rigidarea"
     ours = True
@@ -99,49 +119,67 @@ class Area:
         return rigid_only(scene)
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
-        """Stiffness × phase × sampling."""
-        stiffness = (1e2, 1e3, 1e4, 1e5, 1e6) if quick else (1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7)
-        phases: tuple[float, ...] = (1.0,) if quick else (0.5, 1.0)
-        if "impact" in scene.tags:  # restitution wants several steps within a contact
-            phases = (0.25, 1.0) if quick else (0.1, 0.25, 0.5, 1.0)
+        """Stiffness × steps × sampling."""
+        stiffness = (1e4, 1e8) if quick else (1e3, 1e4, 1e5, 1e6, 1e8)
+        steps = (1, 2, 4, 16, 64) if quick else (1, 2, 4, 8, 16, 32, 64)
         return [
-            {"stiffness": k, "phase": phase, **sampling}
+            {"stiffness": k, "steps": n, **sampling}
             for k in stiffness
-            for phase in phases
-            for sampling in self._samplings(scene, quick)
+            for n in steps
+            for sampling in area_samplings(scene, quick)
         ]
 
-    def _samplings(self, scene: Scene, quick: bool) -> list[dict[str, float]]:
-        if "gears" in scene.tags:  # clearances are finer than what convex pieces can follow
-            return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
-        known = samplings(scene, quick)
-        if known == [{}] and has_curves(scene):
-            return [{"sampling": value} for value in ((1e-4, 1e-5) if quick else (1e-3, 1e-4, 1e-5))]
-        return known
-
     def build(self, scene: Scene, settings: Settings) -> Run:
-        """An attached space."""
-        return StepRun(scene, *area_space(scene, settings), settings.get("steps"))
+        """An attached space, stepped by frames."""
+        return FrameRun(scene, *area_space(scene, settings), settings.get("steps"))
 
 
 class AreaFrames(Area):
-    """Rigid level as a user runs it: `attach(space)` and `contact.step(frame)`, its own stiffness and
-    steps.
+    """As a user runs it: `attach(space)` and `contact.step(frame)`, stiffness and steps chosen by the library.
+
+    Settings: the `penetration` allowed, or `stiffness` where there is no gravity to choose it by; `phase`; `sampling`.
     """
 
     name = "rigidarea-frame"
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
-        """Allowed penetration × sampling; stiffness × sampling where there is no gravity to choose it by."""
+        """Penetration or stiffness × phase × sampling."""
         values = (2e-4,) if quick else (1e-2, 1e-3, 2e-4, 1e-5)
         knobs: list[dict[str, float]] = [{"penetration": value} for value in values]
         if scene.gravity == (0.0, 0.0):
-            knobs = [{"stiffness": value} for value in ((1e2, 1e4) if quick else (1e1, 1e2, 1e3, 1e4, 1e5))]
-        return [{**knob, **sampling} for knob in knobs for sampling in self._samplings(scene, quick)]
+            knobs = [{"stiffness": value} for value in ((1e2, 1e4) if quick else (1e2, 1e4, 1e6))]
+        phases: list[dict[str, float]] = [{}] if quick else [{}, {"phase": 2.0}]
+        return [
+            {**knob, **phase, **sampling}
+            for knob in knobs
+            for phase in phases
+            for sampling in area_samplings(scene, quick)
+        ]
+
+
+class AreaExplicit(Area):
+    """Equal explicit steps (symplectic Euler) of F = k A, their number from `stiffness` and `phase` (ω h), kept."""
+
+    name = "rigidarea-explicit"
+
+    def settings(self, scene: Scene, quick: bool) -> list[Settings]:
+        """Stiffness × phase × sampling."""
+        stiffness = (1e3, 1e5) if quick else (1e2, 1e3, 1e4, 1e5, 1e6)
+        phases = (3.0,) if quick else (0.5, 1.0, 3.0)
+        if "impact" in scene.tags:  # restitution wants several steps within a contact
+            phases = (0.5,) if quick else (0.25, 1.0, 3.0)
+        return [
+            {"stiffness": k, "phase": phase, **sampling}
+            for k in stiffness
+            for phase in phases
+            for sampling in area_samplings(scene, quick)
+        ]
 
     def build(self, scene: Scene, settings: Settings) -> Run:
-        """An attached space, stepped by frames."""
-        return FrameRun(scene, *area_space(scene, settings))
+        """An attached space, stepped by Chipmunk's own function."""
+        return StepRun(
+            scene, *area_space(scene, {"integration": "explicit", **settings}), settings.get("steps")
+        )
 
 
-PEERS = (Area(), AreaFrames())
+PEERS = (Area(), AreaFrames(), AreaExplicit())

@@ -17,7 +17,7 @@ import shapely
 from ...kernel.jit import njit
 from ...outline import Outline
 from ..scene import Array, Scene
-from .area import Area, StepRun, area_space
+from .area import AreaExplicit, StepRun, area_space
 from .base import Run, Settings
 
 EXPONENT = 0.5
@@ -55,8 +55,8 @@ def gate(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
     arbiter.process_collision = has_node_inside(a, b) and has_node_inside(b, a)
 
 
-class Literal(Area):
-    """The paper's method; the settings are those of `Area`, and `spacing`."""
+class Literal(AreaExplicit):
+    """The paper's method; the settings are those of `AreaExplicit`, and `spacing`."""
 
     name = "literal"
     ours = False
@@ -69,7 +69,9 @@ class Literal(Area):
         """An attached space whose contacts have to pass the gate."""
         more = {k: v for k, v in settings.items() if k != "spacing"}
         spacing = settings.get("spacing", math.inf) * scene.size
-        space, bodies, contact = area_space(scene, {**more, "direction": "nodal", "exponent": EXPONENT})
+        space, bodies, contact = area_space(
+            scene, {"integration": "explicit", **more, "direction": "nodal", "exponent": EXPONENT}
+        )
         for shape in space.shapes:
             outline = Outline.from_pymunk(shape)
             if math.isfinite(spacing):
