@@ -43,8 +43,9 @@ def turn(
     pivot = pymunk.PivotJoint(space.static_body, driven, at)
     pivot.collide_bodies = True
     space.add(pivot)
-    # Eq. 8-15 literally, as a verification asks; the chord would lean by another third of a degree on gear flanks
-    contact = rigidarea.attach(space, stiffness=stiffness, direction="nodal")
+    # Eq. 5 and 8-15 literally, as a verification asks: the chord would lean by another third of a degree on gear
+    # flanks, and a contact taken implicitly is softer than k where the step is long for it
+    contact = rigidarea.attach(space, stiffness=stiffness, direction="nodal", integration="explicit")
     n = round(duration / h)
     x, v = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))
     force, regions = np.zeros((n, 2)), np.zeros((n, REGIONS_KEPT, 5))
