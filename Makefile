@@ -27,11 +27,13 @@ test: .venv/.installed lint
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
 
-# Redraws the studies: chart, atlas and comparison, under $(OUT).
+# Redraws all that README.md and docs/study.md show: chart, atlas, comparison, stills, into docs/ ($(OUT) has the rest).
 studies: .venv/.installed
-	$(BIN)/python -m rigidarea chart --out $(OUT)/chart
-	$(BIN)/python -m rigidarea atlas --out $(OUT)/atlas
-	$(BIN)/python -m rigidarea compare --out $(OUT)/compare
+	$(BIN)/python -m rigidarea chart --out $(OUT)/chart --docs docs
+	$(BIN)/python -m rigidarea atlas --out $(OUT)/atlas --docs docs
+	$(BIN)/python -m rigidarea compare --out $(OUT)/compare --docs docs
+	$(BIN)/python -m rigidarea demo all --no-film --out $(OUT)/gallery
+	cp $(OUT)/gallery/*.png docs/
 
 # Rewrites constraints.txt from what is installed now (after a deliberate upgrade).
 constraints: .venv/.installed

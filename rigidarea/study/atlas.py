@@ -47,6 +47,16 @@ class Variant:
     peer: str
     settings: Mapping[str, Any]
 
+    @property
+    def area(self) -> bool:
+        """Whether its contacts are areas: it has a stiffness."""
+        return self.peer.startswith("rigidarea") or self.peer == "literal"
+
+    @property
+    def given(self) -> bool:
+        """Whether it is area contact whose stiffness is for the map to give, not for the library to choose."""
+        return self.area and self.peer != "rigidarea-frame"
+
 
 Outcome = tuple[str, float]
 """(verdict, measure): "pass" or how it failed, and the number that says so."""
@@ -71,11 +81,12 @@ class Map:
 
 
 def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:
-    """The usual variants: rigidarea by frames, pymunk, Box2D, the paper's method (ten nodes a side); `changes`
-    replace settings, None drops the engine.
+    """The usual variants: rigidarea by frames and in explicit steps, pymunk, Box2D, the paper's method (ten nodes a
+    side); `changes` replace settings, None drops the engine.
     """
     usual: dict[str, dict[str, Any]] = {
         "rigidarea": {"peer": "rigidarea-frame"},
+        "explicit": {"peer": "rigidarea-explicit", "phase": 0.5},
         "pymunk": {"peer": "pymunk", "steps": 4, "iterations": 10, "slop": 1e-3},
         "box2d": {"peer": "box2d", "steps": 1, "substeps": 4, "stiff": False, "length": 1},
         "literal": {"peer": "literal", "phase": 0.5, "spacing": 0.1},

@@ -27,7 +27,7 @@ RESOLUTION = 1e-4
 hundredth of what friction, restitution and mass of real bodies are known to.
 """
 REPEATS, QUICK_REPEATS = 5, 2
-PATIENCE_S, QUICK_PATIENCE_S = 1.0, 0.2
+PATIENCE_S, QUICK_PATIENCE_S = 0.5, 0.2
 """Time (s) after which a run is not repeated: its noise is small beside it."""
 
 

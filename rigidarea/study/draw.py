@@ -22,6 +22,7 @@ COLOURS = {
     "pymunk": "#D55E00",
     "box2d": "#009E73",
     "literal": "#CC79A7",
+    "rigidarea-explicit": "#999999",
     "rigidarea-implicit": "#000000",
     "compliant": "#CC79A7",
     "modal": "#E69F00",
@@ -29,6 +30,7 @@ COLOURS = {
 MARKERS = {
     "rigidarea": "o",
     "rigidarea-frame": "P",
+    "rigidarea-explicit": ".",
     "rigidarea-implicit": "X",
     "compliant": "v",
     "modal": "D",
@@ -36,7 +38,7 @@ MARKERS = {
     "box2d": "^",
     "literal": "x",
 }
-OTHER_COLOURS = ("#F0E442", "#999999")
+OTHER_COLOURS = ("#F0E442", "#666666")
 PAGE = (3, 3)
 """Rows and columns of panels on a page of 1000 pixels width."""
 

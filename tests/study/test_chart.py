@@ -105,7 +105,7 @@ def test_bench_frames():
     }
     assert wanted <= set(report["results"][0])
     assert {row["bodies"] for row in report["results"]} == {10, 20}
-    assert len(report["growth"]) == 3
+    assert len(report["growth"]) == 4
     assert report["call_overhead_us"]["pymunk"] > 0
     with pytest.raises(ValueError, match="unknown scene 'x'"):
         bench.frames(["x"])

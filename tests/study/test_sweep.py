@@ -2,6 +2,8 @@
 
 import json
 import os
+import subprocess
+import sys
 import time
 
 import pytest
@@ -61,6 +63,26 @@ def test_local_processes(tmp_path):
     assert [row["y"] for row in rows] == [0, 1, 4, 9]
     assert os.getpid() not in {row["pid"] for row in rows}
     assert {key(row["task"]) for row in read_rows(store)} == {key({"x": x}) for x in range(4)}
+
+
+@pytest.mark.slow
+def test_killed_command_is_resumed(tmp_path):
+    """`atlas` killed halfway: the same command keeps every finished row as it was and adds the others."""
+    command = [sys.executable, "-m", "rigidarea", "atlas", "--map", "seams", "--quick", "--workers", "0"]
+    command += ["--out", str(tmp_path)]
+    store = tmp_path / "atlas.jsonl"
+    running = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    started = time.monotonic()
+    while len(read_rows(store)) < 5 and time.monotonic() - started < 300:  # the first run may have to compile
+        time.sleep(0.01)
+    running.kill()
+    running.wait()
+    before = read_rows(store)
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    after = read_rows(store)
+    assert 5 <= len(before) < len(after) == 36
+    assert after[: len(before)] == before
+    assert len(json.loads((tmp_path / "atlas.json").read_text())["results"]) == 36
 
 
 @pytest.mark.slow

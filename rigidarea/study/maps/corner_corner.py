@@ -29,7 +29,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         source="",
         pressure=V**2,
     )
-    settings = {"stiffness": 1e4} if variant.peer in ("literal", "rigidarea") else {}
+    settings = {"stiffness": 1e4} if variant.given else {}
     last = run_scene(variant, scene, **settings).states[-1]
     energy = float(sum(s[VX] ** 2 + s[VY] ** 2 + MOMENT * s[OMEGA] ** 2 for s in last))
     return judge(abs(energy / V**2 - 1), LIMIT, "gained" if energy > V**2 else "lost")
@@ -37,9 +37,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 
 def atlas_map() -> Map:
     """Offset × turn."""
-    area = {"peer": "rigidarea", "phase": 0.1}
-    variants = engines(rigidarea=area, literal={"phase": 0.1})
-    variants["rigidarea, energy law"] = Variant("rigidarea", {"phase": 0.1, "law": "energy"})
+    variants = engines(explicit={"phase": 0.1}, literal={"phase": 0.1})
+    variants["explicit, energy law"] = Variant("rigidarea-explicit", {"phase": 0.1, "law": "energy"})
     return Map(
         name="corner_corner",
         title="corner on corner: energy of an elastic impact",

@@ -24,7 +24,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         source="",
         size=THICK,
     )
-    settings = {"stiffness": 10.0} if variant.peer in ("literal", "rigidarea-frame") else {}
+    settings = {"stiffness": 10.0} if variant.area else {}
     path = run_scene(variant, scene, **settings)["bar"]
     moved = path[-1, :3] - path[0, :3]  # places, not velocities: engines that push apart do it without speed
     way = float(np.hypot(moved[X], moved[Y]) / THICK + abs(moved[ANGLE]))

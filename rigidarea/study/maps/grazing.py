@@ -33,7 +33,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         pressure=y**2,
         frame=1 / 60,
     )
-    settings = {"stiffness": 1e7} if variant.peer in ("literal", "rigidarea") else {}
+    settings = {"stiffness": 1e7} if variant.given else {}
     last = run_scene(variant, scene, **settings)["disc"][-1]
     return judge(float(np.hypot(*(last[[VX, VY]] - exact)) / y), LIMIT, "wrong way")
 
@@ -52,7 +52,7 @@ def atlas_map() -> Map:
         y=Axis("speed (m/s)", (0.3, 1, 3, 10, 30), (1, 10), log=True),
         measure="error of velocity / speed",
         limit=LIMIT,
-        variants=engines(rigidarea={"peer": "rigidarea", "phase": 0.5}),
+        variants=engines(),
         run=run,
         source="v' = v − 2 (v·n) n, n from the corner to the centre",
     )

@@ -16,7 +16,7 @@ OMEGA_FLAT = math.sqrt(K * G)
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """Largest energy after the first touch over the energy before; `x` is ω h lying flat, `y` the tilt."""
     scene = dropped("landing", y, DROP, 0.5, 8 * x / OMEGA_FLAT)
-    knob = {"stiffness": K} if variant.peer in ("rigidarea", "literal") else {}
+    knob = {"stiffness": K} if variant.given else {}
     path = run_scene(variant, scene, steps=8, **knob)["box"]
     if not np.all(np.isfinite(path)):
         return "not finite", math.inf
@@ -50,5 +50,5 @@ def atlas_map() -> Map:
         run=run,
         source="ω = sqrt(k L/m): the longest chord sets the step",
         theory=theory,
-        theory_of=("rigidarea", "literal"),
+        theory_of=("explicit", "literal"),
     )

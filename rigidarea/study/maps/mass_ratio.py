@@ -33,7 +33,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     """Displacement at the end of three seconds."""
     described = scene(x)
     settings: dict[str, float] = {"steps": round(y)}
-    if variant.peer in ("rigidarea", "literal"):
+    if variant.given:
         settings["stiffness"] = 1 / SINKING
     return judge(described.measure(run_scene(variant, described, **settings)), LIMIT, "sank or fell")
 
@@ -64,5 +64,5 @@ def atlas_map() -> Map:
         run=run,
         source="symplectic Euler: ω h < 2",
         theory=theory,
-        theory_of=("rigidarea", "literal"),
+        theory_of=("explicit", "literal"),
     )

@@ -51,7 +51,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         error=lambda trace: 0.0,
         source="",
     )
-    settings = {"stiffness": 1e3} if variant.peer == "literal" else {}
+    settings = {"stiffness": 1e3} if variant.given else {}
     path = run_scene(variant, scene, **settings)["body"]
     if not np.all(np.isfinite(path)):
         return "not finite", math.inf

@@ -35,7 +35,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     through = 0
     for i in range(STARTS):
         described = scene(x, y, i / STARTS)
-        settings = {"stiffness": 1e3} if variant.peer == "literal" else {}
+        settings = {"stiffness": 1e3} if variant.given else {}
         end = run_scene(variant, described, **settings)["box"][-1, X]
         through += not end < SIDE / 2
     return judge(through / STARTS, 0.0, "went through")

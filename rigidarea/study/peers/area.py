@@ -10,7 +10,7 @@ import pymunk
 import rigidarea
 
 from ..scene import Body, Circle, Polygon, Scene
-from .base import Run, Settings, has_curves, rigid_only, samplings
+from .base import Run, Settings, drive, has_curves, rigid_only, samplings
 from .chipmunk import SpaceRun, add_pivots, make_body, surface
 
 
@@ -73,7 +73,7 @@ class StepRun(SpaceRun):
 
 
 class FrameRun(SpaceRun):
-    """Frames as a user asks for them, `contact.step(1/60, frames)`: all of them in one call, in machine code."""
+    """Frames in so many steps each: `contact.step(1/60, frames, steps)`, all in one call, in machine code."""
 
     def __init__(
         self,
@@ -89,10 +89,22 @@ class FrameRun(SpaceRun):
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; a contact that fails leaves states that are not finite."""
         try:
-            self.contact.step(self.frame, frames, self.wanted)
+            self.take(frames)
         except rigidarea.SimulationError:
             for body in self.bodies:
                 body.position = (math.nan, math.nan)
+
+    def take(self, frames: int) -> None:
+        """The call itself."""
+        self.contact.step(self.frame, frames, self.wanted)
+
+
+class GameRun(FrameRun):
+    """Frames as a game asks for them, one by one from Python: `contact.step(1/60)`."""
+
+    def take(self, frames: int) -> None:
+        """A call a frame."""
+        drive(self.contact.step, frames, self.frame)
 
 
 def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
@@ -155,6 +167,10 @@ class AreaFrames(Area):
             for phase in phases
             for sampling in area_samplings(scene, quick)
         ]
+
+    def build(self, scene: Scene, settings: Settings) -> Run:
+        """An attached space, stepped frame by frame."""
+        return GameRun(scene, *area_space(scene, settings))
 
 
 class AreaExplicit(Area):

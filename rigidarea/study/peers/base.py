@@ -88,7 +88,7 @@ def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
     """The knob `sampling` (chord tolerance over body size) for scenes with curves that have to be sampled."""
     values: tuple[float, ...]
     if "gears" in scene.tags:
-        values = (1e-2, 1e-3) if quick else (1e-2, 3e-3, 1e-3)
+        values = (1e-2, 1e-3)
     elif "curved" in scene.tags:
         values = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5)
     else:
