@@ -166,6 +166,10 @@ def mesh_stiffness(
     together, so a second pair does not stiffen them, while c_γ multiplies them with the number of pairs. Held
     2 modules below the root circle the gears have no discs (``fe_teeth…``): to be compared with c'_th C_B. The depth
     at which they are held counts logarithmically; ``fe_teeth_1_module`` shows how much.
+
+    Standard teeth: one pair 12.5 against c' = 13.3 N/(mm µm), 7 % below; the mesh 14.9 against c_γ = 20.2, 26 % below,
+    because 48 % of the deflection is in the discs; teeth alone 28.4 against 25.2, 12 % above. Teeth of the paper's
+    contact ratio: 14.9 against 20.7, teeth alone 28.5 against 25.9, 10 % above.
     """
     angles = 2 * np.pi / gb.TEETH[0] * np.arange(points) / points
     approach, recess = gb.path_of_contact(addendum)

@@ -290,6 +290,7 @@ def run(
         "root_radius_modules": ROOT,
         "bores_m": BORES,
         "refine": REFINE,
+        "pressure_angle": "of the pair that carries most, at each instant",
     }
     case = report.Case("gearbox", settings, PAPER, duration, out)
 
