@@ -118,8 +118,9 @@ def distribute(
 ) -> None:  # fmt: skip
     """Adds the loads of one region to both bodies' points; (nx, ny) is the direction of the force on B.
 
-    ∫ p dx = ``force`` and ∫ p (x − x_c) dx = 0 fix α and β. Where p would pull, q = 1 takes the place of q; it never
-    pulls on a region with one arc a body, for which it is α = k, β = 0.
+    ∫ p dx = ``force`` and ∫ p (x − x_c) dx = 0 fix α and β. Where p would pull, q = 1 takes the place of q. With one
+    arc a body that never pulls, being α = k, β = 0; with several it does where their net width lies too far to one
+    side of the centroid, and balance goes before repulsion.
     """
     x, y, t, edge, cut = s.x, s.y, s.t, s.edge, s.cut
     n = cuts(x, n_a, n_b, cut)
