@@ -12,8 +12,8 @@ from rigidarea.flexible.scratch import SLICED
 NONE = np.zeros(0)
 # Two tapering teeth on a bar, and a straight bar whose end reaches through the first into the second
 TEETH = np.array(
-    [[-4, -1], [4, -1], [4, 0], [2.5, 0], [2.2, 1.5], [1.8, 1.5], [1.5, 0], [-1.5, 0], [-1.8, 1.5], [-2.2, 1.5], [-2.5, 0],
-     [-4, 0]], float
+    [[-4, -1], [4, -1], [4, 0], [2.5, 0], [2.2, 1.5], [1.8, 1.5], [1.5, 0], [-1.5, 0], [-1.8, 1.5], [-2.2, 1.5],
+     [-2.5, 0], [-4, 0]], float
 )  # fmt: skip
 BAR = np.array([[-5, 0.4], [2, 0.4], [2, 0.8], [-5, 0.8]], float)
 
@@ -107,7 +107,7 @@ def test_random_deep_overlaps_against_shapely():
         rng = np.random.default_rng(seed)
         ra, rb = star(rng), star(rng)
         angle, d = rng.uniform(0, 6, 2), rng.uniform(0.3, 1.7)
-        n, regions, works = evaluate(ra, (0.0, 0.0, angle[0]), rb, (d, 0.2, angle[1]))
+        _, regions, works = evaluate(ra, (0.0, 0.0, angle[0]), rb, (d, 0.2, angle[1]))
         pa = affinity.rotate(shapely.Polygon(ra), angle[0], (0, 0), True)
         pb = affinity.translate(affinity.rotate(shapely.Polygon(rb), angle[1], (0, 0), True), d, 0.2)
         overlap = pa.intersection(pb)
