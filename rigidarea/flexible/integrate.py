@@ -148,6 +148,7 @@ class Simulation:
             first, omega**2, 2 * zeta * omega,
             np.concatenate([np.asarray(b.stretch, float) for b in bodies]),
             column([np.linalg.norm(b.boundary.points, axis=1).max() for b in bodies]),
+            np.concatenate([np.hypot(b.boundary.modes[:-3:2], b.boundary.modes[1:-3:2]).max(0) for b in bodies]),
         )  # fmt: skip
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
@@ -163,8 +164,8 @@ class Simulation:
         self._buffers = Buffers(
             np.zeros((n, 4)), np.full((n, 4), np.inf), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)),
             np.zeros((6 * n, 6 * n)), np.zeros(6 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
-            np.zeros(3 * n, np.int64), np.array([-1, 0, 0]), np.zeros((REGIONS_KEPT * n, 20)),
-            np.zeros(1),
+            np.zeros(3 * n, np.int64), np.array([-1, 0, 0]), np.zeros((REGIONS_KEPT * n, 24)),
+            np.zeros(2), np.zeros(1),
         )  # fmt: skip
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)

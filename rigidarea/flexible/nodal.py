@@ -228,7 +228,7 @@ def contact(
         if not spread:
             continue
         nx, ny = r["nx"], r["ny"]
-        resultant(a, wa, pose_a, b, wb, pose_b, r, s.edge, n_a, n_b, k * r["chord"])
+        resultant(a, wa, pose_a, b, wb, pose_b, r, x, s.edge, s.t, n_a, n_b, k * r["chord"])
         xc = c * xc + sn * yc
         if graphs and _straight(x[0], n_a, x[0, n_a]) and _straight(x[1], n_b, x[0, n_a]):
             _distribute(

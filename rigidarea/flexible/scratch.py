@@ -21,11 +21,8 @@ REGION = np.dtype(
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
     + [("x_chord", "f8"), ("y_chord", "f8")]
-    + [
-        ("give", "f8"),
-        ("node_a", "i8"),
-        ("node_b", "i8"),
-    ]  # see ``condense``; nodes under the middle of the arcs
+    + [("give", "f8")]  # see ``condense``; middles of the arcs: two nodes, and the share of the second
+    + [(f"{what}_{body}", t) for body in "ab" for what, t in (("low", "i8"), ("high", "i8"), ("share", "f8"))]
     + [("first", "i8"), ("arcs", "i8")]  # a crossing of it, and its arcs a body
 )
 CROSSING = np.dtype(

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.condense import hub_row
+from rigidarea.flexible.condense import by_mode, hub_row
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.place import add_load, clear_loads, to_nodes
 from rigidarea.kernel.jit import kernel
@@ -32,6 +32,7 @@ NEWTON_LIMIT = 25
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
+SETTLED = 1e-3  # and then the contact forces differ from k A by no more than this part of the largest
 REGIONS_KEPT = 4  # contact regions of a pair that a record holds
 
 NO_CONVERGENCE = -10
@@ -56,6 +57,7 @@ class System(NamedTuple):
     viscous: Array  # (m,) 2 ζ ω
     stretch: Array  # (m,)
     size: Array  # (b,) largest radius of each boundary
+    amplitude: Array  # (m,) largest displacement of the boundary in each mode
 
 
 class Settings(NamedTuple):
@@ -157,9 +159,8 @@ class Buffers(NamedTuple):
     modal_residual: Array
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
     counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
-    springs: (
-        Array  # (REGIONS_KEPT b, 20) of the regions: bodies, nodes, direction, stiffness, force, tangent row
-    )
+    springs: Array  # (REGIONS_KEPT b, 24) of the regions: bodies, middles, direction, stiffness, force, row
+    bend: Array  # (2,) largest displacement of the boundaries under a contact, and of any in the last search
     apart: Array  # (1,) largest difference of a region's k A from the force that it hands on (``condense``)
 
 
@@ -175,12 +176,18 @@ def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untype
     for b in range(len(bodies)):
         clear_loads(works[b])
     total = 0
+    under = 0.0
     for p in range(len(pairs)):
         ia, ib = pairs[p, 0], pairs[p, 1]
         a, b = bodies[ia], bodies[ib]
         pa, pb = buf.pose[ia], buf.pose[ib]
-        # the search holds while no point has moved, relative to the other body, by more than the margin
-        moved = 0.0
+        # the search, of undeformed bodies, holds while no point has moved, relative to the other body, by more than
+        # the margin
+        bend = buf.bend[0]
+        for i in (ia, ib):
+            for k in range(sy.first[i], sy.first[i + 1]):
+                bend += abs(q[k]) * sy.amplitude[k]
+        moved = abs(bend - buf.bend[1])
         for i in (ia, ib):
             d = np.hypot(buf.pose[i, 0] - buf.searched[i, 0], buf.pose[i, 1] - buf.searched[i, 1])
             turn = np.hypot(buf.pose[i, 2] - buf.searched[i, 2], buf.pose[i, 3] - buf.searched[i, 3])
@@ -190,7 +197,8 @@ def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untype
                 + turn * np.hypot(bodies[i].centre[0, 0], bodies[i].centre[0, 1])
             )
         if buf.counts[0] < 0 or moved > 0.5 * st.margin or len(pairs) > 1:
-            reach = st.margin + (st.q if st.sts else 0.0)
+            reach = st.margin + bend + (st.q if st.sts else 0.0)
+            buf.bend[1] = bend
             buf.counts[0] = nodal.search(a, pa, b, pb, reach, s)
             for i in range(4):
                 buf.searched[ia, i] = pa[i]
@@ -222,10 +230,15 @@ def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untype
                 buf.regions[total, 1], buf.regions[total, 2] = r["nx"], r["ny"]
                 buf.regions[total, 3], buf.regions[total, 4] = r["x"], r["y"]
             stiff = st.k * r["chord"] * r["give"]
+            if st.spread and not st.sts:
+                u_a, u_b = works[ia].displacement, works[ib].displacement
+                i_a, i_b = r["low_a"], r["low_b"]
+                under = max(under, np.hypot(u_a[i_a, 0], u_a[i_a, 1]) + np.hypot(u_b[i_b, 0], u_b[i_b, 1]))
             if st.spread and total < len(buf.springs):
                 spring = buf.springs[total]
-                spring[0], spring[1], spring[2], spring[3] = ia, ib, r["node_a"], r["node_b"]
-                spring[4], spring[5], spring[6], spring[7] = r["nx"], r["ny"], stiff, r["force"]
+                spring[0], spring[2], spring[4], spring[6] = ia, r["low_a"], r["high_a"], r["share_a"]
+                spring[1], spring[3], spring[5], spring[7] = ib, r["low_b"], r["high_b"], r["share_b"]
+                spring[8], spring[9], spring[10], spring[11] = r["nx"], r["ny"], stiff, r["force"]
             total += 1
             buf.row[:] = 0.0
             for side in range(2):
@@ -238,21 +251,17 @@ def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untype
                 buf.row[3 * j], buf.row[3 * j + 1] = sign * r["nx"], sign * r["ny"]
                 buf.row[3 * j + 2] = sign * (ax * r["ny"] - ay * r["nx"])
                 if st.spread and not st.sts and sy.pinned[j] + sy.driven[j] > 0:
-                    node = r["node_a"] if side == 0 else r["node_b"]
+                    low, high = (r["low_a"], r["high_a"]) if side == 0 else (r["low_b"], r["high_b"])
+                    share = r["share_a"] if side == 0 else r["share_b"]
                     hub = 3 * (len(bodies) + j)
                     hub_row(
-                        bodies[j],
-                        works[j],
-                        buf.pose[j],
-                        sign * r["nx"],
-                        sign * r["ny"],
-                        node,
+                        bodies[j], works[j], buf.pose[j], sign * r["nx"], sign * r["ny"], low, high, share,
                         buf.row[hub : hub + 3],
-                    )
+                    )  # fmt: skip
             for m in range(12):
                 row = 3 * ((ia if m % 2 == 0 else ib) + (0 if m < 6 else len(bodies))) + (m // 2) % 3
                 if total <= len(buf.springs):
-                    buf.springs[total - 1, 8 + m] = buf.row[row]
+                    buf.springs[total - 1, 12 + m] = buf.row[row]
                 if buf.row[row] == 0.0:
                     continue
                 for c in range(12):
@@ -264,6 +273,7 @@ def _contact(bodies, works, sy, buf, q, pairs, st, s):  # type: ignore[no-untype
                 buf.tangent[3 * ib + 2, 3 * ib + 2] += turn
                 buf.tangent[3 * ia + 2, 3 * ib + 2] -= turn
                 buf.tangent[3 * ib + 2, 3 * ia + 2] -= turn
+    buf.bend[0] = under
     if st.spread:
         for b in range(len(bodies)):
             to_nodes(bodies[b], works[b], buf.pose[b])
@@ -439,7 +449,8 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                 m[row_i, j] -= buf.tangent[n3 + i, j]
                 if buf.column[j] >= 0:
                     m[row_i, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scale
-        done = (worst <= TOLERANCE * reference or change < ROUNDING) and worst_g <= CLOSURE
+        rounded = change < ROUNDING and buf.apart[0] <= SETTLED * reference
+        done = (worst <= TOLERANCE * reference or rounded) and worst_g <= CLOSURE
         # static flexibility answers to the loads of the evaluation before: look twice while there are any
         if done and (iteration > 1 or not st.spread or buf.counts[2] == 0):
             return iteration
@@ -488,20 +499,23 @@ def _step(bodies, works, sy, couplings, state, pairs, st, s, buf, t, h):  # type
                 for n in range(12):
                     b = int(spring[n % 2])
                     if n < 6:
-                        df -= spring[8 + n] * rhs[3 * b + (n // 2) % 3]
+                        df -= spring[12 + n] * rhs[3 * b + (n // 2) % 3]
                     elif buf.column[3 * b + (n // 2) % 3] >= 0:
-                        df -= spring[8 + n] * rhs[buf.column[3 * b + (n // 2) % 3]] / scale
-                df = max(spring[6] * df, -spring[7])
+                        df -= spring[12 + n] * rhs[buf.column[3 * b + (n // 2) % 3]] / scale
+                df = max(spring[10] * df, -spring[11])
                 for side in range(2):
-                    b, node = int(spring[side]), int(spring[2 + side])
-                    fx, fy = (df if side == 1 else -df) * spring[4], (df if side == 1 else -df) * spring[5]
+                    b, low, high = int(spring[side]), int(spring[2 + side]), int(spring[4 + side])
+                    share, push = spring[6 + side], df if side == 1 else -df
                     c, sn = buf.pose[b, 2], buf.pose[b, 3]
-                    fx, fy = c * fx + sn * fy, -sn * fx + c * fy
-                    bd, w = bodies[b], works[b]
-                    add_load(w.node_load, w.node_flag, w.loaded, node, fx, fy)
+                    ex, ey = c * spring[8] + sn * spring[9], -sn * spring[8] + c * spring[9]
+                    w = works[b]
+                    for end in range(2):
+                        f = (1.0 - share if end == 0 else share) * push
+                        node = low if end == 0 else high
+                        add_load(w.node_load, w.node_flag, w.loaded, node, f * ex, f * ey)
                     for k in range(sy.first[b], sy.first[b + 1]):
                         j = k - sy.first[b]
-                        d = w.mobility[j] * (bd.modes[2 * node, j] * fx + bd.modes[2 * node + 1, j] * fy)
+                        d = w.mobility[j] * by_mode(bodies[b], low, high, share, ex, ey, j) * push
                         state.q[k] += d
                         state.dq[k] += b_vel * d
                         state.ddq[k] += b_acc * d
