@@ -23,15 +23,18 @@ def test_pin_joint_levels(tmp_path):
 
 @pytest.mark.slow
 def test_cantilever_needs_modes(tmp_path):
-    """A ball on a rigid beam keeps its speed; a beam with modes keeps part of its energy."""
+    """A ball on a rigid beam, or on one without inertia, keeps its speed; a beam with modes keeps some energy."""
     report, traces = compare.compare(["cantilever"], tmp_path, repeats=1)
     levels = traces["cantilever"]["levels"]
+    rows = {row["level"]: row for row in report["results"]}
     assert levels["rigid"][1][-1] == pytest.approx(compare.SPEED, rel=1e-3)
-    assert levels["modal"][1][-1] < 0.9 * compare.SPEED
-    failed = {row["level"] for row in report["results"] if row["failed"]}
-    assert failed <= {
-        "compliant"
-    }  # a support softer than its contact: the static level does not converge there
+    assert levels["compliant"][1][-1] == pytest.approx(compare.SPEED, rel=1e-3)
+    assert levels["modal"][1][-1] < 0.6 * compare.SPEED
+    assert not any(row["failed"] for row in rows.values())
+    # 30 modes at 2 µs against 120 modes at 0.5 µs; the other levels miss the speed by half of it and more
+    assert rows["modal"]["error"] < 0.02
+    assert rows["compliant"]["error"] > 0.3 and rows["rigid"]["error"] > 0.3
+    assert "convergence" not in report  # of all scenes only
 
 
 def test_unknown_scene():
