@@ -1,7 +1,7 @@
 """Accuracy against speed: every scene, every peer, every setting; fronts and what they say.
 
 Errors are deterministic and may be computed anywhere, in parallel; the run that gives the error is timed as well.
-Settings that another of the same peer beats in error at less than half that time cannot be on a front and keep that
+Settings that another of the same peer beats in error at clearly less than that time cannot be on a front and keep that
 time as their cost. All others are timed here, on one core, warm and interleaved. Both are kept as they come
 (`chart-errors.jsonl`, `chart-costs.jsonl` in the output folder), so that the same command goes on where it was stopped.
 """
@@ -26,6 +26,8 @@ RESOLUTION = 1e-4
 """Errors below it count as equally good, in every scene: a tenth of a pixel on a body drawn 1,000 pixels large, and a
 hundredth of what friction, restitution and mass of real bodies are known to.
 """
+NOISE = 1.4
+"""Ratio of two times measured once that says which is longer."""
 REPEATS, QUICK_REPEATS = 5, 2
 PATIENCE_S, QUICK_PATIENCE_S = 0.5, 0.2
 """Time (s) after which a run is not repeated: its noise is small beside it."""
@@ -77,19 +79,20 @@ def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
 
 
 def on_front(tasks: Sequence[Task], results: Sequence[Row]) -> list[bool]:
-    """Which settings could be on their peer's front: none with at most their error took less than half their time."""
+    """Which settings could be on their peer's front: none with as small an error took NOISE times less, and the error
+    is at most 1. Errors below RESOLUTION count as equal.
+    """
     groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
-    for task, found in zip(tasks, results, strict=True):
-        if found["error"] is not None:
-            groups.setdefault((task["scene"], task["peer"]), []).append(
-                (found["error"], found["rough_s_per_s"])
-            )
-    kept = []
-    for task, found in zip(tasks, results, strict=True):
-        error, cost = found["error"], found["rough_s_per_s"]
-        rivals = groups.get((task["scene"], task["peer"]), [])
-        kept.append(error is not None and not any(e <= error and 2 * c < cost for e, c in rivals))
-    return kept
+    found = []
+    for task, result in zip(tasks, results, strict=True):
+        error = math.inf if result["error"] is None else max(result["error"], RESOLUTION)
+        found.append((error, result["rough_s_per_s"]))
+        groups.setdefault((task["scene"], task["peer"]), []).append(found[-1])
+    return [
+        error <= 1.0
+        and not any(e <= error and NOISE * c < cost for e, c in groups[task["scene"], task["peer"]])
+        for task, (error, cost) in zip(tasks, found, strict=True)
+    ]
 
 
 def costs(
