@@ -38,10 +38,11 @@ class Body:
 
     boundary: from ``boundary.build``, about the centre of mass. mass, inertia; position (2,) and angle of the
     frame at t = 0. frequency, coupling, stretch: of the modes in ``boundary.modes`` (see ``modes.Reduced``).
-    damping: modal damping ratio. fixed: a ground. hub (2,): hub centre in the body frame; anchor (2,): the world
-    point it is pinned to by a revolute joint, None for a free body. drive: (angle at t = 0, final angular
-    velocity, ramp time) of a prescribed hub rotation, None if free. damper: torsional, moment/(rad/time). torque:
-    constant, on the hub. velocity (3,): of the frame at t = 0.
+    damping: modal damping ratio. fixed: the frame is held: a ground, or a clamped body, whose modes move. (Gravity
+    acts on frames: it does not bend a clamped body, and free-free modes do not feel it.) hub (2,): hub centre in the
+    body frame; anchor (2,): the world point it is pinned to by a revolute joint, None for a free body. drive: (angle
+    at t = 0, final angular velocity, ramp time) of a prescribed hub rotation, None if free. damper: torsional,
+    moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0.
     """
 
     boundary: Boundary
