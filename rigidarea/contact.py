@@ -106,7 +106,9 @@ class AreaContact:
             from . import frames, machine
 
             self._state["shift_at"] = frames.shift_body.address
-            self._advance = frames.advance.ctypes
+            self._advance = ffi.cast(
+                "long long(*)(void *, double, long long, long long, long long)", frames.advance.address
+            )
             self._handler._handler.preSolveFunc = ffi.cast(
                 "cpCollisionPreSolveFunc", machine.pre_solve.address
             )
@@ -157,12 +159,13 @@ class AreaContact:
 
     def _check_hooked(self) -> None:
         assert self.space is not None  # says so if detached
-        for phase, own in (("pre_solve", self._hook), ("separate", self._hook.separate)):
-            if getattr(self._handler, phase) != own:
-                raise RuntimeError(
-                    f"the space's global {phase} was replaced after attach(): area contact needs it. Register "
-                    "callbacks for a collision type (on_collision(type, None, ...)) instead of for all"
-                )
+        own = self._hook
+        if self._handler.pre_solve == own and self._handler.separate == own.separate:
+            return
+        raise RuntimeError(
+            "the space's global pre_solve or separate was replaced after attach(): area contact needs them. Register "
+            "callbacks for a collision type (on_collision(type, None, ...)) instead of for all"
+        )
 
     def _adopt(self, space: pymunk.Space) -> None:
         """Take over a copy of the attached space, with what its contacts remembered."""
@@ -302,9 +305,10 @@ class AreaContact:
             self.space.step(0.0)  # pymunk's check of new bodies
         if not self.compiled or self.space.threaded or len(self.space._handlers) > 1:
             return self._step_by_step(dt, frames, steps)
-        self._watch.look()
+        self._watch.take()
         taken = self._run(dt, frames, steps or 0)
-        if not self._watch.look():
+        if self._state["broken"]:
+            self._watch.take()
             self._watch.put_back()
             self._step_by_step(dt, frames, steps)  # once more, to find the step
             raise SimulationError(f"the state is not finite after {taken} steps")
@@ -315,10 +319,10 @@ class AreaContact:
         space = self.space
         state = self._state
         state["ballistic"] = not space._constraints and space.damping == 1.0
-        state["stop"] = state["wanted"] = 0
+        state["stop"] = state["wanted"] = state["broken"] = 0
         space._locked = True
         try:
-            taken = self._advance(address_of(space._space), dt, frames, steps, len(self._store.known_shapes))
+            taken = self._advance(space._space, dt, frames, steps, self._store.rows)
         finally:
             space._locked = False
         if self._error is not None:

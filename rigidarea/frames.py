@@ -52,12 +52,21 @@ _reindex = types.ExternalFunction("rigidarea_cpSpaceReindexShape", types.void(ty
 def shift_body(body: int, at: int) -> None:
     """Drift one body by the time `shift` (Chipmunk's iterator calls it); its transform only where it settles."""
     s = array_at(at, (1,), STATE)[0]
-    if _body_type(body) == _STATIC or word(body + s.body_position_func) != s.position_func or _sleeping(body):
+    if _body_type(body) == _STATIC or _sleeping(body):
         return
     v = floats(body + s.body_velocity, 2)
     w = floats(body + s.body_spin, 1)
     p = floats(body + s.body_position, 2)
     angle = floats(body + s.body_angle, 1)
+    if s.settle and not math.isfinite(p[0] + p[1] + angle[0] + v[0] + v[1] + w[0]):
+        s.broken = 1
+    if word(body + s.body_position_func) != s.position_func:
+        return
+    if not s.settle:
+        p[0] += s.shift * v[0]
+        p[1] += s.shift * v[1]
+        angle[0] += s.shift * w[0]
+        return
     t = floats(body + s.body_transform, 6)
     ux = p[0] - t[4]
     uy = p[1] - t[5]
@@ -66,15 +75,14 @@ def shift_body(body: int, at: int) -> None:
     p[0] += s.shift * v[0]
     p[1] += s.shift * v[1]
     angle[0] += s.shift * w[0]
-    if s.settle:
-        c = math.cos(angle[0])
-        n = math.sin(angle[0])
-        t[0] = c
-        t[1] = n
-        t[2] = -n
-        t[3] = c
-        t[4] = p[0] - (c * cog_x - n * cog_y)
-        t[5] = p[1] - (n * cog_x + c * cog_y)
+    c = math.cos(angle[0])
+    n = math.sin(angle[0])
+    t[0] = c
+    t[1] = n
+    t[2] = -n
+    t[3] = c
+    t[4] = p[0] - (c * cog_x - n * cog_y)
+    t[5] = p[1] - (n * cog_x + c * cog_y)
 
 
 @kernel(inline="always")

@@ -94,11 +94,15 @@ class Watch:
         self._space = space
         self._buffers = [pymunk.batch.Buffer(), pymunk.batch.Buffer()]
 
-    def look(self) -> bool:
-        """Take the present state; whether it is finite."""
+    def take(self) -> None:
+        """Take the present state."""
         self._buffers.reverse()
         self._buffers[0].clear()
         pymunk.batch.get_space_bodies(self._space, _STATE, self._buffers[0])
+
+    def look(self) -> bool:
+        """Take the present state; whether it is finite."""
+        self.take()
         return math.isfinite(float(self._rows(0).sum()))  # a sum is not finite if one number is not
 
     def put_back(self) -> str:

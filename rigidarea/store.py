@@ -58,6 +58,7 @@ STATE = record(
         ("shift_at", "u8"),  # address of `frames.shift_body`
         ("shift", "f8"),  # time by which it moves bodies
         ("settle", "i8"),  # 1: for good, so that everything sees it
+        ("broken", "i8"),  # 1: a body was not finite when it settled
         ("ballistic", "i8"),  # 1: between contacts only gravity acts
         ("wanted", "i8"),  # steps that a frame would have needed, where max_steps was less; else 0
         ("stop", "i8"),  # 1: an error waits in Python
@@ -298,6 +299,11 @@ class Store:
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
         return 0 <= ident < len(self.slots) and bool(self.slots[ident] >= 0)
+
+    @property
+    def rows(self) -> int:
+        """How many rows of tables.shapes are in use."""
+        return self._fill["shapes"]
 
     @property
     def known_shapes(self) -> np.ndarray:

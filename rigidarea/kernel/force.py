@@ -72,6 +72,7 @@ REGION = record(
         ("late", "f8"),  # time from the middle of the step of first touch to first touch
         ("withheld", "f8"),  # fraction of the spring's force that is missing while opening
         ("depth", "f8"),  # its extent along n at first touch (length)
+        ("beyond", "f8"),  # A's surface beyond the point of application, along n, then (length)
         ("straight", "f8"),  # longest straight stretch of both boundaries in it (length)
         ("crowd", "f8"),  # of the two bodies' sums of rate2 over their contacts the larger (1/time^2)
         ("curved", "i4"),  # 1: one of the two boundaries is a curve
@@ -256,10 +257,21 @@ def _impact(
     kinetic energy at first touch: the same restitution again, but also where gravity, or anything else, acts during
     the impact (the plain law then returns up to 0.25 less, the softer the contact).
 
-    An impact shorter than the step has no course, only a result: the impulse that returns e, all at once.
+    An impact shorter than the step has no course, only a result: the impulse that returns e of the speed at touch,
+    all at once, and leaves the rest of the step to whatever else acts.
     """
     if r.sudden:
-        return max(0.0, (coming + min(1.0, elasticity) * r.first_speed) / (dt * inverse))
+        if r.opened:
+            return 0.0
+        # Speed at touch and speed now (positions are those of the step's middle) differ by what the rest of the world
+        # does over the depth; so do the two on the way out, and the energy of the way in and out is kept.
+        gained = coming - speed
+        fallen = 2.0 * (gained / dt) * min(r.depth, dt * speed) if born else 0.0
+        if born:
+            r.first_speed = math.sqrt(max(0.0, (speed + 0.5 * gained) ** 2 - fallen))
+        out2 = (min(1.0, elasticity) * r.first_speed) ** 2 + fallen
+        leaving = min(0.0, 0.5 * gained - math.sqrt(max(0.0, out2)))
+        return max(0.0, (coming - leaving) / (dt * inverse))
     # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
     # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
     depth = r.area / r.chord
@@ -407,6 +419,10 @@ def region_force(
     if friction > 0.0:
         lean_a = rax * nx + ray * ny
         lean_b = rbx * nx + rby * ny
+        if r.sudden:  # what slid was the surfaces, not the middle of the overlap
+            lean_a += r.beyond
+            lean_b -= r.depth - r.beyond
+            slip += a.w * r.beyond + b.w * (r.depth - r.beyond)
         inverse_t = inverse_masses + lean_a * lean_a * a.inverse_moment + lean_b * lean_b * b.inverse_moment
         kt = TANGENT_STIFFNESS * stiffness
         # the spring remembers a force; where the region shrinks the force shrinks with it, so no energy comes free
@@ -436,4 +452,9 @@ def region_force(
     r.slip = slip
     fx = force * nx - tangential * ny
     fy = force * ny + tangential * nx
-    return Pull(fx, fy, -(rax * fy - ray * fx) - couple, rbx * fy - rby * fx + couple)
+    moment_a = -(rax * fy - ray * fx) - couple
+    moment_b = rbx * fy - rby * fx + couple
+    if r.sudden:
+        moment_a -= tangential * r.beyond
+        moment_b -= tangential * (r.depth - r.beyond)
+    return Pull(fx, fy, moment_a, moment_b)

@@ -389,8 +389,10 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
 
 
 @kernel
-def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float) -> float:
-    """Extent of a loop along the world direction (wx, wy)."""
+def _extent(
+    work: Work, start: int, stop: int, x: float, y: float, pose: Pose, wx: float, wy: float
+) -> tuple[float, float]:
+    """(extent of a loop along the world direction (wx, wy), how much of it beyond the loop's point (x, y))."""
     nx = pose.c * wx + pose.s * wy
     ny = pose.c * wy - pose.s * wx
     low = np.inf
@@ -399,7 +401,7 @@ def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float)
         h = nx * work.polygon[i, 0] + ny * work.polygon[i, 1]
         low = min(low, h)
         high = max(high, h)
-    return high - low
+    return high - low, high - (nx * x + ny * y)
 
 
 @kernel
@@ -521,7 +523,7 @@ def pair_pull(
         region.curved = 1 if curved else 0
         region.straight = 0.0 if curved else min(loop.straight, chord)
         if born:
-            region.depth = _extent(work, loop.start, loop.stop, pose_a, wx, wy)
+            region.depth, region.beyond = _extent(work, loop.start, loop.stop, loop.x, loop.y, pose_a, wx, wy)
         region.area = area
         region.x = x
         region.y = y
