@@ -36,7 +36,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.cases import report
-from rigidarea.cases.mechanism import step_sweep, timed
+from rigidarea.cases.mechanism import main_run, step_sweep, timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
@@ -299,9 +299,8 @@ def run(
 
     def one(addendum: float) -> tuple[Record, dict[str, Any]]:
         """A run, timed, with its contact ratio and load sharing beside the analytic ones."""
-        sim = make(addendum)
-        through = mode == "rigid" and contact == "area"
-        r, seconds = timed(lambda: through_hook(duration, addendum) if through else sim.run(duration, STEP))
+        hook = (lambda t: through_hook(t, addendum)) if mode == "rigid" and contact == "area" else None
+        r, seconds = main_run(lambda: make(addendum), hook, duration, STEP)
         return r, {
             "addendum_modules": addendum,
             "mesh_mm": mesh_mm,
@@ -312,7 +311,6 @@ def run(
 
     make()
     case.clock.setup()
-    make().run(STEP, STEP)  # compiles, or loads from the cache
     r, results = one(ADDENDUM)
     case.keep(**results)
     records = {"main": r}

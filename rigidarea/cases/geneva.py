@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.cases import report
-from rigidarea.cases.mechanism import step_sweep, timed
+from rigidarea.cases.mechanism import main_run, step_sweep
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Record, Simulation
@@ -204,7 +204,7 @@ def run(
     def make(slots: int = 6, **keys: Any) -> tuple[Simulation, float]:
         return simulation(mode, mesh_mm, contact, slots, cache=cache, **keys)
 
-    sim, start = make()
+    start = first_touch(6) - SPEED * DUE
     settings = {
         "mode": mode,
         "mesh_mm": mesh_mm,
@@ -219,9 +219,8 @@ def run(
     case = report.Case("geneva", settings, PAPER, duration, out)
     make()
     case.clock.setup()
-    make()[0].run(STEP, STEP)  # compiles, or loads from the cache
-    through = mode == "rigid" and contact == "area"
-    r, seconds = timed(lambda: through_hook(duration) if through else sim.run(duration, STEP))
+    hook = through_hook if mode == "rigid" and contact == "area" else None
+    r, seconds = main_run(lambda: make()[0], hook, duration, STEP)
     case.keep(**measure(r, start, 6), **seconds)
     records = {}
     if sweeps:

@@ -19,6 +19,19 @@ def timed(run: Callable[[], Record]) -> tuple[Record, dict[str, float]]:
     return r, {"run_s": time.perf_counter() - wall, "run_cpu_s": time.process_time() - cpu}
 
 
+def main_run(
+    make: Callable[[], Simulation], hook: Callable[[float], Record] | None, duration: float, h: float
+) -> tuple[Record, dict[str, float]]:
+    """The run of a case at its own step, timed: through ``hook`` (a duration -> a record) if there is one, else of what
+    ``make`` builds. A step before it compiles, or loads from the cache."""
+    if hook is not None:
+        hook(h)
+        return timed(lambda: hook(duration))
+    make().run(h, h)
+    sim = make()
+    return timed(lambda: sim.run(duration, h))
+
+
 def step_sweep(
     make: Callable[[], Simulation],
     measure: Callable[[Record], dict[str, Any]],
