@@ -39,6 +39,8 @@ MARKERS = {
     "literal": "x",
 }
 OTHER_COLOURS = ("#F0E442", "#666666")
+RANGE = (1e-3, 1e3)
+"""Ratios that the summary shows; beyond, an arrow at its edge."""
 PAGE = (3, 3)
 """Rows and columns of panels on a page of 1000 pixels width."""
 
@@ -104,7 +106,7 @@ def chart_pages(report: Row, out: Path) -> list[Path]:
             plt.Line2D([], [], color=colour(name), marker=marker(name), markersize=5, label=name)
             for name in names
         ]
-        figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+        figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 4))
         figure.supxlabel("cost: computing time on one core / simulated time", fontsize=10)
         figure.supylabel("error (dimensionless; what it is stands in each panel)", fontsize=10)
         paths += save(figure, out, f"chart-{page + 1}")
@@ -136,11 +138,15 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
         va="top",
         fontsize=7.5,
         color="#444444",
+        bbox={"fc": "white", "ec": "none", "pad": 1, "alpha": 0.75},
     )
 
 
 def chart_summary(report: Row, out: Path) -> list[Path]:
-    """Both ratios for every scene and peer, ours over theirs, one line a scene."""
+    """Both ratios for every scene and peer, ours over theirs, one line a scene.
+
+    A thin bar spans the cost ratios at all errors from the smallest that both reach up to a tenth.
+    """
     plt = _pyplot()
     summary = report["summary"]
     if not summary:
@@ -150,23 +156,34 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
     names.sort(key=lambda name: -_mean_log(summary, name))
     peers = list(dict.fromkeys(row["peer"] for row in summary))
     figure, axes = plt.subplots(
-        1, 2, figsize=(10, 1.6 + 0.24 * len(names)), sharey=True, layout="constrained", width_ratios=(1, 1)
+        1, 2, figsize=(10, 1.7 + 0.26 * len(names)), sharey=True, layout="constrained", width_ratios=(1.2, 1)
     )
-    both = ("cost_ratio_at_matched_error", "error_ratio_at_matched_cost")
-    labels = ("cost ratio at matched error", "error ratio at matched cost")
-    for ax, which, label in zip(axes, both, labels, strict=True):
-        ax.axvspan(1e-9, 1, color="#eaf3fa", zorder=0)
+    labels = {
+        "cost_ratio_at_matched_error": "cost ratio at matched error (bar: at coarser errors)",
+        "error_ratio_at_matched_cost": "error ratio at matched cost",
+    }
+    for ax, (which, label) in zip(axes, labels.items(), strict=True):
+        low, high = RANGE
+        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=f"{label}\nrigidarea / peer")
+        ax.axvspan(low / 1.5, 1, color="#eaf3fa", zorder=0)
         ax.axvline(1, color="#666666", lw=1)
-        finite = [row[which] for row in summary if row[which] and math.isfinite(row[which])] or [1.0]
-        low, high = min(*finite, 0.1) / 2, max(*finite, 10.0) * 2
-        for peer in peers:
-            for row in (row for row in summary if row["peer"] == peer):
-                value, y = row[which], names.index(row["scene"])
-                if value is None or math.isnan(value):
-                    continue
-                shown = min(max(value, low), high)
-                ax.plot(shown, y, marker=marker(peer), color=colour(peer), ms=6, ls="", alpha=0.9)
-        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=f"{label} (rigidarea / peer)")
+        for row in summary:
+            value, peer = row[which], row["peer"]
+            if value is None or math.isnan(value):
+                continue
+            y = names.index(row["scene"]) + 0.34 * (0.5 - peers.index(row["peer"]) / max(len(peers) - 1, 1))
+            if which.startswith("cost"):
+                span = [min(max(row[key], low), high) for key in ("cost_ratio_low", "cost_ratio_high")]
+                ax.plot(span, (y, y), color=colour(peer), lw=1.4, alpha=0.45, solid_capstyle="butt")
+            shown = min(max(value, low), high)
+            ax.plot(shown, y, marker=marker(peer), color=colour(peer), ms=5.5, ls="")
+            if shown != value:  # beyond the edge of the picture
+                ax.plot(
+                    high * 1.25 if value > high else low / 1.25,
+                    y,
+                    marker=5 if value > high else 4,
+                    color=colour(peer),
+                )
         ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
         ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
     axes[0].set_yticks(range(len(names)), [titles[name] for name in names])

@@ -54,7 +54,11 @@ def number(value: float | None) -> str:
     """Two digits; ∞ for what is out of reach (JSON's null)."""
     if value is None or not math.isfinite(value):
         return "∞"
-    return f"{value:.2g}" if 0.01 <= value < 1000 else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    return (
+        f"{value:.2g}"
+        if value == 0 or 0.01 <= value < 1000
+        else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
+    )
 
 
 def ratios(report: Row) -> str:

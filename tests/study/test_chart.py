@@ -68,10 +68,22 @@ def test_chart_is_drawn(charted, tmp_path):
             assert Image.open(path).width == 1000
 
 
+def test_only_fronts_are_timed():
+    """A setting no more exact at clearly more than another's time is not timed; noise and failures are told apart."""
+    tasks = [{"scene": "s", "peer": p, "settings": {"n": n}} for p in ("a", "b") for n in range(5)]
+    errors = [1e-2, 1e-2, 1e-2, None, 1e-6, 1e-7, 1e-9, 1e-2, 2.0, 1e-3]
+    times = [1.0, 1.1, 2.0, 0.1, 5.0, 1.0, 2.0, 0.5, 0.1, 0.8]
+    results = [{"error": e, "rough_s_per_s": t} for e, t in zip(errors, times)]
+    # a: as good as the best within the noise, too slow, failed, the most exact;
+    # b: both below the resolution, so the slower goes; worse but cheaper; worse than standing still
+    assert chart.on_front(tasks, results) == [True, True, False, False, True, True, False, True, False, True]
+
+
 def test_smaller_steps_cost_more(charted):
     """pymunk with sixteen times the steps costs more than twice as much: what is timed is the stepping."""
     _, report = charted
     rows = [r for r in report["results"] if r["peer"] == "pymunk" and r["scene"] == "rest"]
+    assert {row["repeats"] for row in report["results"]} <= {1, report["settings"]["repeats"]}
     cost = {row["settings"]["steps"]: row["cost_s_per_s"] for row in rows}
     assert cost[64] > 2 * cost[4]
 
