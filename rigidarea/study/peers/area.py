@@ -72,7 +72,7 @@ class StepRun(SpaceRun):
         self.contact = contact
 
 
-class FrameRun(SpaceRun):
+class FrameRun(StepRun):
     """Frames in so many steps each: `contact.step(1/60, frames, steps)`, all in one call, in machine code."""
 
     def __init__(
@@ -83,8 +83,8 @@ class FrameRun(SpaceRun):
         contact: Any,
         steps: int | None = None,
     ) -> None:
-        super().__init__(scene, space, bodies, contact.steps(scene.frame) if steps is None else steps)
-        self.contact, self.frame, self.wanted = contact, scene.frame, steps
+        super().__init__(scene, space, bodies, contact, steps)
+        self.frame, self.wanted = scene.frame, steps
 
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; a contact that fails leaves states that are not finite."""
