@@ -132,7 +132,7 @@ class Area:
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Stiffness × steps × sampling."""
-        stiffness = (1e4, 1e8) if quick else (1e3, 1e4, 1e6, 1e8)
+        stiffness = (1e6, 1e12) if quick else (1e4, 1e6, 1e8, 1e12)
         steps = (1, 4, 16) if quick else (1, 2, 4, 8, 16, 32, 64)
         return [
             {"stiffness": k, "steps": n, **sampling}
