@@ -21,10 +21,10 @@ above 20° because tips dig into the mate's flank outside the path of contact, w
 line of action: an error of the penalty that goes as k grows (``variants``), and not with finer sampling.
 
 Also left open and chosen here: root (clearance and rounding 0.25 modules, ISO 53 profile C; tips dig into rounder
-fillets earlier: on fine profiles 0.253 % so, 0.265 % with a sharp root, 0.274 % with the roundest), bores (16 and 30 mm), no
-backlash, no structural damping, step 80 µs (its Fig. 28), ρ∞ = 0.8. k = 6×10⁸ N/m² without the thickness: F = k A. E
-is 207×10⁹ Pa as its Table 5 prints. Contact ratio and load sharing are also measured nearly without load, where they
-must be the analytic ones, and the stiffness of the mesh by FE statics (``gear_statics``).
+fillets earlier: on fine profiles 0.253 % so, 0.265 % with a sharp root, 0.274 % with the roundest), bores (16 and
+30 mm), no backlash, no structural damping, step 80 µs (its Fig. 28), ρ∞ = 0.8. k = 6×10⁸ N/m² without the thickness:
+F = k A. E is 207×10⁹ Pa as its Table 5 prints. Contact ratio and load sharing are also measured nearly without load,
+where they must be the analytic ones, and the stiffness of the mesh by FE statics (``gear_statics``).
 """
 
 from __future__ import annotations
