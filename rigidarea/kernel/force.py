@@ -36,8 +36,10 @@ REST_PHASE = 50.0
 #: (w h)^2 above which a step h is too long to follow a contact of frequency w: its spring is then taken implicitly,
 #: its impact as an impulse. (Symplectic Euler is stable up to 4, and in a stack up to 1.)
 FOLLOWED = 0.25
-#: The same between faces at rest, summed over a body's contacts, as a multiple.
-FLAT = 4.0
+#: The same in a crowd, summed over a body's contacts at rest, as a multiple.
+CROWDED = 4.0
+#: Time in which faces at rest part again when a step has pressed them together too far, in steps: they must not jump.
+SLOW = 4.0
 #: A chord below this fraction of sqrt(area) is rounding: the direction is then taken from memory, or anew.
 NO_CHORD = 1e-6
 
@@ -76,6 +78,7 @@ REGION = record(
         ("straight", "f8"),  # longest straight stretch of both boundaries in it (length)
         ("crowd", "f8"),  # of the two bodies' sums of rate2 over their contacts the larger (1/time^2)
         ("curved", "i4"),  # 1: one of the two boundaries is a curve
+        ("alone", "i4"),  # 1: between what cannot move and a body that nothing movable touches
         ("phase", "f8"),  # radians of natural motion since first touch
         ("first_speed", "f8"),  # closing speed at first touch (length/time)
         ("speed", "f8"),  # closing speed (length/time)
@@ -112,6 +115,15 @@ class Motion(NamedTuple):
     ax: float = 0.0  # what everything but this region does to it in this step (length/time^2)
     ay: float = 0.0
     aw: float = 0.0  # (1/time^2)
+
+
+class Arms(NamedTuple):
+    """Arms of the normal force and of the friction about the two bodies' centres (length)."""
+
+    arm_a: float
+    lean_a: float
+    arm_b: float
+    lean_b: float
 
 
 class Pull(NamedTuple):
@@ -331,6 +343,66 @@ def _remember(
         r.resting = 1
 
 
+class Rest(NamedTuple):
+    """Normal force, friction and couple of a contact at rest."""
+
+    force: float
+    friction: float
+    couple: float
+
+
+@kernel(inline="always")
+def _capped(a11: float, a12: float, a22: float, b1: float, b2: float, friction: float) -> tuple[float, float]:
+    """(force, friction) of the two equations a x = b, no pulling and none beyond Coulomb's cone."""
+    det = a11 * a22 - a12 * a12
+    force = (b1 * a22 - a12 * b2) / det
+    tangential = (a11 * b2 - a12 * b1) / det
+    if abs(tangential) > friction * force:
+        slope = friction if tangential > 0.0 else -friction
+        force = b1 / (a11 + slope * a12)
+        tangential = slope * force
+    if force <= 0.0:
+        return 0.0, 0.0
+    return force, tangential
+
+
+@kernel
+def _implicit_rest(
+    r: Any, a: Motion, b: Motion, elastic: float, c: float, ct: float, friction: float, coming: float,
+    sliding: float, turning: float, arms: Arms, inverse: float, inverse_t: float, dt: float,
+) -> Rest:  # fmt: skip
+    """A contact at rest whose springs are taken at the end of the step: all three of its forces at once.
+
+    Each is F0 + c v', v' the velocity at the end of the step, v* - h W x of all three x: so (1/c + h W) x = F0/c + v*
+    with the 3 x 3 inverse mass W of the two bodies in closing, sliding and turning. One after the other they would
+    undo each other, the more the stiffer.
+    """
+    ia = a.inverse_moment
+    ib = b.inverse_moment
+    a11 = 1.0 / c + dt * inverse
+    a22 = 1.0 / ct + dt * inverse_t
+    a12 = dt * (ia * arms.arm_a * arms.lean_a + ib * arms.arm_b * arms.lean_b) if friction > 0.0 else 0.0
+    b1 = elastic / c + coming
+    b2 = r.spring / ct + sliding if friction > 0.0 else 0.0
+    bed = c * r.straight**3 / (12.0 * r.chord)
+    if bed == 0.0:
+        force, tangential = _capped(a11, a12, a22, b1, b2, friction)
+        return Rest(force, tangential, 0.0)
+    a13 = dt * (ia * arms.arm_a + ib * arms.arm_b)
+    a23 = dt * (ia * arms.lean_a + ib * arms.lean_b) if friction > 0.0 else 0.0
+    a33 = 1.0 / bed + dt * (ia + ib)
+    force, tangential = _capped(
+        a11 - a13 * a13 / a33, a12 - a13 * a23 / a33, a22 - a23 * a23 / a33,
+        b1 - a13 * turning / a33, b2 - a23 * turning / a33, friction,
+    )  # fmt: skip
+    couple = (turning - a13 * force - a23 * tangential) / a33
+    most = force * r.chord / 3.0  # the point of application may be L/6 off the middle, the resultant L/2
+    if abs(couple) > most:
+        couple = min(most, max(-most, couple))
+        force, tangential = _capped(a11, a12, a22, b1 - a13 * couple, b2 - a23 * couple, friction)
+    return Rest(force, tangential, couple)
+
+
 @kernel
 def region_force(
     r: Any, law: Law, a: Motion, b: Motion, friction: float, elasticity: float,
@@ -346,12 +418,12 @@ def region_force(
     The closing speed within a step is the one in the middle of the step for impacts and the one at its end for
     resting dashpots, as far as this region's own force changes it: no damping is then too strong for the step.
 
-    Contacts too stiff for the step, (w h)^2 > `law.followed`. An impact becomes an impulse. At rest a curved contact's
-    spring is stretched to the end of the step, in part or, the stiffer, in whole (theta = 1 - (followed / (w h)^2)^2):
+    Contacts too stiff for the step, (w h)^2 > `law.followed`. An impact becomes an impulse. At rest springs are taken
+    at the end of the step, in part or, the stiffer, in whole (theta = 1 - (followed / (w h)^2)^2, `_implicit_rest`):
     no stiffness is then too high. That needs the speeds that the rest of the world will give the bodies in this step
     (`Motion.ax`), and so contacts are met one after the other, each with the force of those before it: Gauss and
-    Seidel's way. Between faces that would not do (what comes into touch within the step is not in the overlap yet):
-    there k is lowered to what the step can follow, for all contacts of a body alike, so that a face feels no seam.
+    Seidel's way, once a step. In a crowd of bodies once is not enough: there k is lowered to what the step can
+    follow, for all contacts of a body alike, so that a face feels no seam.
     """
     nx = r.nx
     ny = r.ny
@@ -389,62 +461,58 @@ def region_force(
     _remember(r, elasticity, speed, inverse, rest_speed, dt, born)
     if stretched > 0.0 and not r.resting:
         r.sudden = 1
-    if r.resting and not r.curved:
+    if stretched > 0.0 and not r.alone:
         stretched = 0.0
         stiffest = max(phase2, r.crowd * dt * dt)
-        if stiffest > FLAT * law.followed:
-            softer = FLAT * law.followed / stiffest
+        if r.resting and stiffest > CROWDED * law.followed:
+            softer = CROWDED * law.followed / stiffest
             elastic *= softer
             stiffness *= softer
             elasticity = 0.0  # a spring of our own making must not swing
 
-    couple = 0.0
-    if r.resting:
-        c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
-        turning = a.w - b.w
-        if stretched > 0.0:
-            c += stiffness * stretched
-            force = max(0.0, (elastic + c * coming) / (1.0 + dt * c * inverse))
-            turning += dt * (a.aw - b.aw - force * (arm_a * a.inverse_moment + arm_b * b.inverse_moment))
-        else:
-            force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
-        bed = c * r.straight**3 / (12.0 * r.chord)
-        couple = bed * turning / (1.0 + dt * bed * inverse_moments)
-        most = force * r.chord / 6.0  # more would need the pressure to pull at one end
-        couple = min(most, max(-most, couple))
-    else:
-        force = _impact(r, elastic, elasticity, speed, coming, inverse, dt, born)
-
-    tangential = 0.0
+    lean_a = rax * nx + ray * ny
+    lean_b = rbx * nx + rby * ny
+    if r.sudden:  # what slid was the surfaces, not the middle of the overlap
+        lean_a += r.beyond
+        lean_b -= r.depth - r.beyond
+        slip += a.w * r.beyond + b.w * (r.depth - r.beyond)
+    inverse_t = inverse_masses + lean_a * lean_a * a.inverse_moment + lean_b * lean_b * b.inverse_moment
+    kt = TANGENT_STIFFNESS * stiffness
+    ct = 0.0
     if friction > 0.0:
-        lean_a = rax * nx + ray * ny
-        lean_b = rbx * nx + rby * ny
-        if r.sudden:  # what slid was the surfaces, not the middle of the overlap
-            lean_a += r.beyond
-            lean_b -= r.depth - r.beyond
-            slip += a.w * r.beyond + b.w * (r.depth - r.beyond)
-        inverse_t = inverse_masses + lean_a * lean_a * a.inverse_moment + lean_b * lean_b * b.inverse_moment
-        kt = TANGENT_STIFFNESS * stiffness
         # the spring remembers a force; where the region shrinks the force shrinks with it, so no energy comes free
         if kt < r.tangent_stiffness:
             r.spring *= kt / r.tangent_stiffness
         r.tangent_stiffness = kt
         r.spring += kt * slip * dt
         ct = 2.0 * math.sqrt(kt / inverse_t) if inverse_t > 0.0 else 0.0
+    c = 2.0 * damping_ratio(elasticity) * math.sqrt(stiffness / inverse)
+    tangential = 0.0
+    couple = 0.0
+    if r.resting and stretched > 0.0:
+        if not r.curved:
+            stretched += SLOW * dt
+        force, tangential, couple = _implicit_rest(
+            r, a, b, elastic, c + stiffness * stretched, ct + kt * stretched, friction, coming,
+            slip + gy * nx - gx * ny, a.w - b.w + dt * (a.aw - b.aw), Arms(arm_a, lean_a, arm_b, lean_b),
+            inverse, inverse_t, dt,
+        )  # fmt: skip
         most = friction * force
         r.spring = min(most, max(-most, r.spring))
-        sliding = slip
-        if stretched > 0.0:
-            ct += kt * stretched
-            turn_a = force * arm_a + couple
-            turn_b = force * arm_b + couple
-            sliding += (
-                gy * nx
-                - gx * ny
-                - dt * (turn_a * a.inverse_moment * lean_a + turn_b * b.inverse_moment * lean_b)
-            )
-        tangential = r.spring + ct * sliding / (1.0 + dt * ct * inverse_t)
-        tangential = min(most, max(-most, tangential))
+    else:
+        if r.resting:
+            force = max(0.0, elastic + c * speed / (1.0 + dt * c * inverse))
+            bed = c * r.straight**3 / (12.0 * r.chord)
+            couple = bed * (a.w - b.w) / (1.0 + dt * bed * inverse_moments)
+            most = force * r.chord / 6.0  # more would need the pressure to pull at one end
+            couple = min(most, max(-most, couple))
+        else:
+            force = _impact(r, elastic, elasticity, speed, coming, inverse, dt, born)
+        if friction > 0.0:
+            most = friction * force
+            r.spring = min(most, max(-most, r.spring))
+            tangential = r.spring + ct * slip / (1.0 + dt * ct * inverse_t)
+            tangential = min(most, max(-most, tangential))
     r.force = force
     r.friction = tangential
     r.couple = couple

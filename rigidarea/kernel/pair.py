@@ -52,6 +52,7 @@ BODY = record(
         ("old_turn", "f8"),
         ("met_rate", "f8"),  # sum of rate2 of all its regions in that step
         ("old_rate", "f8"),  # in the step before
+        ("crowded", "i4"),  # steps for which it still counts as touched by a body that can move
     ]
 )
 
@@ -74,6 +75,9 @@ PAIR = record(
 #: Counters: free regions' list head, how many are free, free pairs' list head, how many; queries, tangled queries.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, QUERIES, TANGLES = range(6)
 COUNTERS = 6
+
+#: A body is in a crowd for so many steps after a movable one has touched it: contacts of a pile come and go.
+CROWDED_STEPS = 16
 
 DONE, GROW_WORK, GROW_REGIONS, NOT_FINITE = 0, 1, 2, 3
 
@@ -140,6 +144,7 @@ def meet_body(body: Any, stamp: int) -> None:
     body.met_turn = 0.0
     body.old_rate = body.met_rate if last else 0.0
     body.met_rate = 0.0
+    body.crowded = max(0, body.crowded - 1) if last else 0
     body.stamp = stamp
 
 
@@ -441,6 +446,8 @@ def pair_pull(
     curved = head_a.round or pool.heads[ib].round
     body_a = tables.bodies[tables.shapes[sa].body]
     body_b = tables.bodies[tables.shapes[sb].body]
+    pair_moves = a.inverse_mass > 0.0 and b.inverse_mass > 0.0
+    alone = not pair_moves and (body_a if a.inverse_mass > 0.0 else body_b).crowded == 0
     crowd = max(
         body_a.old_rate if a.inverse_mass > 0.0 else 0.0,
         body_b.old_rate if b.inverse_mass > 0.0 else 0.0,
@@ -521,6 +528,7 @@ def pair_pull(
             y += wx * loop.lever / chord
         region.crowd = crowd
         region.curved = 1 if curved else 0
+        region.alone = 1 if alone else 0
         region.straight = 0.0 if curved else min(loop.straight, chord)
         if born:
             region.depth, region.beyond = _extent(work, loop.start, loop.stop, loop.x, loop.y, pose_a, wx, wy)
@@ -544,6 +552,9 @@ def pair_pull(
         )  # fmt: skip
         body_a.met_rate += region.rate2
         body_b.met_rate += region.rate2
+        if pair_moves:
+            body_a.crowded = CROWDED_STEPS
+            body_b.crowded = CROWDED_STEPS
         fx += pull.fx
         fy += pull.fy
         moment_a += pull.moment_a
