@@ -98,7 +98,7 @@ def _compare(arguments: argparse.Namespace) -> int:
 
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
     _write(arguments, "compare", report)
-    (picture, _) = draw_compare.levels(report, traces, arguments.out)
+    picture, *_ = draw_compare.levels(report, traces, arguments.out)
     if arguments.docs:
         page.renew(arguments.docs, {}, {"compare.png": picture})
     return _tell(arguments, report, report["results"])
