@@ -10,7 +10,7 @@ import pymunk
 import rigidarea
 
 from ..scene import Body, Circle, Polygon, Scene
-from .base import Run, Settings, drive, has_curves, rigid_only, samplings
+from .base import Run, Settings, drive, has_curves, rigid_only
 from .chipmunk import SpaceRun, add_pivots, make_body, surface
 
 
@@ -108,13 +108,15 @@ class GameRun(FrameRun):
 
 
 def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
-    """As for the peers, and finer in gears (clearances are finer than convex pieces can follow); discs too."""
+    """Chord tolerances over body size: finer than the peers', whose discs are exact and whose pieces are many."""
+    values: tuple[float, ...] = ()
     if "gears" in scene.tags:
-        return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
-    known = samplings(scene, quick)
-    if known == [{}] and has_curves(scene):
-        return [{"sampling": value} for value in ((1e-4,) if quick else (1e-3, 1e-4, 1e-5))]
-    return known
+        values = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5)
+    elif scene.tags & {"curved", "rolling"}:
+        values = (1e-3, 1e-5) if quick else (1e-3, 1e-4, 1e-5, 1e-6)
+    elif has_curves(scene):
+        values = (1e-4,) if quick else (1e-3, 1e-4, 1e-5)
+    return [{"sampling": value} for value in values] or [{}]
 
 
 class Area:
