@@ -26,7 +26,7 @@ CAUSES: dict[str, str] = {
     "oblique_bounce": _IMPACT,
     "oblique_discs": _IMPACT,
     "off_centre_hit": _IMPACT,
-    "overhang": "books over an edge: a flat contact softened to what the step can follow tilts, and the pile falls below "
+    "overhang": "books over an edge: a flat contact softened to what the step can follow tilts; the pile falls below "
     "16 steps a frame",
     "rest": _REST,
     "ring_on_peg": _DISC,
