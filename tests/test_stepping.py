@@ -303,6 +303,45 @@ def test_no_stiffness_is_too_high_for_a_step(stiffness, steps):
     assert max(b.velocity.length for b in (*bodies, disc)) < 0.05
 
 
+@pytest.mark.parametrize("steps", [1, 4])
+def test_a_stiff_contact_at_rest_is_exact_at_any_step(steps):
+    """Sinking m g / (k L) to 1e-6 of the size; a bar over two supports; a block on a slope 10 % short of tipping."""
+    slope = math.atan(0.9 * 0.5)
+    for tilt in (0.0, slope):
+        space, contact = world(1e8, gravity=(G * math.sin(tilt), -G * math.cos(tilt)))
+        block = box(space, (0, 0.5), (0.5, 1.0), friction=2.0)
+        for x in (9, 11):
+            post = pymunk.Poly(space.static_body, [(x, 0), (x + 0.5, 0), (x + 0.5, 1), (x, 1)])
+            post.friction = 2.0
+            space.add(post)
+        bar = box(space, (10.25, 1.1), (4.0, 0.2), friction=2.0)
+        start = [block.position, bar.position]
+        contact.step(1 / 60, 180, steps)
+        # on the slope a face tips a little before it holds, and the bar's two contacts learn of each other within a
+        # few steps: second order in the step
+        for body, at, near in zip(
+            (block, bar), start, (1e-6 if tilt == 0.0 else 0.01 / steps**2, 0.01 / steps**2)
+        ):
+            assert (body.position - at).length < near and abs(body.angle) < near
+            assert body.velocity.length < 10 * near
+
+
+@pytest.mark.parametrize("hook", ["compiled", "python"])
+def test_friction_at_any_step_stops_and_holds(hook):
+    """A block thrown over a floor stops after v^2 / 2 mu g: second order in the step, and then never moves."""
+    far = []
+    for steps in (2, 4):
+        space, contact = world(1e8, hook=hook)
+        body = box(space, (0, 0.5), friction=0.4)
+        body.velocity = 3, 0
+        contact.step(1 / 60, 120, steps)
+        far.append(abs(body.position.x - 9 / (2 * 0.4 * G)))
+        at = body.position
+        contact.step(1 / 60, 30, steps)
+        assert (body.position - at).length < 1e-8
+    assert far[0] < 1e-3 and far[1] < 1e-3
+
+
 @pytest.mark.parametrize("e", [0.0, 0.3, 0.6, 1.0])
 def test_an_impact_too_short_for_the_step_is_an_impulse(e):
     """Oblique hit of a disc on a free bar off its centre, one step a frame: J = (1 + e) v / (1/m + 1/M + d^2/I)."""

@@ -400,6 +400,8 @@ def _implicit_rest(
     if abs(couple) > most:
         couple = min(most, max(-most, couple))
         force, tangential = _capped(a11, a12, a22, b1 - a13 * couple, b2 - a23 * couple, friction)
+        most = force * r.chord / 3.0
+        couple = min(most, max(-most, couple))
     return Rest(force, tangential, couple)
 
 
