@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-LEAF = 4  # edges a leaf: fewer make the tree deeper, more test more edge pairs
+LEAF = 3  # edges a leaf: fewer make the tree deeper, more test more edge pairs
 
 
 class Boundary(NamedTuple):

@@ -15,17 +15,11 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, workspace
+from rigidarea.flexible.contacts import replay
+from rigidarea.flexible.run import HALVINGS, run_steps
 from rigidarea.flexible.scratch import MANY, SLICED, TORN
-from rigidarea.flexible.step import (
-    HALVINGS,
-    REGIONS_KEPT,
-    Buffers,
-    Settings,
-    State,
-    System,
-    replay,
-    run_steps,
-)
+from rigidarea.flexible.system import REGIONS_KEPT as REGIONS_KEPT
+from rigidarea.flexible.system import Buffers, Settings, State, System, elastic
 
 Array = NDArray[np.float64]
 
@@ -154,6 +148,7 @@ class Simulation:
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
         self.works = tuple(workspace(b.boundary) for b in bodies)
+        self._elastic = tuple(map(elastic, self.boundaries, self.works))
         self.pairs = np.array(pairs, np.int64).reshape(-1, 2)
         spread = any(bd.modes.shape[1] > 0 or len(bd.flexibility) for bd in self.boundaries)
         self.settings = Settings(float(k), float(reach if contact == "sts" else q), contact == "sts", spread,
@@ -250,9 +245,9 @@ class Simulation:
         try:
             while done < steps and code >= 0:
                 part, code = run_steps(
-                    self.boundaries, self.works, self.system, self.couplings, self.state, self._saved, self.pairs,
-                    self.settings, self.scratch, self._buffers, begin + h * done, h, min(chunk, steps - done), every,
-                    out[done // every :],
+                    self.boundaries, self.works, self._elastic, self.system, self.couplings, self.state, self._saved,
+                    self.pairs, self.settings, self.scratch, self._buffers, begin + h * done, h,
+                    min(chunk, steps - done), every, out[done // every :],
                 )  # fmt: skip
                 done += part
         finally:  # an interrupt arrives between chunks: what was computed stays readable
