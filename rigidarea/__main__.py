@@ -72,7 +72,7 @@ def _case(arguments: argparse.Namespace) -> None:
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command line; returns the exit code: 2 for input that makes no sense, as argparse has it."""
+    """Run the command line; returns the exit code: 2 for input that makes no sense (argparse's), 130 if stopped."""
     given = list(sys.argv[1:] if argv is None else argv)
     top = parser(next((word for word in given if not word.startswith("-")), None))
     arguments = top.parse_args(given)
@@ -86,6 +86,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
+    except KeyboardInterrupt:
+        print(f"rigidarea {arguments.command}: stopped; what was finished is in {arguments.out}", file=sys.stderr)
+        return 130
     return int(code or 0)
 
 
