@@ -57,7 +57,9 @@ def _record(elastic, sy, couplings, state, buf, row):  # type: ignore[no-untyped
 
 
 @kernel
-def run_steps(bodies, works, elastic, sy, couplings, state, saved, pairs, st, s, buf, t0, h, steps, every, out):  # type: ignore[no-untyped-def]
+def run_steps(  # type: ignore[no-untyped-def]
+    bodies, works, elastic, sy, couplings, state, saved, pairs, st, s, buf, t0, h, steps, every, out
+):
     """``steps`` steps of h; one row of ``out`` every ``every`` steps. Returns (steps done, code)."""
     peak_iterations = halved = 0
     for n in range(steps):
