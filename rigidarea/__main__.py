@@ -87,7 +87,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
     except KeyboardInterrupt:
-        print(f"rigidarea {arguments.command}: stopped; what was finished is in {arguments.out}", file=sys.stderr)
+        print(
+            f"rigidarea {arguments.command}: stopped; what was finished is in {arguments.out}",
+            file=sys.stderr,
+        )
         return 130
     return int(code or 0)
 

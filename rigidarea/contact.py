@@ -16,7 +16,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from . import hook, stepping
 from .chipmunk import LayoutError, address_of, layout
 from .energy import stored_energy
-from .kernel.force import CHORD, FOLLOWED, LAW_AREA, LAW_ENERGY, NODAL
+from .kernel.region import CHORD, FOLLOWED, LAW_AREA, LAW_ENERGY, NODAL
 from .outline import Outline, positive
 from .pairs import Memory, Pairs
 from .store import Store, load_law

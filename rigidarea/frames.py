@@ -21,8 +21,9 @@ from .chipmunk import register_symbols
 from .kernel.clearance import clearance, time_to_cover
 from .kernel.jit import callback, kernel
 from .kernel.memory import array_at
-from .kernel.pair import Tables, seen_from
+from .kernel.place import seen_from
 from .kernel.pool import Pool
+from .kernel.tables import Tables
 from .kernel.work import Work
 from .machine import floats, pose_of, word
 from .stepping import highest_frequency

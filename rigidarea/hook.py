@@ -24,22 +24,11 @@ import pymunk
 from pymunk import Arbiter
 from pymunk._chipmunk_cffi import lib
 
-from .kernel.force import Motion
+from .kernel.crowd import expected, meet_body, put_in, remember_pull, take_out
 from .kernel.jit import kernel
-from .kernel.pair import (
-    DONE,
-    GROW_REGIONS,
-    GROW_WORK,
-    NOT_FINITE,
-    Pose,
-    Surface,
-    expected,
-    meet_body,
-    pair_pull,
-    put_in,
-    remember_pull,
-    take_out,
-)
+from .kernel.pair import DONE, GROW_REGIONS, GROW_WORK, NOT_FINITE, Surface, pair_pull
+from .kernel.place import Pose
+from .kernel.region import Motion
 from .store import Store, load_law
 
 #: Requests of machine code to Python.

@@ -15,25 +15,13 @@ from numba import types
 
 from .chipmunk import register_symbols
 from .hook import BAD_STATE, MORE_REGIONS, MORE_WORK, NEW_PAIR, NEW_SHAPE, NOTHING, surface_velocity
-from .kernel.force import Motion
+from .kernel.crowd import expected, meet_body, put_in, remember_pull, take_out
 from .kernel.jit import callback, kernel
 from .kernel.memory import array_at
-from .kernel.pair import (
-    DONE,
-    FREE_PAIRS,
-    GROW_WORK,
-    NOT_FINITE,
-    Pose,
-    Surface,
-    end_pair,
-    expected,
-    meet_body,
-    new_pair,
-    pair_pull,
-    put_in,
-    remember_pull,
-    take_out,
-)
+from .kernel.pair import DONE, GROW_WORK, NOT_FINITE, Surface, pair_pull
+from .kernel.place import Pose
+from .kernel.region import Motion
+from .kernel.tables import FREE_PAIRS, end_pair, new_pair
 from .store import STATE, load_law, load_pool, load_tables, load_work
 
 #: Chipmunk's states of an arbiter (enum cpArbiterState).

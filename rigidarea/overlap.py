@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import numpy as np
 
-from .kernel.force import chord_direction
+from .kernel.direction import chord_direction
 from .kernel.overlap import Work, enlarged, new_work
-from .kernel.pair import Pose, overlap_of_outlines, push_out
+from .kernel.place import Pose, overlap_of_outlines, push_out
 from .kernel.pool import Pool, pack
 from .outline import Outline
 

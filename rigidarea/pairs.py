@@ -13,7 +13,7 @@ from pymunk._chipmunk_cffi import ffi
 
 from .chipmunk import address_of
 from .hook import pair_of_shapes
-from .kernel.pair import FREE_PAIRS, FREE_REGION, FREE_REGIONS, end_pair, new_pair
+from .kernel.tables import FREE_PAIRS, FREE_REGION, FREE_REGIONS, end_pair, new_pair
 from .store import Store
 
 #: What a copy of a space is told: by the two shapes' places in space.shapes, the pair's sides and its regions.

@@ -16,10 +16,10 @@ import pymunk
 import pymunk.batch
 from pymunk._chipmunk_cffi import ffi, lib
 
-from .kernel.force import LAW_AREA, Law
 from .kernel.jit import njit
-from .kernel.pair import Tables
 from .kernel.pool import Pool
+from .kernel.region import LAW_AREA, Law
+from .kernel.tables import Tables
 
 #: Largest phase w h of the stiffest contact within a step. Symplectic Euler is stable below 2; the frequency is
 #: already that of a body between two others in a stack (twice a single contact's), so that this is 1/9 of what a

@@ -13,12 +13,22 @@ from typing import Any
 
 import numpy as np
 
-from .kernel.force import REGION, Law
 from .kernel.jit import kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
-from .kernel.pair import BODY, COUNTERS, FREE_PAIR, FREE_PAIRS, FREE_REGION, FREE_REGIONS, PAIR, SHAPE, Tables
 from .kernel.pool import HEAD, HasRings, Pool, pack
+from .kernel.region import REGION, Law
+from .kernel.tables import (
+    BODY,
+    COUNTERS,
+    FREE_PAIR,
+    FREE_PAIRS,
+    FREE_REGION,
+    FREE_REGIONS,
+    PAIR,
+    SHAPE,
+    Tables,
+)
 
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "heads"),

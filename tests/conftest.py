@@ -44,12 +44,15 @@ class Kernel:
 
     def __init__(self) -> None:
         self.overlap = kernel_module("overlap")
-        self.pair = kernel_module("pair")
+        self.place = kernel_module("place")
         self.pool = kernel_module("pool")
         self.force = kernel_module("force")
+        self.region = kernel_module("region")
+        self.direction = kernel_module("direction")
+        self.impact = kernel_module("impact")
         self.predicates = kernel_module("predicates")
-        regions_of = self.pair.overlap_of_outlines
-        Pose = self.pair.Pose
+        regions_of = self.place.overlap_of_outlines
+        Pose = self.place.Pose
 
         @numba.njit
         def run(
@@ -140,14 +143,14 @@ class Kernel:
         pool = self.pool.pack([a, b])
         work = self.work([a, b])
         pose = [
-            self.pair.Pose(p[0], p[1], float(np.cos(p[2])), float(np.sin(p[2]))) for p in (pose_a, pose_b)
+            self.place.Pose(p[0], p[1], float(np.cos(p[2])), float(np.sin(p[2]))) for p in (pose_a, pose_b)
         ]
-        n = self.pair.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
+        n = self.place.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
         while n < 0:
             work = self.overlap.enlarged(
                 work, 2 * max(len(a.rings[0]), len(b.rings[0])), 2 * len(a.rings + b.rings)
             )
-            n = self.pair.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
+            n = self.place.overlap_of_outlines(pool, 0, pose[0], 1, pose[1], work)[0]
         middle = (pool.heads["x"][0], pool.heads["y"][0])
         spans = [slice(int(work.loops["start"][k]), int(work.loops["stop"][k])) for k in range(n)]
         return [(work.polygon[s] + middle, work.label[s].copy()) for s in spans]

@@ -82,7 +82,7 @@ def test_nodal_direction_is_algorithm_2(kernel: Any, q: float, corners: tuple[in
             continue  # Algorithm 2 speaks of one region, two crossings, and nodes of both bodies inside
         tried += 1
         polygon, label = regions[0]
-        direction = kernel.force.nodal_direction(polygon, label, 0, len(polygon), q)
+        direction = kernel.direction.nodal_direction(polygon, label, 0, len(polygon), q)
         # F_contact acts on the slave, A: the direction from A to B is its opposite. 1e-9: a node that GEOS's
         # crossing and ours see half an ulp apart, weighted like any other
         assert np.allclose(direction, -algorithm_2(*arcs, q), atol=1e-9)
@@ -105,7 +105,7 @@ def test_nodal_direction_of_symmetric_contacts(kernel: Any, q: float) -> None:
             [(polygon, label)] = kernel.polygons(a, (0, 0, angle), b, place)
             # in A's axes, which turn with the scene
             assert np.allclose(
-                kernel.force.nodal_direction(polygon, label, 0, len(polygon), q), (0, -1), atol=1e-9
+                kernel.direction.nodal_direction(polygon, label, 0, len(polygon), q), (0, -1), atol=1e-9
             )
 
 
@@ -115,7 +115,8 @@ def test_nodal_direction_depends_on_q(kernel: Any) -> None:
     floor = ra.Outline([(-5, -2), (5, -2), (5, 0), (-5, 0)])
     [(polygon, label)] = kernel.polygons(blade, (0, 0, 0), floor, (0, 0, 0))
     angles = [
-        math.atan2(*kernel.force.nodal_direction(polygon, label, 0, len(polygon), q)[::-1]) for q in (0, 1, 4)
+        math.atan2(*kernel.direction.nodal_direction(polygon, label, 0, len(polygon), q)[::-1])
+        for q in (0, 1, 4)
     ]
     assert angles[0] != angles[1] != angles[2]
     assert (angles[0] < angles[1] < angles[2]) or (angles[0] > angles[1] > angles[2])
@@ -128,20 +129,22 @@ def test_nodal_direction_tends_to_the_chord(kernel: Any) -> None:
     for n in counts:
         found = kernel.one(disc(n), (0, 0, 0.1), wedge, (0, -0.7, 0.0))
         [(polygon, label)] = kernel.polygons(disc(n), (0, 0, 0.1), wedge, (0, -0.7, 0.0))
-        chord = kernel.force.chord_direction(*found.chord[0], found.area[0])
+        chord = kernel.direction.chord_direction(*found.chord[0], found.area[0])
         turn = np.array([[math.cos(0.1), math.sin(0.1)], [-math.sin(0.1), math.cos(0.1)]])
-        nodal = np.array(kernel.force.nodal_direction(polygon, label, 0, len(polygon), 0.0)) @ turn
+        nodal = np.array(kernel.direction.nodal_direction(polygon, label, 0, len(polygon), 0.0)) @ turn
         errors.append(abs(nodal[0] * chord[1] - nodal[1] * chord[0]))
     # first order, unevenly: an arc's two ends, nearer to a crossing than half an edge or not, belong to no node
     assert -1.3 < np.polyfit(np.log(counts), np.log(errors), 1)[0] < -0.6
 
 
 def test_no_direction_without_a_chord(kernel: Any) -> None:
-    assert kernel.force.chord_direction(0.0, 0.0, 1.0) == (0.0, 0.0)
-    assert kernel.force.chord_direction(0.0, -2.0, 1.0) == (-1.0, 0.0)
+    assert kernel.direction.chord_direction(0.0, 0.0, 1.0) == (0.0, 0.0)
+    assert kernel.direction.chord_direction(0.0, -2.0, 1.0) == (-1.0, 0.0)
     small, large = disc(12, 0.1), disc(40)
     [(polygon, label)] = kernel.polygons(small, (0, 0, 0), large, (0.2, 0, 0))
-    assert np.allclose(kernel.force.nodal_direction(polygon, label, 0, len(polygon), 0.5), (0, 0), atol=1e-12)
+    assert np.allclose(
+        kernel.direction.nodal_direction(polygon, label, 0, len(polygon), 0.5), (0, 0), atol=1e-12
+    )
 
 
 # --- restitution ---
@@ -158,16 +161,16 @@ def test_restitution_damping_solves_its_equation(kernel: Any, e: float) -> None:
 
     # near 0 the equation's left side is -(1 - e^2) alpha^2 / 2: negative up to 3 (1 - e^2) / 2 / (1 + e^3) and beyond
     alpha = brentq(equation, 0.5 * (1 - e * e), (1 - 1e-15) / e, xtol=1e-15, rtol=8.9e-16)
-    assert kernel.force.restitution_damping(e) == pytest.approx(alpha, rel=1e-10)
+    assert kernel.impact.restitution_damping(e) == pytest.approx(alpha, rel=1e-10)
 
 
 def test_no_damping_for_full_restitution(kernel: Any) -> None:
-    assert kernel.force.restitution_damping(1.0) == kernel.force.restitution_damping(1.5) == 0.0
-    assert kernel.force.damping_ratio(1.0) == 0.0
+    assert kernel.impact.restitution_damping(1.0) == kernel.impact.restitution_damping(1.5) == 0.0
+    assert kernel.impact.damping_ratio(1.0) == 0.0
     # towards e = 0 the root is 1 / e to rounding; below LEAST_RESTITUTION it stays
-    least = kernel.force.LEAST_RESTITUTION
-    assert kernel.force.restitution_damping(least) == pytest.approx(1 / least, rel=1e-12)
-    assert kernel.force.restitution_damping(0.0) == kernel.force.restitution_damping(least)
+    least = kernel.impact.LEAST_RESTITUTION
+    assert kernel.impact.restitution_damping(least) == pytest.approx(1 / least, rel=1e-12)
+    assert kernel.impact.restitution_damping(0.0) == kernel.impact.restitution_damping(least)
 
 
 def bounced(acceleration: Any) -> float:
@@ -188,14 +191,14 @@ def bounced(acceleration: Any) -> float:
 @pytest.mark.parametrize("e", ASKED)
 def test_integrated_impact_returns_what_is_asked(kernel: Any, e: float, power: float) -> None:
     """Whatever the area does with depth; solve_ivp integrates, the kernel only gives alpha (v0 = 1, so a = alpha)."""
-    alpha = kernel.force.restitution_damping(e)
+    alpha = kernel.impact.restitution_damping(e)
     assert bounced(lambda d, v: -(d**power) * (1 + alpha * v)) == pytest.approx(e, abs=1e-6)
 
 
 @pytest.mark.parametrize("e", ASKED)
 def test_damping_ratio_returns_what_is_asked(kernel: Any, e: float) -> None:
     """Half a period of the linear spring and dashpot (which may pull at its end), integrated."""
-    zeta = kernel.force.damping_ratio(e)
+    zeta = kernel.impact.damping_ratio(e)
     assert bounced(lambda d, v: -d - 2 * zeta * v) == pytest.approx(e, abs=1e-6)
 
 
@@ -207,17 +210,17 @@ STILL = dict(x=0.0, y=0.0, vx=0.0, vy=0.0, w=0.0, inverse_mass=0.0, inverse_mome
 def contact(kernel: Any, **changes: Any) -> SimpleNamespace:
     """A region (A above B, direction down) between two bodies; every number can be changed by name."""
     force = kernel.force
-    region = np.zeros(1, force.REGION)
+    region = np.zeros(1, kernel.region.REGION)
     region["next"] = -1
     fields = dict(area=0.02, x=0.3, y=-0.1, nx=0.0, ny=-1.0, chord=0.5)
-    for name in [n for n in changes if n in force.REGION.names and n != "friction"]:
+    for name in [n for n in changes if n in kernel.region.REGION.names and n != "friction"]:
         fields[name] = changes.pop(name)
     for name, value in fields.items():
         region[name] = value
-    law = force.Law(1e4, force.LAW_AREA, 1.0, force.CHORD, 0.5, 0.05)
+    law = kernel.region.Law(1e4, kernel.region.LAW_AREA, 1.0, kernel.region.CHORD, 0.5, 0.05)
     law = law._replace(**{n: changes.pop(n) for n in list(changes) if n in law._fields})
-    a = force.Motion(**STILL)._replace(inverse_mass=0.5, inverse_moment=2.0, **changes.pop("a", {}))
-    b = force.Motion(**STILL)._replace(y=-1.0, **changes.pop("b", {}))
+    a = kernel.region.Motion(**STILL)._replace(inverse_mass=0.5, inverse_moment=2.0, **changes.pop("a", {}))
+    b = kernel.region.Motion(**STILL)._replace(y=-1.0, **changes.pop("b", {}))
     args = dict(friction=0.0, elasticity=1.0, surface_x=0.0, surface_y=0.0, dt=1e-9, born=False) | changes
     pull = force.region_force(region[0], law, a, b, *args.values())
     return SimpleNamespace(pull=pull, region=region[0], row=region, law=law, a=a, b=b)
@@ -236,7 +239,7 @@ def test_elastic_force_is_k_times_area(kernel: Any, resting: int) -> None:
 
 def test_energy_law_is_the_gradient_of_its_energy(kernel: Any) -> None:
     """U = k A^2 / (2 l), so F = dU/d(depth) = k A L / l with dA/d(depth) = L."""
-    got = contact(kernel, law=kernel.force.LAW_ENERGY, length=0.25, resting=1)
+    got = contact(kernel, law=kernel.region.LAW_ENERGY, length=0.25, resting=1)
     assert got.region["force"] == pytest.approx(1e4 * 0.02 * 0.5 / 0.25)
 
 
@@ -244,7 +247,7 @@ def test_impact_damping(kernel: Any) -> None:
     """F = k A (1 + a speed), a = alpha / v0 fixed at first touch; A falls on B with speed 2."""
     falls = dict(vy=-2.0)
     born = contact(kernel, a=falls, elasticity=0.5, born=True)
-    alpha = kernel.force.restitution_damping(0.5)
+    alpha = kernel.impact.restitution_damping(0.5)
     assert born.region["first_speed"] == 2.0 and born.region["resting"] == 0
     assert born.region["force"] == pytest.approx(200 * (1 + alpha), rel=1e-6)
     # slower later, the same a
@@ -264,7 +267,7 @@ def test_slow_touch_rests_from_the_start(kernel: Any) -> None:
 def test_resting_dashpot(kernel: Any, e: float) -> None:
     """k A + c speed with c = 2 zeta sqrt(k L m_eff); against the oscillator's textbook formula."""
     got = contact(kernel, a=dict(vy=-0.01), x=0.0, elasticity=e, resting=1)
-    c = 2 * kernel.force.damping_ratio(e) * math.sqrt(1e4 * 0.5 * 2.0)
+    c = 2 * kernel.impact.damping_ratio(e) * math.sqrt(1e4 * 0.5 * 2.0)
     assert got.region["force"] == pytest.approx(200 + c * 0.01, rel=1e-6)
 
 
@@ -285,7 +288,7 @@ def test_couple_of_a_resting_face(kernel: Any) -> None:
 
     assert couple(0.0) == 0 and couple(1e3) == -couple(-1e3) and couple(1e-3) == -couple(-1e-3)
     assert couple(1e3) == pytest.approx(200 * 0.5 / 6)  # more would need the pressure to pull at one end
-    c = 2 * kernel.force.damping_ratio(0.5) * math.sqrt(1e4 * 0.5 / 0.5)
+    c = 2 * kernel.impact.damping_ratio(0.5) * math.sqrt(1e4 * 0.5 / 0.5)
     # a bed of dashpots, c in all, spread over the chord: second moment of its straight stretch
     assert couple(1e-3) == pytest.approx(c * 0.5**2 / 12 * 1e-3, rel=1e-6)
     assert couple(1e-3, straight=0.25) == pytest.approx(c / 0.5 * 0.25**3 / 12 * 1e-3, rel=1e-6)
@@ -329,9 +332,9 @@ def test_stepped_impact_converges_to_what_is_asked(kernel: Any, e: float, power:
     errors = []
     steps = [1e-3, 5e-4, 2.5e-4]
     for dt in steps:
-        region = np.zeros(1, force.REGION)
-        law = force.Law(1e4, force.LAW_AREA, 1.0, force.CHORD, 0.5, 0.0)
-        b = force.Motion(**STILL)
+        region = np.zeros(1, kernel.region.REGION)
+        law = kernel.region.Law(1e4, kernel.region.LAW_AREA, 1.0, kernel.region.CHORD, 0.5, 0.0)
+        b = kernel.region.Motion(**STILL)
         depth, v, born = -0.37 * dt, 1.0, True
         for _ in range(20000):
             depth += v * dt
@@ -341,7 +344,7 @@ def test_stepped_impact_converges_to_what_is_asked(kernel: Any, e: float, power:
                 continue
             region["area"], region["chord"] = depth**power, power * depth ** (power - 1)
             region["ny"] = -1.0
-            a = force.Motion(0.0, 0.0, 0.0, -v, 0.0, 1.0, 0.0)
+            a = kernel.region.Motion(0.0, 0.0, 0.0, -v, 0.0, 1.0, 0.0)
             pull = force.region_force(region[0], law, a, b, 0.0, e, 0.0, 0.0, dt, born)
             born = False
             v += pull.fy * dt  # the force on B, downwards; on A upwards
@@ -378,12 +381,12 @@ scenes = st.fixed_dictionaries(
 
 def scene(kernel: Any, a: Any, b: Any, region: Any, args: Any, angle: float) -> SimpleNamespace:
     force = kernel.force
-    row = np.zeros(1, force.REGION)
+    row = np.zeros(1, kernel.region.REGION)
     for name, value in (region | dict(nx=math.cos(angle), ny=math.sin(angle))).items():
         row[name] = value
-    law = force.Law(args["stiffness"], args["law"], 0.7, force.CHORD, 0.5, 0.01)
+    law = kernel.region.Law(args["stiffness"], args["law"], 0.7, kernel.region.CHORD, 0.5, 0.01)
     rest = [args[n] for n in ("friction", "elasticity", "surface_x", "surface_y", "dt", "born")]
-    pull = force.region_force(row[0], law, force.Motion(**a), force.Motion(**b), *rest)
+    pull = force.region_force(row[0], law, kernel.region.Motion(**a), kernel.region.Motion(**b), *rest)
     return SimpleNamespace(pull=np.array(pull), region=row[0])
 
 

@@ -781,7 +781,7 @@ def test_direction_points_from_a_to_b(kernel: Any) -> None:
     ):
         found = kernel.one(square, (0, 0, np.pi / 4 if place[1] == -1.2 else 0), b, place)
         assert len(found.area) == 1
-        direction = kernel.force.chord_direction(*found.chord[0], found.area[0])
+        direction = kernel.direction.chord_direction(*found.chord[0], found.area[0])
         # the boxes of the first rows overlap at a corner: the chord is the diagonal of a 0.1 by 0.9 rectangle
         want = np.array(seen) if abs(place[1]) > 0.5 else np.array([0.9 * seen[0], 0.1]) / np.hypot(0.9, 0.1)
         assert np.allclose(direction, want, atol=1e-12)
@@ -855,7 +855,7 @@ def test_finer_sampling_converges_to_the_lens(kernel: Any) -> None:
         disc = ra.Outline(np.stack([np.cos(t), np.sin(t)], 1))
         found = kernel.one(disc, (0, 0, 0.0), disc, (d * np.cos(0.4), d * np.sin(0.4), 2 * 0.4 - np.pi))
         errors.append(abs(found.area.sum() - lens))
-        direction = kernel.force.chord_direction(*found.chord[0], found.area[0])
+        direction = kernel.direction.chord_direction(*found.chord[0], found.area[0])
         assert np.allclose(direction, (np.cos(0.4), np.sin(0.4)), atol=1e-9)  # mirror images of each other
     order = -np.polyfit(np.log(counts[2:]), np.log(errors[2:]), 1)[0]
     assert 1.8 < order < 2.2

@@ -6,10 +6,12 @@ import math
 
 import numpy as np
 
-from .force import LAW_AREA, Law
 from .jit import njit
-from .pair import Pose, Tables, overlap_of_pair
+from .pair import overlap_of_pair
+from .place import Pose
 from .pool import Pool
+from .region import LAW_AREA, Law
+from .tables import Tables
 from .work import Work
 
 

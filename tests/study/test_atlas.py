@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from rigidarea.kernel.force import damping_ratio
+from rigidarea.kernel.impact import damping_ratio
 from rigidarea.study import atlas
 from rigidarea.study.atlas import PASS, Variant, engines, evaluate, get_map, judge, maps
 from rigidarea.study.maps import buckling, step_size

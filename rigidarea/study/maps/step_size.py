@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ...kernel.force import damping_ratio
+from ...kernel.impact import damping_ratio
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge
 from ..peers import get_peer
 from ..scene import VY, Array, G, Scene, block, floor
