@@ -21,6 +21,7 @@ import numpy as np
 import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
+from threadpoolctl import threadpool_limits
 
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, lumped_mass, stiffness
@@ -180,7 +181,8 @@ class Flexibility:
                 (n, n), lambda x: self.root * self((self.root * x.ravel())[:, None])[:, 0], dtype=float
             )
             start = np.random.default_rng(0).standard_normal(n)
-            value, vectors = spl.eigsh(response, k=count, which="LM", v0=start)
+            with threadpool_limits(1, "blas"):  # on vectors this thin threads only wait for each other
+                value, vectors = spl.eigsh(response, k=count, which="LM", v0=start)
         first = np.argsort(value)[::-1][:count]
         phi = vectors[:, first] / self.root[:, None]
         return phi * np.sign(phi[np.abs(phi).argmax(0), np.arange(count)]), value[first] ** -0.5
