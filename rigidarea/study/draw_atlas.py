@@ -167,7 +167,7 @@ def page(report: Row, out: Path) -> list[Path]:
     strips = figure.subfigures(len(charts), 1, squeeze=False)[:, 0]
     for strip, chart in zip(strips, charts, strict=True):
         rows = [row for row in report["results"] if row["map"] == chart.name]
-        axes = strip.subplots(1, len(ENGINES) + 1, width_ratios=(*[1.0] * len(ENGINES), 0.9), squeeze=False)[
+        axes = strip.subplots(1, len(ENGINES) + 1, width_ratios=(*[1.0] * len(ENGINES), 1.12), squeeze=False)[
             0
         ]
         strip.subplots_adjust(left=0.085, right=0.98, bottom=0.25, top=0.77, wspace=0.12)

@@ -29,7 +29,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         source="",
         pressure=V**2,
     )
-    settings = {"stiffness": 1e4} if variant.given else {}
+    settings = {"stiffness": 1e4} if variant.area else {}
     last = run_scene(variant, scene, **settings).states[-1]
     energy = float(sum(s[VX] ** 2 + s[VY] ** 2 + MOMENT * s[OMEGA] ** 2 for s in last))
     return judge(abs(energy / V**2 - 1), LIMIT, "gained" if energy > V**2 else "lost")

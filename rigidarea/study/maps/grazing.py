@@ -33,7 +33,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         pressure=y**2,
         frame=1 / 60,
     )
-    settings = {"stiffness": 1e7} if variant.given else {}
+    settings = {"stiffness": 1e7} if variant.area else {}
     last = run_scene(variant, scene, **settings)["disc"][-1]
     return judge(float(np.hypot(*(last[[VX, VY]] - exact)) / y), LIMIT, "wrong way")
 

@@ -45,8 +45,8 @@ def theory() -> list[tuple[str, Array, Array]]:
     """v h = thickness + side: longer steps can miss the wall altogether."""
     speed = np.logspace(0, 3, 30)
     return [
-        ("v h = t + s, h = 1/240 s", speed, np.maximum(speed / 240 - SIDE, 1e-9)),
-        ("v h = t + s, h = 1/60 s", speed, np.maximum(speed / 60 - SIDE, 1e-9)),
+        ("v h = t + s, 1/240 s", speed, np.maximum(speed / 240 - SIDE, 1e-9)),
+        ("v h = t + s, 1/60 s", speed, np.maximum(speed / 60 - SIDE, 1e-9)),
     ]
 
 
