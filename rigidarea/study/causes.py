@@ -19,7 +19,7 @@ CAUSES: dict[str, str] = {
     "incline_hold": _REST,
     "incline_slide": _STEP,
     "incline_up": _STEP,
-    "journal_bounce": "at errors of a tenth pymunk's few coarse segments are cheap; below 2.5e-3 our impacts place no better",
+    "journal_bounce": "at errors of a tenth pymunk's coarse segments are cheap; at 2.5e-3 our impacts place no better",
     "journal_swing": _STEP,
     "ladder": _STEP,
     "loop": _DISC,
