@@ -33,6 +33,8 @@ from .store import STATE, load_law, load_pool, load_tables, load_work
 _DYNAMIC, _STATIC = 0, 2
 #: More shapes than this are not looked at pair by pair to see whether steps may be long.
 MOST_SHAPES = 64
+#: Looking at one pair costs as much as so many steps of two bodies, at the most.
+STEPS_A_PAIR = 6
 #: Steps until it is looked again, after it was too close to pay: doubled each time up to this.
 MOST_PATIENCE = 16
 
@@ -189,7 +191,8 @@ def advance(space: int, dt: float, frames: int, steps: int, shapes: int) -> int:
         while left > 0 and s.stop == 0:
             taken = 1
             stamp = np.int64(_timestamp(space))
-            if s.ballistic and left > 1 and wait == 0 and s.touched != stamp and shapes <= MOST_SHAPES:
+            worth = s.ballistic and shapes <= MOST_SHAPES and left > STEPS_A_PAIR * (shapes - 1) // 2
+            if worth and wait == 0 and s.touched != stamp:
                 most = left * fine + behind
                 free = free_time(s, load_pool(s), load_tables(s), load_work(s), shapes, gravity, most)
                 taken = int(min(float(left), max(1.0, (free - behind) / fine)))
