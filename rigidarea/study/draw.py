@@ -212,22 +212,31 @@ def frame_times(report: Row, out: Path) -> list[Path]:
     for ax, scene in zip(axes.flat, scenes, strict=True):
         groups: dict[tuple[str, int], list[Row]] = {}
         for row in rows:
-            if row["scene"] == scene:
-                groups.setdefault(
-                    (row["peer"], row["steps_per_frame"] if row["peer"] == "pymunk" else 0), []
-                ).append(row)
+            if row["scene"] == scene:  # steps: 0 where the library chooses them
+                groups.setdefault((row["peer"], row["settings"].get("steps", 0)), []).append(row)
+        seen: list[str] = []
         for (peer, steps), group in groups.items():
             x = [row["bodies"] for row in group]
             y = [row["frame_ms_median"] for row in group]
             label = f"{peer}, {steps} step{'s' * (steps > 1)} a frame" if steps else peer
-            style = "--" if steps == 1 else "-"
-            ax.plot(x, y, style, color=colour(peer), marker=marker(peer), ms=5, lw=1.6, label=label)
+            style = "-" if peer in seen else "--"
+            seen.append(peer)
+            ax.plot(
+                x,
+                y,
+                style if steps else "-",
+                color=colour(peer),
+                marker=marker(peer),
+                ms=5,
+                lw=1.6,
+                label=label,
+            )
             ax.vlines(x, y, [row["frame_ms_p99"] for row in group], color=colour(peer), lw=1)
         ax.axhline(1e3 / 60, color="#666666", lw=1, ls=":")
         ax.text(0.02, 1e3 / 60 * 1.1, "60 frames a second", transform=ax.get_yaxis_transform(), fontsize=7.5)
         ax.set(xscale="log", yscale="log", xlabel="bodies", title=scene)
     axes[0, 0].set_ylabel("frame time (ms): median, bar to 99th percentile")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=5)
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return save(figure, out, "bench-frames")
 
 
