@@ -398,6 +398,23 @@ def test_the_pyramid_of_820_boxes_stands_for_a_minute():
     assert max(b.velocity.length for b in bodies) < 0.05
 
 
+@pytest.mark.parametrize("depth", [0.01, 0.1, 0.4])
+@pytest.mark.parametrize("steps", [None, 1, 8])
+def test_a_body_put_inside_another_is_let_out_not_shot_out(depth, steps):
+    """No higher than a few depths, and in the end it lies on the face."""
+    space, contact = world(K)
+    slab = pymunk.Poly(space.static_body, [(-3, 0), (3, 0), (3, 3), (-3, 3)])
+    slab.friction = 0.5
+    space.add(slab)
+    body = box(space, (0, 3.5 - depth))
+    heights = []
+    for _ in range(240):
+        contact.step(1 / 60, 1, steps)
+        heights.append(body.position.y)
+    assert max(heights) < 3.5 + 8 * depth
+    assert heights[-1] == pytest.approx(3.5, abs=2e-3)
+
+
 @pytest.mark.parametrize("seed", range(6))
 def test_long_steps_miss_nothing(seed):
     """Five spinning bodies, concave ones too, in a closed box: as with equal steps, through dozens of impacts."""

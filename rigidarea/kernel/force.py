@@ -87,6 +87,10 @@ def region_force(
     if stretched > 0.0:  # at rest is also what the world presses together within a step
         rest_speed = max(rest_speed, 2.0 * (coming - speed))
     remember_impact(r, elasticity, speed, inverse, rest_speed, dt, born)
+    if born:
+        r.inside = 1 if r.depth > 4.0 * dt * (abs(speed) + abs(coming - speed)) else 0
+    if r.inside:
+        r.resting = 1
     if stretched > 0.0 and not r.resting:
         r.sudden = 1
     if stretched > 0.0 and not r.alone:
@@ -141,6 +145,15 @@ def region_force(
             r.spring = min(most, max(-most, r.spring))
             tangential = r.spring + ct * slip / (1.0 + dt * ct * inverse_t)
             tangential = min(most, max(-most, tangential))
+    if r.inside and coming > speed:
+        # Put there, not come there: let out, not shot out, no faster than what falls four depths.
+        leaving = math.sqrt(8.0 * (coming - speed) / dt * r.area / r.chord)
+        most = (coming + leaving) / (dt * inverse)
+        if force > 0.0 and force > most:
+            share = max(0.0, most) / force
+            force *= share
+            tangential *= share
+            couple *= share
     r.force = force
     r.friction = tangential
     r.couple = couple
