@@ -88,7 +88,7 @@ def region_force(
         rest_speed = max(rest_speed, 2.0 * (coming - speed))
     remember_impact(r, elasticity, speed, inverse, rest_speed, dt, born)
     if born:
-        r.inside = 1 if r.depth > 4.0 * dt * (abs(speed) + abs(coming - speed)) else 0
+        r.inside = r.inside and r.depth > 4.0 * dt * (math.sqrt(ux * ux + uy * uy) + abs(coming - speed))
     if r.inside:
         r.resting = 1
     if stretched > 0.0 and not r.resting:

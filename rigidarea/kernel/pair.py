@@ -115,6 +115,7 @@ def pair_pull(
         body_b.old_rate if b.inverse_mass > 0.0 else 0.0,
     )
     old = pair.head
+    fresh = old < 0
     kept = -1
     fx = 0.0
     fy = 0.0
@@ -193,6 +194,7 @@ def pair_pull(
         region.alone = 1 if alone else 0
         region.straight = 0.0 if curved else min(loop.straight, chord)
         if born:
+            region.inside = fresh and law.followed < np.inf
             region.depth, region.beyond = _extent(work, loop.start, loop.stop, loop.x, loop.y, pose_a, wx, wy)
         region.area = area
         region.x = x

@@ -22,7 +22,10 @@ REGION = record(
         ("resting", "i4"),  # 0: impact, 1: rest
         ("opened", "i4"),  # 1 once the bodies have moved apart within this contact
         ("sudden", "i4"),  # 1: an impact too short for the step
-        ("inside", "i4"),  # 1: so deep at first touch that it has not come there by moving
+        (
+            "inside",
+            "i4",
+        ),  # 1: the two were put there, so deep at first touch that they have not come there by moving
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
