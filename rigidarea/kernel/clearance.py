@@ -87,28 +87,20 @@ def clearance(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, most: float, 
         # go down in the larger box, its nearer half first
         size_a = pa.boxes[ha.box + na, 2] + pa.boxes[ha.box + na, 3]
         size_b = pb.boxes[hb.box + nb, 2] + pb.boxes[hb.box + nb, 3]
-        if leaf_b or (not leaf_a and size_a >= size_b):
-            near = 2 * na
-            far = near + 1
-            if _boxes2(pa.boxes, ha.box + near, pb.boxes, hb.box + nb, rel) > _boxes2(
-                pa.boxes, ha.box + far, pb.boxes, hb.box + nb, rel
-            ):
-                near, far = far, near
-            stack[depth, 0] = far
-            stack[depth, 1] = nb
-            stack[depth + 1, 0] = near
-            stack[depth + 1, 1] = nb
-        else:
-            near = 2 * nb
-            far = near + 1
-            if _boxes2(pa.boxes, ha.box + na, pb.boxes, hb.box + near, rel) > _boxes2(
-                pa.boxes, ha.box + na, pb.boxes, hb.box + far, rel
-            ):
-                near, far = far, near
-            stack[depth, 0] = na
-            stack[depth, 1] = far
-            stack[depth + 1, 0] = na
-            stack[depth + 1, 1] = near
+        in_a = leaf_b or (not leaf_a and size_a >= size_b)
+        near_a = 2 * na if in_a else na
+        near_b = nb if in_a else 2 * nb
+        far_a = near_a + 1 if in_a else na
+        far_b = nb if in_a else near_b + 1
+        if _boxes2(pa.boxes, ha.box + near_a, pb.boxes, hb.box + near_b, rel) > _boxes2(
+            pa.boxes, ha.box + far_a, pb.boxes, hb.box + far_b, rel
+        ):
+            near_a, far_a = far_a, near_a
+            near_b, far_b = far_b, near_b
+        stack[depth, 0] = far_a
+        stack[depth, 1] = far_b
+        stack[depth + 1, 0] = near_a
+        stack[depth + 1, 1] = near_b
         depth += 2
     return math.sqrt(best)
 

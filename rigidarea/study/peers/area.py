@@ -69,22 +69,11 @@ class StepRun(SpaceRun):
         steps: int | None = None,
     ) -> None:
         super().__init__(scene, space, bodies, contact.steps(scene.frame) if steps is None else steps)
-        self.contact = contact
+        self.contact, self.frame, self.wanted = contact, scene.frame, steps
 
 
 class FrameRun(StepRun):
     """Frames in so many steps each: `contact.step(1/60, frames, steps)`, all in one call, in machine code."""
-
-    def __init__(
-        self,
-        scene: Scene,
-        space: pymunk.Space,
-        bodies: list[pymunk.Body],
-        contact: Any,
-        steps: int | None = None,
-    ) -> None:
-        super().__init__(scene, space, bodies, contact, steps)
-        self.frame, self.wanted = scene.frame, steps
 
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; a contact that fails leaves states that are not finite."""
