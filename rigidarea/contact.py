@@ -341,28 +341,28 @@ class AreaContact:
             n = steps or self.steps(dt)
             h = dt / n
             self._watch.look()
-            self._shift(-0.5 * h)
+            self._shift(-0.5 * h, settle=False)
             for i in range(n):
                 space.step(h)
                 if not self._watch.look():
                     raise SimulationError(
                         f"{self._watch.put_back()}, after step {i + 1} of {n} of this frame"
                     )
-            self._shift(0.5 * h)
+            self._shift(0.5 * h, settle=True)
             total += n
         return total
 
-    def _shift(self, time: float) -> None:
-        """Drift all bodies by `time`."""
+    def _shift(self, time: float, settle: bool) -> None:
+        """Drift all bodies by `time`; settle: for good, so that queries see them there (a step does that itself)."""
         space = self.space
         if self.compiled:
-            self._state["shift"], self._state["settle"] = time, 1
+            self._state["shift"], self._state["settle"] = time, settle
             lib.cpSpaceEachBody(
                 space._space,
                 ffi.cast("cpSpaceBodyIteratorFunc", int(self._state["shift_at"])),
                 ffi.cast("void *", self._store.state.ctypes.data),
             )
-            for shape in self._shapes.values():
+            for shape in self._shapes.values() if settle else ():
                 if shape.body is not None and not shape.body.is_sleeping:
                     lib.cpSpaceReindexShape(space._space, shape._shape)
             return
@@ -370,7 +370,8 @@ class AreaContact:
             if body.body_type != pymunk.Body.STATIC and not body.is_sleeping and body._position_func is None:
                 body.position += time * body.velocity
                 body.angle += time * body.angular_velocity
-                space.reindex_shapes_for_body(body)
+                if settle:
+                    space.reindex_shapes_for_body(body)
 
     def steps(self, dt: float) -> int:
         """The number of steps that `step(dt)` would take, with contact. Raises ValueError for dt not positive."""

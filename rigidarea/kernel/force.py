@@ -25,7 +25,7 @@ from .rest import Arms, implicit_rest
 #: Tangential over normal stiffness of a region (Cundall & Strack 1979 leave it free; 2/7 is usual: below the value
 #: at which a rolling disc's tangential period equals its normal one).
 TANGENT_STIFFNESS = 2.0 / 7.0
-#: The same in a crowd, summed over a body's contacts at rest, as a multiple.
+#: In a crowd: the sum of (w h)^2 over a body's contacts that a step follows, over `region.FOLLOWED`.
 CROWDED = 4.0
 #: Time in which faces at rest part again when a step has pressed them together too far, in steps: they must not jump.
 SLOW = 4.0

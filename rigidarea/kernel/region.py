@@ -22,10 +22,7 @@ REGION = record(
         ("resting", "i4"),  # 0: impact, 1: rest
         ("opened", "i4"),  # 1 once the bodies have moved apart within this contact
         ("sudden", "i4"),  # 1: an impact too short for the step
-        (
-            "inside",
-            "i4",
-        ),  # 1: the two were put there, so deep at first touch that they have not come there by moving
+        ("inside", "i4"),  # 1: put there, so deep at first touch that it has not come there by moving
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
@@ -71,9 +68,7 @@ class Law(NamedTuple):
     direction: int  # CHORD or NODAL
     exponent: float  # q of Eq. 12, for NODAL
     rest_speed: float  # first touch slower than this: rest from the start (length/time)
-    followed: float = (
-        FOLLOWED  # (w h)^2 up to which a step follows a contact; infinity: always, stable or not
-    )
+    followed: float = FOLLOWED  # (w h)^2 up to which a step follows a contact; infinity: always
 
 
 class Motion(NamedTuple):
