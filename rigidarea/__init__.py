@@ -6,7 +6,7 @@ contact.step(1 / 60)
 """
 
 from . import shapes
-from .contact import REGIONS, AreaContact, SimulationError, StepLimitWarning, attach, attached
+from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
 from .overlap import OVERLAP, overlap
 
@@ -18,7 +18,6 @@ __all__ = [
     "AreaContact",
     "Outline",
     "SimulationError",
-    "StepLimitWarning",
     "attach",
     "attached",
     "overlap",

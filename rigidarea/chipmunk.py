@@ -1,56 +1,52 @@
-"""Chipmunk's memory: where in its structs the numbers lie that a contact step reads and writes.
+"""Chipmunk's memory: where in its structs the numbers lie that a contact step reads and writes, and what it calls.
 
-Arbiters are declared to cffi, which knows their layout. Bodies and shapes are not: their offsets are found by setting
-every quantity of a probe to a value of its own and looking for it. A layout in which anything is missing or
-ambiguous is refused (`LayoutError`), and the plain Python hook is used instead. Why memory and not functions: every
-force setter of Chipmunk wakes the body, so a body at rest on another could never fall asleep; and a read costs a
-load instead of a call.
+Arbiters are declared to cffi, which knows their layout. Bodies, shapes, constraints and spaces are not: their offsets
+are found by setting every quantity of a probe to a value of its own and looking for it. A layout in which anything is
+missing or ambiguous is refused (`LayoutError`). Why memory and not functions: every setter of Chipmunk wakes the
+body, so a body at rest on another could never fall asleep; and a read costs a load instead of a call.
+
+Everything here works interpreted too (NUMBA_DISABLE_JIT=1): memory through ctypes, functions through ctypes.
 """
 
 from __future__ import annotations
 
 import math
 from functools import lru_cache
+from typing import Any
 
 import llvmlite.binding as llvm
 import numpy as np
 import pymunk
+from numba import config, types
 from pymunk._chipmunk_cffi import ffi, lib
 
-#: Functions that machine code calls, all on pointers and scalars.
-FUNCTIONS = [
-    "cpSpaceGetUserData",
-    "cpSpaceGetSleepTimeThreshold",
-    "cpSpaceGetTimestamp",
-    "cpSpaceGetCurrentTimeStep",
-    "cpShapeGetHashID",
-    "cpShapeGetSensor",
-    "cpShapeGetBody",
-    "cpBodyGetType",
-    "cpBodyIsSleeping",
-    "cpSpaceEachBody",
-    "cpSpaceReindexShape",
-    "cpSpaceStep",
-    "ext_cpCollisionPreSolveFunc",
-]
+from .kernel.memory import prototype
+
 #: Bytes of a struct that are looked at; all are longer.
-_WINDOW = {"body": 208, "shape": 136, "space": 64}
+_WINDOW = {"body": 248, "shape": 200, "space": 200, "constraint": 104}
 
 
 class LayoutError(RuntimeError):
     """Chipmunk's structs are not as expected: machine code must not touch them."""
 
 
-def register_symbols() -> None:
-    """Make pymunk's functions callable by name from compiled code (as rigidarea_<name>)."""
-    for name in FUNCTIONS:
-        address = int(ffi.cast("uintptr_t", ffi.addressof(lib, name)))
-        llvm.add_symbol(f"rigidarea_{name}", address)
-
-
 def address_of(cdata: object) -> int:
     """Address of a cffi pointer."""
     return int(ffi.cast("uintptr_t", cdata))
+
+
+def function(name: str, signature: Any) -> Any:
+    """One of pymunk's C functions, on pointers and scalars, callable from machine code."""
+    address = address_of(ffi.addressof(lib, name))
+    if config.DISABLE_JIT:
+        return prototype(signature)(address)
+    llvm.add_symbol(f"rigidarea_{name}", address)
+    return types.ExternalFunction(f"rigidarea_{name}", signature)
+
+
+def _bytes(pointer: object, kind: str, dtype: Any) -> np.ndarray:
+    memory = ffi.buffer(ffi.cast("char *", pointer), _WINDOW[kind])
+    return np.frombuffer(memory, dtype=dtype).copy()
 
 
 def _find(memory: np.ndarray, what: str, values: list[float]) -> int:
@@ -63,9 +59,55 @@ def _find(memory: np.ndarray, what: str, values: list[float]) -> int:
     return 8 * hits[0]
 
 
+def _find_pointer(pointer: object, kind: str, what: str, value: int) -> int:
+    hits = np.flatnonzero(_bytes(pointer, kind, np.uint64) == np.uint64(value))
+    if len(hits) != 1:
+        raise LayoutError(f"{what}: expected one place in Chipmunk's struct, found {len(hits)}")
+    return 8 * int(hits[0])
+
+
+def _find_array(space: Any, what: str, members: list[int]) -> int:
+    """Where the space keeps the cpArray {int num, max; void **arr} of just these pointers."""
+    hits = []
+    for i, value in enumerate(_bytes(space, "space", np.uint64)):
+        if not 4096 < value < 2**47 or value % 8:
+            continue
+        if int(value) not in _heap_pointers(space):
+            continue
+        n = int(ffi.cast("int *", int(value))[0])
+        if n == len(members):
+            arr = ffi.cast("uintptr_t *", ffi.cast("uintptr_t *", int(value))[1])
+            if [int(arr[k]) for k in range(n)] == members:
+                hits.append(8 * i)
+    if len(hits) != 1:
+        raise LayoutError(f"{what}: expected one array in Chipmunk's space, found {len(hits)}")
+    return hits[0]
+
+
+def _heap_pointers(space: Any) -> set[int]:
+    """The words of the space's struct between its time step and its lock: all of them pointers or counters."""
+    words = _bytes(space, "space", np.uint64)
+    step = _find(words.view(np.float64), "time step", [0.125]) // 8
+    return {int(w) for w in words[step + 1 : step + 16] if w > 2**16}
+
+
+def _changed(pointer: object, kind: str, what: str, change: Any) -> tuple[int, int]:
+    """(offset, old value) of the one pointer that `change()` changes."""
+    own = _bytes(pointer, kind, np.uint64)
+    change()
+    places = np.flatnonzero(own != _bytes(pointer, kind, np.uint64))
+    if len(places) != 1:
+        raise LayoutError(f"{what}: expected one place in Chipmunk's struct, found {len(places)}")
+    return 8 * int(places[0]), int(own[places[0]])
+
+
 @lru_cache(maxsize=1)
 def layout() -> dict[str, int]:
     """Byte offsets by the names of `store.OFFSETS`. Raises LayoutError if any cannot be told for sure."""
+    return _body_and_shape() | _arbiter() | _space_and_constraint()
+
+
+def _body_and_shape() -> dict[str, int]:
     body = pymunk.Body(3.0, 7.0)
     body.center_of_gravity = (0.53, 0.29)
     body.angle = 0.75
@@ -76,15 +118,16 @@ def layout() -> dict[str, int]:
     body.torque = 36.5
     shape = pymunk.Circle(body, 1.0)
     shape.surface_velocity = (41.5, 42.5)
-
-    def window(pointer: object, kind: str) -> np.ndarray:
-        return np.frombuffer(ffi.buffer(ffi.cast("char *", pointer), _WINDOW[kind]), dtype=np.float64).copy()
-
-    memory = window(body._body, "body")
+    shape.elasticity, shape.friction = 0.375, 0.625
+    shape.collision_type = 0x51525354
+    shape.filter = pymunk.ShapeFilter(0x61626364, 0x71727374, 0x75767778)
+    memory = _bytes(body._body, "body", np.float64)
     c, s = math.cos(0.75), math.sin(0.75)
     place = body.local_to_world(body.center_of_gravity)
     found = {
         "body_position": _find(memory, "body position", list(place)),
+        "body_angle": _find(memory, "body angle", [0.75]),
+        "body_cog": _find(memory, "centre of gravity", [0.53, 0.29]),
         "body_transform": _find(memory, "body transform", [c, s, -s, c, *body.position]),
         "body_velocity": _find(memory, "body velocity", [31.5, 32.5]),
         "body_spin": _find(memory, "angular velocity", [33.5]),
@@ -92,48 +135,151 @@ def layout() -> dict[str, int]:
         "body_torque": _find(memory, "torque", [36.5]),
         "body_inverse_mass": _find(memory, "inverse mass", [3.0, 1 / 3.0]) + 8,
         "body_inverse_moment": _find(memory, "inverse moment", [7.0, 1 / 7.0]) + 8,
-        "shape_surface_velocity": _find(window(shape._shape, "shape"), "surface velocity", [41.5, 42.5]),
     }
+    for name in ("position_func", "velocity_func"):
+        found[f"body_{name}"], found[name] = _changed(
+            body._body, "body", name, lambda name=name: setattr(body, name, lambda *arguments: None)
+        )
+    memory = _bytes(shape._shape, "shape", np.float64)
+    found["shape_surface_velocity"] = _find(memory, "surface velocity", [41.5, 42.5])
+    found["shape_elasticity"] = _find(memory, "elasticity and friction", [0.375, 0.625])
+    found["shape_type"] = _find_pointer(shape._shape, "shape", "collision type", 0x51525354)
+    found["shape_filter"] = _find_pointer(shape._shape, "shape", "filter group", 0x61626364)
+    words = _bytes(shape._shape, "shape", np.uint32)
+    at = (found["shape_filter"] + 8) // 4
+    if list(words[at : at + 2]) != [0x71727374, 0x75767778]:
+        raise LayoutError("filter: categories and mask do not follow the group")
+    space = pymunk.Space()
+    space.add(body, shape)
+    found["body_shapes"] = _find_pointer(body._body, "body", "shapes", address_of(shape._shape))
+    found["shape_body"] = _find_pointer(shape._shape, "shape", "body", address_of(body._body))
+    other = pymunk.Circle(body, 2.0)
+    space.add(other)  # the body's list of shapes starts with the latest
+    found["shape_next"] = _find_pointer(other._shape, "shape", "next shape", address_of(shape._shape))
+    return found
+
+
+def _arbiter() -> dict[str, int]:
     arbiter = {
         "arbiter_elasticity": "e",
         "arbiter_friction": "u",
         "arbiter_surface": "surface_vr",
-        "arbiter_data": "data",
         "arbiter_shape_a": "a",
         "arbiter_body_a": "body_a",
         "arbiter_count": "count",
+        "arbiter_contacts": "contacts",
         "arbiter_normal": "n",
         "arbiter_process": "processCollision",
         "arbiter_state": "state",
-        "arbiter_handlers": "handlerAB",
     }
-    found["body_angle"] = _find(memory, "body angle", [0.75])
-    # functions of the user's in the place of Chipmunk's own
-    for name in ("position_func", "velocity_func"):
-        own = np.frombuffer(
-            ffi.buffer(ffi.cast("char *", body._body), _WINDOW["body"]), dtype=np.uint64
-        ).copy()
-        setattr(body, name, lambda *arguments: None)
-        changed = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body), _WINDOW["body"]), dtype=np.uint64)
-        places = np.flatnonzero(own != changed)
-        if len(places) != 1:
-            raise LayoutError(f"{name}: expected one place in Chipmunk's body, found {len(places)}")
-        found[f"body_{name}"], found[name] = 8 * int(places[0]), int(own[places[0]])
-    found |= {name: ffi.offsetof("struct cpArbiter", field) for name, field in arbiter.items()}
-    found["handler_post_solve"] = ffi.offsetof("struct cpCollisionHandler", "postSolveFunc")
-    # what a handler's post_solve is that pymunk has cleared, and one that nobody ever set
-    found["unset_post_solve"] = address_of(ffi.addressof(lib, "DoNothing"))
+    found = {name: int(ffi.offsetof("struct cpArbiter", field)) for name, field in arbiter.items()}
+    for pair in (("a", "b"), ("body_a", "body_b")):  # B's pointer follows A's
+        at, after = (int(ffi.offsetof("struct cpArbiter", field)) for field in pair)
+        if after != at + 8:
+            raise LayoutError(f"arbiter {pair[0]}: B's pointer does not follow A's")
+    contact = {"contact_normal_impulse": "jnAcc", "contact_tangent_impulse": "jtAcc"}
+    found |= {name: int(ffi.offsetof("struct cpContact", field)) for name, field in contact.items()}
+    found["contact_size"] = int(ffi.sizeof("struct cpContact"))
+    return found
+
+
+#: Where a joint keeps its impulse (bytes), and how many numbers that is: chipmunk_structs.h. Checked by `_accumulators`.
+_IMPULSES = {
+    "PinJoint": (200, 1),
+    "SlideJoint": (208, 1),
+    "PivotJoint": (200, 2),
+    "GrooveJoint": (256, 2),
+    "DampedSpring": (240, 1),
+    "DampedRotarySpring": (160, 1),
+    "RotaryLimitJoint": (136, 1),
+    "RatchetJoint": (144, 1),
+    "GearJoint": (144, 1),
+    "SimpleMotor": (120, 1),
+}
+
+
+@lru_cache(maxsize=1)
+def kinds_of_joints() -> tuple[int, ...]:
+    """Address of every class of joint, then where each keeps its impulse, then how many numbers it is.
+
+    Each is loaded for a step, and must have what Chipmunk calls its impulse there, else LayoutError.
+    """
+    kinds, places, counts = [], [], []
+    for name, (at, n) in _IMPULSES.items():
+        space = pymunk.Space()
+        one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)
+        two.position = 3, 0.5
+        two.velocity, two.angular_velocity = (5, 7), 3
+        given: tuple[Any, ...] = {
+            "PinJoint": ((0, 0), (0, 0)),
+            "SlideJoint": ((0, 0), (0, 0), 0, 1),
+            "PivotJoint": ((0, 0), (0, 0)),
+            "GrooveJoint": ((-1, 0), (1, 0), (0, 0)),
+            "DampedSpring": ((0, 0), (0, 0), 1, 10, 1),
+            "DampedRotarySpring": (1, 10, 1),
+            "RotaryLimitJoint": (-2, -1),
+            "RatchetJoint": (0, -0.5),
+            "GearJoint": (1, 2),
+            "SimpleMotor": (-4,),
+        }[name]
+        joint = getattr(pymunk, name)(one, two, *given)
+        space.add(one, two, joint)
+        space.step(0.125)
+        impulse = np.frombuffer(ffi.buffer(ffi.cast("char *", joint._constraint), at + 8 * n))[at // 8 :]
+        if not (joint.impulse != 0 and math.isclose(abs(joint.impulse), math.hypot(*impulse), rel_tol=1e-12)):
+            raise LayoutError(f"{name}: its impulse {joint.impulse} is not where it was expected, {impulse}")
+        kinds.append(_word(joint._constraint, 0))
+        places.append(at)
+        counts.append(n)
+    return *kinds, *places, *counts
+
+
+def _space_and_constraint() -> dict[str, int]:
     space = pymunk.Space()
     space.gravity = (51.5, 52.5)
-    found["space_gravity"] = _find(window(space._space, "space"), "gravity", [51.5, 52.5])
-    space.on_collision(1, 2)
-    found["no_post_solve"] = address_of(space._handlers[1, 2]._handler.postSolveFunc)
-    for i, name in enumerate(("handlerAB", "handlerBA", "handlerA", "handlerB")):
-        if ffi.offsetof("struct cpArbiter", name) != found["arbiter_handlers"] + 8 * i:
-            raise LayoutError(f"arbiter {name}: the four handlers do not follow each other")
-    for pair in ("a", "body_a"):  # B's pointer follows A's
-        if ffi.offsetof("struct cpArbiter", pair.replace("a", "b") if pair == "a" else "body_b") != (
-            ffi.offsetof("struct cpArbiter", pair) + 8
-        ):
-            raise LayoutError(f"arbiter {pair}: B's pointer does not follow A's")
+    space.sleep_time_threshold = 53.5
+    one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)
+    joint = pymunk.PivotJoint(one, two, (0, 0), (0, 0))
+    joint.max_force, joint.error_bias, joint.max_bias = 61.5, 62.5, 63.5
+    space.add(one, two, joint)
+    space.iterations = 0x1234567
+    space.step(0.125)
+    memory = _bytes(space._space, "space", np.float64)
+    if _bytes(space._space, "space", np.int32)[0] != 0x1234567:
+        raise LayoutError("iterations: expected at the start of Chipmunk's space")
+    found = {
+        "space_gravity": _find(memory, "gravity", [51.5, 52.5]),
+        "space_bodies": _find_array(
+            space._space, "bodies", [address_of(one._body), address_of(two._body)]
+        ),
+        "space_constraints": _find_array(space._space, "constraints", [address_of(joint._constraint)]),
+    }
+    handler = pymunk.Space.on_collision
+    handler(space, pre_solve=lambda *arguments: None)
+    own = space._handlers[None, None]._handler
+    found["handler_pre_solve"] = int(ffi.offsetof("struct cpCollisionHandler", "preSolveFunc"))
+    space.on_collision(pre_solve=pymunk.empty_callback)
+    found["no_pre_solve"] = address_of(own.preSolveFunc)
+    globally = address_of(own)
+    found["space_handlers"] = globally - address_of(space._space) - 8
+    entries = ffi.cast("unsigned int *", _word(space._space, found["space_handlers"]))
+    before = int(entries[0])
+    handler(space, 1, 2)
+    if int(entries[0]) != before + 1:
+        raise LayoutError("handlers: their number is not where it was expected")
+    constraint = joint._constraint
+    memory = _bytes(constraint, "constraint", np.float64)
+    found["constraint_a"] = _find_pointer(constraint, "constraint", "body a", address_of(one._body))
+    if _find_pointer(constraint, "constraint", "body b", address_of(two._body)) != found["constraint_a"] + 8:
+        raise LayoutError("constraint: body b does not follow body a")
+    found["constraint_collide"] = _find(memory, "limits", [61.5, 62.5, 63.5]) + 24
+    for name in ("pre_solve", "post_solve"):
+        found[f"constraint_{name}"], _ = _changed(
+            constraint, "constraint", name, lambda name=name: setattr(joint, name, lambda *arguments: None)
+        )
+    space.iterations = 10
     return found
+
+
+def _word(pointer: object, offset: int) -> int:
+    return int(ffi.cast("uintptr_t *", address_of(pointer) + offset)[0])

@@ -285,6 +285,14 @@ class Outline:
         return shape
 
     @cached_property
+    def smallest_extent(self) -> float:
+        """The least distance of two parallel lines with the outline between them (length): its smallest thickness."""
+        hull = shapely.get_coordinates(shapely.convex_hull(self.polygon))
+        along = np.diff(hull, axis=0)  # one of the two lines lies along an edge of the hull
+        normal = np.column_stack((along[:, 1], -along[:, 0])) / np.hypot(*along.T)[:, None]
+        return float(np.ptp(hull @ normal.T, axis=0).min())
+
+    @cached_property
     def _stand_in(self) -> tuple[Callable[..., pymunk.Shape], tuple[Any, ...]]:
         """The stand-in's class and its arguments after the body; the same for every body the outline is put
         on."""

@@ -13,12 +13,15 @@ from typing import Any
 
 import numpy as np
 
+from .kernel.broad import extents
 from .kernel.jit import kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
 from .kernel.pool import HEAD, HasRings, Pool, pack
-from .kernel.region import REGION, Law
+from .kernel.row import ROW
 from .kernel.tables import (
+    ANEW,
+    BODIES,
     BODY,
     COUNTERS,
     FREE_PAIR,
@@ -26,54 +29,118 @@ from .kernel.tables import (
     FREE_REGION,
     FREE_REGIONS,
     PAIR,
+    REGION,
     SHAPE,
+    SHAPES,
+    Law,
     Tables,
+    end_pair,
+    rehash,
 )
 
+#: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "loops"),
-    *("shapes", "bodies", "pairs", "regions", "counters", "slots"),
+    *("bodies", "shapes", "pairs", "regions", "rows", "near", "apart", "sorted", "keys", "values"),
+    *("counters", "slots", "body_keys", "body_rows", "joints"),
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
-    *("body_position", "body_transform", "body_velocity", "body_spin", "body_force", "body_torque"),
-    *("body_inverse_mass", "body_inverse_moment", "shape_surface_velocity"),
-    *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_data", "arbiter_shape_a"),
-    *("arbiter_body_a", "arbiter_count", "arbiter_normal", "arbiter_process", "arbiter_state"),
-    *("arbiter_handlers", "handler_post_solve", "no_post_solve", "unset_post_solve"),
-    *("space_gravity", "body_angle", "body_position_func", "body_velocity_func", "position_func"),
-    "velocity_func",
+    *("body_position", "body_angle", "body_cog", "body_transform", "body_velocity", "body_spin", "body_force"),
+    *("body_torque", "body_inverse_mass", "body_inverse_moment", "body_position_func", "body_velocity_func"),
+    *("position_func", "velocity_func", "body_shapes"),
+    *("shape_surface_velocity", "shape_elasticity", "shape_type", "shape_filter", "shape_body", "shape_next"),
+    *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_body_a"),
+    *("arbiter_count", "arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_state"),
+    *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
+    *("handler_pre_solve", "no_pre_solve", "space_gravity", "space_bodies", "space_constraints", "space_handlers"),
+    *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
+
+#: A joint of the space while a frame has it.
+JOINT = record(
+    [
+        ("address", "u8"),
+        ("kind", "u8"),  # its class, a struct of Chipmunk's of four functions
+        ("pre_solve", "u8"),  # the user's callbacks; 0: none
+        ("post_solve", "u8"),
+        ("taken", "i4"),  # 1: between the two, we run it
+        ("a", "i4"),  # rows of its bodies; -1: not ours
+        ("b", "i4"),
+        ("at", "i4"),  # where it keeps its impulse (bytes), and how many numbers that is; -1: unknown
+        ("count", "i4"),
+        ("x", "f8"),  # impulse summed over the frame
+        ("y", "f8"),
+    ]
+)
+#: Kinds of joints.
+KINDS = 10
+
 STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
     + [(f"{name}_n", "i8") for name in _ARRAYS]
     + [(name, "i8") for name in OFFSETS]
+    + [(name, Law.__annotations__[name] == "int" and "i8" or "f8") for name in Law._fields]
     + [
-        ("stiffness", "f8"),
-        ("length", "f8"),
-        ("exponent", "f8"),
-        ("rest_speed", "f8"),
-        ("followed", "f8"),
-        ("law", "i8"),
-        ("direction", "i8"),
-        ("request", "i8"),  # what machine code asks Python for
-        ("restoring", "i8"),  # pairs are to be looked up in a copied space's memory
-        ("global_handler", "u8"),  # address of Chipmunk's global handler
-        ("epoch", "u8"),  # upper half of what is kept in arbiters: whose pairs they are
-        ("touched", "i8"),  # the last step in which anything touched
-        # a run of frames (`frames.py`)
-        ("phase", "f8"),
-        ("max_steps", "i8"),
-        ("shift_at", "u8"),  # address of `frames.shift_body`
-        ("shift", "f8"),  # time by which it moves bodies
-        ("settle", "i8"),  # 1: for good, so that everything sees it
-        ("broken", "i8"),  # 1: a body was not finite when it settled
-        ("ballistic", "i8"),  # 1: between contacts only gravity acts
-        ("wanted", "i8"),  # steps that a frame would have needed, where max_steps was less; else 0
-        ("stop", "i8"),  # 1: an error waits in Python
+        ("stiffness_given", "i8"),
+        ("explicit", "i8"),  # 1: one symplectic Euler step a frame, Chipmunk's own positions and joints
+        ("substeps", "i8"),  # of a frame
+        ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
+        ("frame", "i8"),  # Chipmunk's number of the step that has begun
+        ("held", "i8"),  # the step in which a position function of ours was last called
+        ("solved", "i8"),  # the last frame that was solved to its end
+        ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
+        ("failed", "i8"),  # 1: Python could not do what it was asked for
+        ("request", "i8"),
+        ("ask_at", "u8"),  # Python's ear
+        ("hold_at", "u8"),
+        ("seize_at", "u8"),
+        ("release_at", "u8"),
+        ("idle_kind", "u8"),  # the class of a joint that we run
+        ("hidden", "u8"),  # our own constraint
+        ("global_handler", "u8"),  # Chipmunk's global handler
+        ("pre_solve_at", "u8"),  # our pre_solve, and the user's global one that comes before it; 0: none
+        ("user_pre_solve", "u8"),
+        ("shape_counter", "u8"),  # what was last registered: Chipmunk's counter, shapes, handlers
+        ("shape_count", "i8"),
+        ("handler_count", "i8"),
+        ("handler_seen", "i8"),
+        ("joint_count", "i8"),
+        ("contacts", "i8"),  # regions of the last substep
+        ("joint_cursor", "i8"),
+        ("substeps_before", "i8"),
+        ("stop", "i8"),  # 1: something waits in Python
+        ("scratch_at", "u8"),  # room for what nobody reads
+        ("kinds_at", "u8"),  # joints' classes, where they keep their impulse, and how many numbers that is
     ],
 )
+
+
+@kernel
+def enter_bodies(keys: np.ndarray, rows: np.ndarray, addresses: np.ndarray, values: np.ndarray) -> None:
+    """Fill the hash table of bodies."""
+    mask = len(keys) - 1
+    for k in range(len(addresses)):
+        i = int(addresses[k] >> np.uint64(4)) & mask
+        while keys[i] != 0:
+            i = (i + 1) & mask
+        keys[i] = addresses[k]
+        rows[i] = values[k]
+
+
+@kernel(inline="always")
+def row_of_body(s: Any, address: int) -> int:
+    """The row of Chipmunk's body at `address`; -1: not known."""
+    keys = array_at(s.body_keys_at, (s.body_keys_n,), np.uint64)
+    rows = array_at(s.body_rows_at, (s.body_rows_n,), np.int32)
+    mask = len(keys) - 1
+    i = int(address >> np.uint64(4)) & mask
+    while keys[i] != 0:
+        if keys[i] == address:
+            return int(rows[i])
+        i = (i + 1) & mask
+    return -1
 
 
 @kernel(inline="always")
@@ -108,12 +175,18 @@ def load_work(s: Any) -> Work:
 
 @kernel(inline="always")
 def load_tables(s: Any) -> Tables:
-    """The shapes, pairs and regions of the space whose state record is s."""
+    """The bodies, shapes, pairs and regions of the space whose state record is s."""
     return Tables(
-        array_at(s.shapes_at, (s.shapes_n,), SHAPE),
         array_at(s.bodies_at, (s.bodies_n,), BODY),
+        array_at(s.shapes_at, (s.shapes_n,), SHAPE),
         array_at(s.pairs_at, (s.pairs_n,), PAIR),
         array_at(s.regions_at, (s.regions_n,), REGION),
+        array_at(s.rows_at, (s.rows_n,), ROW),
+        array_at(s.near_at, (s.near_n,), np.int32),
+        array_at(s.apart_at, (s.apart_n, 2), np.int32),
+        array_at(s.sorted_at, (s.sorted_n,), np.int32),
+        array_at(s.keys_at, (s.keys_n,), np.int64),
+        array_at(s.values_at, (s.values_n,), np.int32),
         array_at(s.counters_at, (s.counters_n,), np.int64),
     )
 
@@ -121,7 +194,9 @@ def load_tables(s: Any) -> Tables:
 @kernel(inline="always")
 def load_law(s: Any) -> Law:
     """The force law of the space whose state record is s."""
-    return Law(s.stiffness, s.law, s.length, s.direction, s.exponent, s.rest_speed, s.followed)
+    return Law(
+        s.stiffness, s.penetration, s.gravity, s.law, s.length, s.direction, s.exponent, s.rest_speed, s.followed
+    )
 
 
 class Store:
@@ -140,21 +215,27 @@ class Store:
         )
         self.work = new_work()
         self.tables = Tables(
-            np.zeros(16, SHAPE),
             np.zeros(16, BODY),
+            np.zeros(16, SHAPE),
             np.zeros(0, PAIR),
             np.zeros(0, REGION),
+            np.zeros(0, ROW),
+            np.zeros(0, np.int32),
+            np.zeros((4, 2), np.int32),
+            np.zeros(0, np.int32),
+            np.full(64, -1, np.int64),
+            np.zeros(64, np.int32),
             np.zeros(COUNTERS, np.int64),
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
-        self._outlines: dict[
-            int, tuple[int, HasRings]
-        ] = {}  # by id: number, and the object that keeps the id
+        self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
+        self.body_rows = np.zeros(64, np.int32)
+        self.joints = np.zeros(8, JOINT)
+        self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._free: list[int] = []  # rows of shapes that are gone
-        self._bodies: dict[int, tuple[int, int]] = {}  # by key: row, and how many shapes
+        self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
         self._free_bodies: list[int] = []
-        self._body_of: dict[int, int] = {}
         self._most = (0, 0)  # points and rings of the largest outline
         self.grow_pairs(64)
         self.grow_regions(64)
@@ -162,7 +243,8 @@ class Store:
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), "slots": self.slots}
+        mine = {name: getattr(self, name) for name in ("slots", "body_keys", "body_rows", "joints")}
+        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
         state = self.state[0]
         for name in _ARRAYS:
             state[f"{name}_at"] = arrays[name].ctypes.data
@@ -174,11 +256,19 @@ class Store:
         new = np.zeros(max(least, 2 * len(old)), PAIR)
         new[: len(old)] = old
         new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
-        new["shape_a"][len(old) :] = -1
+        new["a"][len(old) :] = -1
         new["next"][-1] = self.tables.counters[FREE_PAIR]
         self.tables.counters[FREE_PAIR] = len(old)
         self.tables.counters[FREE_PAIRS] += len(new) - len(old)
-        self.tables = self.tables._replace(pairs=new)
+        size = 64
+        while size < 2 * len(new):  # at most half full
+            size *= 2
+        near = np.zeros(len(new), np.int32)
+        near[: len(self.tables.near)] = self.tables.near
+        self.tables = self.tables._replace(
+            pairs=new, near=near, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
+        )
+        rehash(self.tables)
         self.sync()
 
     def grow_regions(self, least: int = 0) -> None:
@@ -191,8 +281,17 @@ class Store:
         new["next"][-1] = self.tables.counters[FREE_REGION]
         self.tables.counters[FREE_REGION] = len(old)
         self.tables.counters[FREE_REGIONS] += len(new) - len(old)
-        self.tables = self.tables._replace(regions=new)
+        rows = np.zeros(len(new), ROW)
+        rows[: len(self.tables.rows)] = self.tables.rows
+        self.tables = self.tables._replace(regions=new, rows=rows)
         self.sync()
+
+    def grow_joints(self, n: int) -> None:
+        """Room for n joints."""
+        if n > len(self.joints):
+            self.joints = np.zeros(2 * n, JOINT)
+            self.tables = self.tables._replace(apart=np.zeros((2 * n, 2), np.int32))
+            self.sync()
 
     def grow_work(self) -> None:
         """Twice the room for crossings."""
@@ -237,6 +336,21 @@ class Store:
         self._outlines[id(outline)] = h, outline
         return h
 
+    def body(self, address: int) -> int:
+        """The row of Chipmunk's body at `address`, made if there is none."""
+        row = self._bodies.get(address)
+        if row is None:
+            row = self._free_bodies.pop() if self._free_bodies else int(self.tables.counters[BODIES])
+            if row >= len(self.tables.bodies):
+                bodies = np.zeros(2 * len(self.tables.bodies), BODY)
+                bodies[: len(self.tables.bodies)] = self.tables.bodies
+                self.tables = self.tables._replace(bodies=bodies)
+            self.tables.counters[BODIES] = max(self.tables.counters[BODIES], row + 1)
+            self.tables.bodies[row] = np.zeros((), BODY)
+            self.tables.bodies[row]["address"], self.tables.bodies[row]["stamp"] = address, -1
+            self._bodies[address] = row
+        return row
+
     def shape(
         self,
         ident: int,
@@ -244,10 +358,11 @@ class Store:
         outline: HasRings,
         mirror: HasRings | None,
         body: int,
-        inverse_mass: float,
-        inverse_moment: float,
+        sensor: bool,
+        extent: float,
+        half: tuple[float, float],
     ) -> None:
-        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `sync` after the last."""
+        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `settle` after the last."""
         number = self.outline(outline)
         other = -1 if mirror is None else self.outline(mirror)
         if ident >= len(self.slots):
@@ -255,41 +370,65 @@ class Store:
             slots[: len(self.slots)] = self.slots
             self.slots = slots
         if self.knows(ident):
-            self.forget([ident])
+            self.forget([ident], ())
         row = self._free.pop() if self._free else self._fill["shapes"]
         if row == len(self.tables.shapes):
-            self.tables = self.tables._replace(shapes=np.resize(self.tables.shapes, 2 * row))
+            shapes = np.zeros(2 * row, SHAPE)
+            shapes[:row] = self.tables.shapes
+            self.tables = self.tables._replace(shapes=shapes)
         self._fill["shapes"] = max(self._fill["shapes"], row + 1)
         self.slots[ident] = row
-        body_row, shapes = self._bodies.get(body, (-1, 0))
-        if body_row < 0:
-            body_row = self._free_bodies.pop() if self._free_bodies else len(self._bodies)
-            if body_row >= len(self.tables.bodies):
-                self.tables = self.tables._replace(bodies=np.resize(self.tables.bodies, 2 * body_row))
-            self.tables.bodies[body_row] = np.zeros((), BODY)
-            self.tables.bodies[body_row]["stamp"] = -1
-        self._bodies[body] = body_row, shapes + 1
-        self._body_of[ident] = body
-        self.tables.shapes[row] = (address, number, other, inverse_mass, inverse_moment, body_row)
+        shape = self.tables.shapes[row]
+        shape["address"], shape["ident"], shape["body"] = address, ident, self.body(body)
+        shape["outline"], shape["mirror"], shape["sensor"] = number, other, sensor
+        shape["extent"], (shape["half_x"], shape["half_y"]) = extent, half
+        shape["low_x"], shape["high_x"] = np.inf, -np.inf
 
-    def forget(self, idents: Iterable[int]) -> None:
-        """Free what the tables hold of shapes that are gone; outlines nobody has any more go with them in time."""
+    def settle(self) -> None:
+        """After shapes or bodies have come or gone: everything that machine code finds them by."""
+        counters = self.tables.counters
+        counters[SHAPES], counters[ANEW] = self._fill["shapes"], 1
+        order = self.tables.sorted  # as it is, the new rows behind it: hardly anything to sort
+        order = np.concatenate((order, np.arange(len(order), self._fill["shapes"], dtype=np.int32)))
+        self.tables = self.tables._replace(sorted=order)
+        size = 64
+        while size < 3 * len(self._bodies):
+            size *= 2
+        self.body_keys = np.zeros(size, np.uint64)
+        self.body_rows = np.zeros(size, np.int32)
+        enter_bodies(
+            self.body_keys,
+            self.body_rows,
+            np.fromiter(self._bodies.keys(), np.uint64, len(self._bodies)),
+            np.fromiter(self._bodies.values(), np.int32, len(self._bodies)),
+        )
+        extents(self.tables)
+        self.sync()
+
+    def forget(self, idents: Iterable[int], bodies: Iterable[int]) -> None:
+        """Free what the tables hold of shapes and bodies that are gone; outlines nobody has go with them in time."""
+        rows = [int(self.slots[ident]) for ident in idents if self.knows(ident)]
         for ident in idents:
-            if not self.knows(ident):
-                continue
-            row = int(self.slots[ident])
-            self.slots[ident] = -1
-            self.tables.shapes[row] = (0, -1, -1, 0.0, 0.0, -1)
+            if self.knows(ident):
+                self.slots[ident] = -1
+        if rows:
+            pairs = self.tables.pairs
+            for p in np.flatnonzero(
+                (pairs["a"] >= 0) & (np.isin(pairs["a"], rows) | np.isin(pairs["b"], rows))
+            ):
+                end_pair(self.tables, int(p))
+            rehash(self.tables)
+        for row in rows:
+            self.tables.shapes[row] = np.zeros((), SHAPE)
+            self.tables.shapes[row]["outline"] = self.tables.shapes[row]["mirror"] = -1
             self._free.append(row)
-            body = self._body_of.pop(ident)
-            body_row, shapes = self._bodies[body]
-            if shapes > 1:
-                self._bodies[body] = body_row, shapes - 1
-            else:
-                del self._bodies[body]
-                self._free_bodies.append(body_row)
-        rows = self.known_shapes
-        used = np.union1d(rows["outline"], rows["mirror"])
+        for address in bodies:
+            row = self._bodies.pop(address)
+            self.tables.bodies[row] = np.zeros((), BODY)
+            self.tables.bodies[row]["stamp"] = -1
+            self._free_bodies.append(row)
+        known = self.known_shapes
+        used = np.union1d(known["outline"], known["mirror"])
         used = used[used >= 0]
         if len(self._outlines) > 2 * len(used) + 64:
             self._repack(used)
@@ -310,10 +449,9 @@ class Store:
         """Whether shape `ident` has an outline here."""
         return 0 <= ident < len(self.slots) and bool(self.slots[ident] >= 0)
 
-    @property
-    def rows(self) -> int:
-        """How many rows of tables.shapes are in use."""
-        return self._fill["shapes"]
+    def known_bodies(self) -> set[int]:
+        """Chipmunk's bodies that have a row."""
+        return set(self._bodies)
 
     @property
     def known_shapes(self) -> np.ndarray:

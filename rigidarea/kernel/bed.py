@@ -7,11 +7,10 @@ import math
 import numpy as np
 
 from .jit import njit
-from .pair import overlap_of_pair
-from .place import Pose
+from .meet import pose_of
+from .place import overlap_of_outlines
 from .pool import Pool
-from .region import LAW_AREA, Law
-from .tables import Tables
+from .tables import LAW_AREA, SUBSTEP, Law, Tables
 from .work import Work
 
 
@@ -51,38 +50,46 @@ def bed_energy(polygon: np.ndarray, start: int, stop: int, nx: float, ny: float)
 
 
 @njit
-def stored(
-    pool: Pool, tables: Tables, work: Work, law: Law, pairs: np.ndarray, rows: np.ndarray, poses: np.ndarray
-) -> float:
+def stored(pool: Pool, tables: Tables, work: Work, law: Law) -> float:
+    """Elastic energy of all pairs that had a region in the last substep, friction springs included (force length).
+
+    Where the bodies of the tables are now: the overlap is made anew.
+    """
     total = 0.0
-    for i in range(len(pairs)):
-        pair = tables.pairs[pairs[i]]
-        a = Pose(poses[i, 0], poses[i, 1], poses[i, 2], poses[i, 3])
-        b = Pose(poses[i, 4], poses[i, 5], poses[i, 6], poses[i, 7])
-        n, head = overlap_of_pair(pool, tables, work, pair, rows[i, 0], rows[i, 1], a, b)
+    for p in range(len(tables.pairs)):
+        pair = tables.pairs[p]
+        if pair.a < 0 or pair.head < 0 or tables.regions[pair.head].stamp != tables.counters[SUBSTEP]:
+            continue
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        a = pose_of(tables.bodies[sa.body])
+        b = pose_of(tables.bodies[sb.body])
+        ia = sa.outline if pair.side_a >= 0 else sa.mirror
+        ib = sb.outline if pair.side_b >= 0 else sb.mirror
+        n, _ = overlap_of_outlines(pool, ia, a, ib, b, work)
         r = pair.head
         while r >= 0:
             region = tables.regions[r]
             if region.tangent_stiffness > 0.0:
                 total += 0.5 * region.spring * region.spring / region.tangent_stiffness
-            if law.law != LAW_AREA:
-                total += 0.5 * law.stiffness * region.area * region.area / law.length
-            else:
-                best = -1
-                least = np.inf
-                for k in range(n):
-                    lx = work.loops[k].x + pool.heads[head].x
-                    ly = work.loops[k].y + pool.heads[head].y
-                    x = a.x + a.c * lx - a.s * ly
-                    y = a.y + a.s * lx + a.c * ly
-                    d = math.hypot(x - region.x, y - region.y)
-                    if d < least:
-                        least = d
-                        best = k
-                if best >= 0:
+            best = -1
+            least = np.inf
+            for k in range(n):
+                lx = work.loops[k].x + pool.heads[ia].x
+                ly = work.loops[k].y + pool.heads[ia].y
+                x = a.x + a.c * lx - a.s * ly
+                y = a.y + a.s * lx + a.c * ly
+                d = math.hypot(x - region.x, y - region.y)
+                if d < least:
+                    least = d
+                    best = k
+            if best >= 0:
+                loop = work.loops[best]
+                if law.law != LAW_AREA:
+                    total += 0.5 * region.stiffness * loop.area * loop.area / law.length
+                else:
                     nx = a.c * region.nx + a.s * region.ny
                     ny = a.c * region.ny - a.s * region.nx
-                    loop = work.loops[best]
-                    total += law.stiffness * bed_energy(work.polygon, loop.start, loop.stop, nx, ny)
+                    total += region.stiffness * bed_energy(work.polygon, loop.start, loop.stop, nx, ny)
             r = region.next
     return total

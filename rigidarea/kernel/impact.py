@@ -1,16 +1,16 @@
-"""Impacts: how a region returns the restitution it is asked for (design 2.4)."""
+"""Impacts that the steps follow: how a region returns the restitution it is asked for (design 2.4).
+
+(One shorter than the step has no course, only a result: see `row.py`.)
+"""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
+from .constants import LEAST_RESTITUTION, REST_DAMPING
 from .jit import kernel
-
-#: Restitution below this is taken as this: the exact law needs a damping factor that grows as 1/e.
-LEAST_RESTITUTION = 0.01
-#: A contact that has lasted this many radians of its own natural motion is no impact any more, but rest.
-REST_PHASE = 50.0
+from .tables import REST
 
 
 @kernel
@@ -37,100 +37,74 @@ def restitution_damping(e: float) -> float:
 
 @kernel
 def damping_ratio(e: float) -> float:
-    """Damping ratio of the linear spring and dashpot that returns e: 0 for e = 1, near 1 for e = 0."""
+    """Damping ratio of the linear spring and dashpot that returns e: 0 for e = 1, near REST_DAMPING for e = 0."""
     if e >= 1.0:
         return 0.0
     s = math.log(max(e, LEAST_RESTITUTION))
-    return -s / math.sqrt(math.pi * math.pi + s * s)
+    return -REST_DAMPING * s / math.sqrt(math.pi * math.pi + s * s)
 
 
-@kernel(inline="always")
-def remember_impact(
-    r: Any, elasticity: float, speed: float, inverse: float, rest_speed: float, dt: float, born: bool
-) -> None:
-    """Bring up to date what a region knows of its impact, and whether it is one."""
-    if born:
-        r.first_speed = speed
-        r.spring = 0.0
-        r.tangent_stiffness = 0.0
-        r.phase = 0.0
-        r.opened = 0
-        r.sudden = 0
-        r.resting = 1 if speed <= rest_speed else 0
-        r.damping = 0.0 if r.resting else restitution_damping(elasticity) / speed
-        r.work = 0.0
-        r.loss = 0.0
-        r.slowed = 0.0
-        r.lasted = 0.0
-        r.late = 0.5 * dt - min(dt, r.depth / speed) if speed > 0.0 else 0.0
-        r.withheld = 0.0
-    r.phase += min(1.0, dt * math.sqrt(r.rate2))
-    if not (born or r.opened):
-        # what the last step's force did is now known: it acted while the speed went from the old to the present one
-        moved = 0.5 * dt * (r.speed + speed)
-        r.work += r.elastic * moved
-        r.loss += r.excess * moved
-        r.slowed += dt * (r.elastic + r.excess) * inverse
-        r.lasted += dt
-        if speed < 0.0:
-            r.opened = 1
-            # touch came within a step, whose speed is that of its middle: what else pushes has changed it since
-            others = (speed - r.first_speed + r.slowed) / r.lasted if r.lasted > 0.0 else 0.0
-            touch = r.first_speed + others * r.late
-            energy = 0.5 * touch * touch / inverse
-            missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
-            r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
-    if (r.opened and speed > 0.0) or r.phase > REST_PHASE:
-        r.resting = 1
+@kernel
+def begin_impact(r: Any, elasticity: float, speed: float, h: float) -> None:
+    """A region that has just been touched at `speed`."""
+    r.damping = restitution_damping(elasticity) / speed
+    r.work = 0.0
+    r.loss = 0.0
+    r.slowed = 0.0
+    r.lasted = 0.0
+    r.late = 0.5 * h - min(h, r.depth / speed)
+    r.withheld = 0.0
+    r.opened = 0
+    r.elastic = 0.0
+    r.excess = 0.0
+    r.first_speed = speed
 
 
-@kernel(inline="always")
-def impact_force(
-    r: Any,
-    elastic: float,
-    elasticity: float,
-    speed: float,
-    coming: float,
-    inverse: float,
-    dt: float,
-    born: bool,
-) -> float:
-    """Normal force of an impact; what the region remembers of it is brought up to date.
+@kernel
+def follow_impact(r: Any, elasticity: float, speed: float, inverse: float, h: float) -> None:
+    """What the last substep's force did is now known: it acted while the speed went from the old to the present one.
 
-    While closing, F = f (1 + a speed) with the a that in free flight returns `elasticity` exactly, whatever f
-    (design 2.4). While opening, F = f (1 - b), b such that the loss of the whole impact becomes (1 - e^2) of the
-    kinetic energy at first touch: the same restitution again, but also where gravity, or anything else, acts during
-    the impact (the plain law then returns up to 0.25 less, the softer the contact).
-
-    An impact shorter than the step has no course, only a result: the impulse that returns e of the speed at touch,
-    all at once, and leaves the rest of the step to whatever else acts.
+    The law in free flight is exact; where gravity or anything else acts during the impact it would return up to 0.25
+    less. So the energy is kept account of: what the opening must give back less is withheld from its force.
     """
-    if r.sudden:
-        if r.opened:
-            return 0.0
-        # Speed at touch and speed now (positions are those of the step's middle) differ by what the rest of the world
-        # does over the depth; so do the two on the way out, and the energy of the way in and out is kept.
-        gained = coming - speed
-        fallen = 2.0 * (gained / dt) * min(r.depth, dt * speed) if born else 0.0
-        if born:
-            r.first_speed = math.sqrt(max(0.0, (speed + 0.5 * gained) ** 2 - fallen))
-        out2 = (min(1.0, elasticity) * r.first_speed) ** 2 + fallen
-        leaving = min(0.0, 0.5 * gained - math.sqrt(max(0.0, out2)))
-        return max(0.0, (coming - leaving) / (dt * inverse))
-    # The step of first touch is spent in touch for a part only, and so is the one that will end it: with
-    # (1 + part) / 2 of the force there symplectic Euler's energy is the same before and after.
+    if r.opened:
+        if speed > 0.0:
+            r.mode = REST
+        return
+    moved = 0.5 * h * (r.speed + speed)
+    r.work += r.elastic * moved
+    r.loss += r.excess * moved
+    r.slowed += h * (r.elastic + r.excess) * inverse
+    r.lasted += h
+    if speed < 0.0:
+        r.opened = 1
+        # touch came within a step, whose speed is that of its middle: what else pushes has changed it since
+        others = (speed - r.first_speed + r.slowed) / r.lasted
+        touch = r.first_speed + others * r.late
+        energy = 0.5 * touch * touch / inverse
+        missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
+        r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
+
+
+@kernel
+def impact_force(r: Any, elastic: float, speed: float, inverse: float, h: float) -> float:
+    """Normal force: f (1 + a speed) while closing, f (1 - b) while opening.
+
+    The step of first touch is spent in touch for a part only, and so is the one that will end it: with (1 + part) / 2
+    of the force there symplectic Euler's energy is the same before and after.
+    """
     depth = r.area / r.chord
     if r.opened:
         force = elastic * (1.0 - r.withheld)
-        leaving = dt * (dt * force * inverse - speed)
+        leaving = h * (h * force * inverse - speed)
         if depth < leaving:
             force *= 0.5 * (1.0 + depth / leaving)
         return force
-    if born and depth < dt * speed:
-        elastic *= 0.5 * (1.0 + depth / (dt * speed))
-    force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * dt * elastic * r.damping * inverse))
+    if r.born and depth < h * speed:
+        elastic *= 0.5 * (1.0 + depth / (h * speed))
+    force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * h * elastic * r.damping * inverse))
     # damping slows down, it never turns the speed round within a step
-    force = min(force, max(elastic, speed / (dt * inverse)))
+    force = min(force, max(elastic, speed / (h * inverse)))
     r.elastic = elastic
     r.excess = force - elastic
     return force

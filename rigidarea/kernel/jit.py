@@ -7,6 +7,7 @@ version's machine code, and an install that cannot be written to needs no writin
 
 from __future__ import annotations
 
+import ctypes
 import functools
 import hashlib
 import os
@@ -67,6 +68,18 @@ njit: Any = cached(numba.njit)
 kernel: Any = functools.partial(njit, _nrt=False)
 
 
+class _Interpreted:
+    """A C callback that is interpreted: what numba's cfunc is with NUMBA_DISABLE_JIT."""
+
+    def __init__(self, function: Any, kind: Any) -> None:
+        self._keep = kind(function)
+        self.address = ctypes.cast(self._keep, ctypes.c_void_p).value
+
+
 def callback(signature: Any) -> Any:
-    """Decorator for C callbacks made of kernels."""
+    """Decorator for C callbacks made of kernels; `.address` is where C finds them."""
+    if numba.config.DISABLE_JIT:
+        from .memory import prototype
+
+        return lambda function: _Interpreted(function, prototype(signature))
     return functools.partial(cached(functools.partial(numba.cfunc, signature)), _nrt=False)

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 import numpy as np
+from llvmlite import ir
 from numba import config, types
 from numba.core import cgutils
 from numba.extending import intrinsic
@@ -17,8 +19,7 @@ def record(fields: Any) -> np.dtype:
 
 
 @intrinsic
-def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
-    """array_at(address, shape, dtype): the memory there as a C-contiguous array that nobody counts or frees."""
+def _array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
     array = types.Array(dtype.dtype, len(shape), "C")
     signature = array(types.uintp, types.UniTuple(types.intp, len(shape)), dtype)
 
@@ -41,6 +42,60 @@ def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
         return view._getvalue()
 
     return signature, codegen
+
+
+def _interpreted_array_at(address: int, shape: tuple[int, ...], dtype: Any) -> np.ndarray:
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    memory = (ctypes.c_char * size).from_address(int(address))
+    return np.frombuffer(memory, dtype=dtype).reshape(shape)
+
+
+#: array_at(address, shape, dtype): the memory there as a C-contiguous array that nobody counts or frees.
+array_at: Any = _interpreted_array_at if config.DISABLE_JIT else _array_at
+
+_CTYPES = {
+    types.uintp: ctypes.c_size_t,
+    types.float64: ctypes.c_double,
+    types.int32: ctypes.c_int32,
+    types.uint32: ctypes.c_uint32,
+    types.int64: ctypes.c_int64,
+    types.void: None,
+}
+
+
+def prototype(signature: Any) -> Any:
+    """The ctypes function type of a numba signature of pointers and scalars."""
+    return ctypes.CFUNCTYPE(_CTYPES[signature.return_type], *(_CTYPES[a] for a in signature.args))
+
+
+def caller(signature: Any) -> Any:
+    """f(address, *arguments): a call of the C function of that signature at an address."""
+    if config.DISABLE_JIT:
+        kind = prototype(signature)
+        return lambda address, *arguments: kind(int(address))(*arguments)
+
+    @intrinsic
+    def call(typingctx: Any, address: Any, *arguments: Any) -> Any:
+        def codegen(context: Any, builder: Any, typed: Any, args: Any) -> Any:
+            kind = ir.FunctionType(
+                ir.VoidType()
+                if signature.return_type == types.void
+                else context.get_value_type(signature.return_type),
+                [context.get_value_type(a) for a in signature.args],
+            )
+            pointer = builder.inttoptr(args[0], kind.as_pointer())
+            values = args[1]
+            given = [
+                context.cast(builder, builder.extract_value(values, i), source, target)
+                for i, (source, target) in enumerate(zip(typed.args[1].types, signature.args))
+            ]
+            result = builder.call(pointer, given)
+            return context.get_dummy_value() if signature.return_type == types.void else result
+
+        kinds = arguments[0].types if len(arguments) == 1 and isinstance(arguments[0], types.BaseTuple) else arguments
+        return signature.return_type(types.uintp, types.StarArgTuple.from_types(tuple(kinds))), codegen
+
+    return call
 
 
 @intrinsic(prefer_literal=True)

@@ -1,4 +1,7 @@
-"""What outlives a step: a record a shape, a body, a pair, a region; pairs and regions in free lists."""
+"""What outlives a step: a record a body, a shape, a pair, a region; pairs and regions in free lists.
+
+Angles in radians, lengths, times, masses in the units of the space. An impulse is that of one substep.
+"""
 
 from __future__ import annotations
 
@@ -9,83 +12,253 @@ import numpy as np
 from .jit import kernel
 from .memory import record
 
-SHAPE = record(
-    [
-        ("address", "u8"),  # of the shape; 0: none
-        ("outline", "i4"),  # number in the pool
-        ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
-        ("inverse_mass", "f8"),  # of its body, as last seen; 0 for a sensor
-        ("inverse_moment", "f8"),
-        ("body", "i4"),  # row of its body
-    ],
-)
+LAW_AREA, LAW_ENERGY = 0, 1
+CHORD, NODAL = 0, 1
+
+#: How a body's position comes about: not at all, by our drifts, by a position function of the user's.
+FIXED, DRIFTS, LED = 0, 1, 2
 
 BODY = record(
     [
-        ("stamp", "i8"),  # space step in which a contact last met it
-        ("force_x", "f8"),  # what was in its accumulators after that
-        ("force_y", "f8"),
-        ("torque", "f8"),
-        ("met_x", "f8"),  # force of all its contacts met in that step
-        ("met_y", "f8"),
-        ("met_turn", "f8"),
-        ("old_x", "f8"),  # force, in the step before, of those not met yet
+        ("address", "u8"),  # of Chipmunk's body; 0: none
+        ("stamp", "i8"),  # frame in which it was last met
+        ("kind", "i8"),  # FIXED, DRIFTS or LED
+        ("x", "f8"),  # centre of gravity (length)
+        ("y", "f8"),
+        ("angle", "f8"),
+        ("c", "f8"),  # cosine and sine of the angle
+        ("s", "f8"),
+        ("ox", "f8"),  # its origin, where its outlines' coordinates start (length)
+        ("oy", "f8"),
+        ("cog_x", "f8"),  # centre of gravity, body frame (length)
+        ("cog_y", "f8"),
+        ("vx", "f8"),  # (length/time)
+        ("vy", "f8"),
+        ("w", "f8"),  # (1/time)
+        ("inverse_mass", "f8"),  # 0 for what no contact moves
+        ("inverse_moment", "f8"),
+        ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
+        ("kick_y", "f8"),
+        ("kick_w", "f8"),
+        ("shift_x", "f8"),  # what impacts within the substep move it by (length)
+        ("shift_y", "f8"),
+        ("shift_a", "f8"),
+        ("old_x", "f8"),  # state at the frame's start
         ("old_y", "f8"),
-        ("old_turn", "f8"),
-        ("met_rate", "f8"),  # sum of rate2 of all its regions in that step
-        ("old_rate", "f8"),  # in the step before
-        ("crowded", "i4"),  # steps for which it still counts as touched by a body that can move
+        ("old_a", "f8"),
+        ("old_vx", "f8"),
+        ("old_vy", "f8"),
+        ("old_w", "f8"),
+        ("extent", "f8"),  # smallest extent of its shapes (length)
+        ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
+        ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
     ]
+)
+
+SHAPE = record(
+    [
+        ("address", "u8"),  # of Chipmunk's shape; 0: none
+        ("ident", "i8"),  # Chipmunk's number for it
+        ("outline", "i4"),  # number in the pool
+        ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
+        ("body", "i4"),  # row of its body
+        ("sensor", "i4"),
+        ("heard", "i4"),  # callbacks of the user's: 1 for its type with any other, 2 for its type with one other
+        ("extent", "f8"),  # its smallest extent (length)
+        ("half_x", "f8"),  # half of its outline's bounding box, body axes (length)
+        ("half_y", "f8"),
+        ("friction", "f8"),
+        ("elasticity", "f8"),
+        ("surface_x", "f8"),  # surface velocity (length/time)
+        ("surface_y", "f8"),
+        ("type", "u8"),  # collision type
+        ("group", "u8"),  # its filter
+        ("categories", "u4"),
+        ("mask", "u4"),
+        ("low_x", "f8"),  # box within which it stays until pairs are searched again (length)
+        ("low_y", "f8"),
+        ("high_x", "f8"),
+        ("high_y", "f8"),
+    ],
 )
 
 PAIR = record(
     [
-        ("shape_a", "i8"),  # Chipmunk's shape ids, for finding the Python objects again
-        ("shape_b", "i8"),
+        ("a", "i4"),  # rows of the two shapes; -1: none
+        ("b", "i4"),
         ("head", "i4"),  # first region; -1: none
+        ("next", "i4"),  # in the free list
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("side_b", "i4"),
-        ("next", "i4"),  # in the free list
-        ("stamp", "i8"),  # space step of the pull
-        ("fx", "f8"),  # force on B (force)
-        ("fy", "f8"),
-        ("moment_a", "f8"),  # on each about its centre (force length)
-        ("moment_b", "f8"),
+        ("near", "i8"),  # search that last found it near
+        ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        ("verdict", "i4"),  # 1: the user lets it collide, 0: not
+        ("swapped", "i4"),  # 1: the arbiter's A is our B
+        ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
+        ("points", "i4"),  # how many contact points it had
+        ("friction", "f8"),
+        ("elasticity", "f8"),
+        ("surface_x", "f8"),  # surface velocity, B's minus A's
+        ("surface_y", "f8"),
+        ("jx", "f8"),  # impulse on B in this frame
+        ("jy", "f8"),
+        ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
+        ("order", "f8"),  # where it comes in a sweep: its height at the last search, then how far off the middle
+        ("beside", "f8"),
     ],
 )
 
-#: Counters: free regions' list head, how many are free, free pairs' list head, how many.
-FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS = range(4)
-COUNTERS = 4
+#: What a region is doing: resting; an impact that the steps follow; an impact shorter than the step, over by its end.
+REST, IMPACT, STRUCK = 0, 1, 2
+
+#: One contact region, remembered while it lives. Also what it did in the last substep.
+REGION = record(
+    [
+        ("stamp", "i8"),  # substep in which it was last there
+        ("pair", "i4"),
+        ("next", "i4"),  # next region of the pair, or of the free list; -1: none
+        ("mode", "i4"),
+        ("born", "i4"),  # 1: first seen in this substep
+        ("past", "i4"),  # 1: past the middle of a body, the direction is kept
+        ("opened", "i4"),  # 1 once the bodies have moved apart within this impact
+        ("area", "f8"),  # (length^2)
+        ("x", "f8"),  # point of application, world (length)
+        ("y", "f8"),
+        ("nx", "f8"),  # direction, A to B
+        ("ny", "f8"),
+        ("chord", "f8"),  # (length)
+        ("middle", "f8"),  # of the chord, from the point of application along it (length)
+        ("straight", "f8"),  # of the chord, as far as both boundaries are straight (length)
+        ("depth", "f8"),  # extent along the direction (length)
+        ("back", "f8"),  # time since first touch, of an impact shorter than the step
+        ("rest_depth", "f8"),  # depth at which it would carry what pushes (length)
+        ("arm_a", "f8"),  # of direction and of tangent about the two centres (length)
+        ("arm_b", "f8"),
+        ("lean_a", "f8"),
+        ("lean_b", "f8"),
+        ("stiffness", "f8"),  # k (force/length^2)
+        ("l1", "f8"),  # impulses of the substep: at the chord's start and end, and friction's
+        ("l2", "f8"),
+        ("lt", "f8"),
+        ("step", "f8"),  # of them (time)
+        ("spring", "f8"),  # force of friction's spring (force)
+        ("tangent_stiffness", "f8"),  # its stiffness when last loaded (force/length)
+        ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
+        ("peak", "f8"),  # its largest value, remembered for LOAD_MEMORY
+        ("force", "f8"),  # normal force (force)
+        ("friction", "f8"),  # tangential force on B along t (force)
+        ("speed", "f8"),  # closing speed (length/time)
+        ("slip", "f8"),  # tangential speed of A relative to B (length/time)
+        # of an impact that steps follow (kernel/impact.py)
+        ("first_speed", "f8"),
+        ("damping", "f8"),
+        ("elastic", "f8"),
+        ("excess", "f8"),
+        ("work", "f8"),
+        ("loss", "f8"),
+        ("slowed", "f8"),
+        ("lasted", "f8"),
+        ("late", "f8"),
+        ("withheld", "f8"),
+    ],
+)
+
+#: Counters: free regions' list head, how many are free, free pairs' list head, how many; shapes and bodies in use;
+#: searches and substeps so far; pairs that are near; rows of this substep; body pairs kept apart by joints; the first
+#: substep of this frame; 1: search anew.
+FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
+SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
+COUNTERS = 12
+
+
+class Law(NamedTuple):
+    """What the user chose for every region of a space."""
+
+    stiffness: float  # k (force/length^2: a pressure per unit depth of the plane, Eq. 5 and 6); 0: by each pair's load
+    penetration: float  # of its smallest extent that a body may sink, where the stiffness is chosen
+    gravity: float  # its size (length/time^2)
+    law: int  # LAW_AREA or LAW_ENERGY
+    length: float  # l of the energy law (length)
+    direction: int  # CHORD or NODAL
+    exponent: float  # q of Eq. 12, for NODAL
+    rest_speed: float  # first touch slower than this is rest (length/time); negative: by the load
+    followed: float  # (w h)^2 up to which a step follows a contact; infinity: always
 
 
 class Tables(NamedTuple):
     """What outlives a step."""
 
-    shapes: np.ndarray  # (n,) SHAPE
     bodies: np.ndarray  # (n,) BODY
+    shapes: np.ndarray  # (n,) SHAPE
     pairs: np.ndarray  # (n,) PAIR
     regions: np.ndarray  # (n,) REGION
+    rows: np.ndarray  # (n,) ROW
+    near: np.ndarray  # (n,) int32: pairs that may touch, in the order of the sweeps
+    apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
+    sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
+    keys: np.ndarray  # (m,) int64: hash table of pairs, a << 32 | b, a < b; -1: empty
+    values: np.ndarray  # (m,) int32
     counters: np.ndarray  # (COUNTERS,) int64
 
 
 @kernel
-def new_pair(tables: Tables, shape_a: int, shape_b: int) -> int:
-    """Take a pair from the free list; -1: there is none."""
+def find_pair(tables: Tables, a: int, b: int) -> int:
+    """The pair of shape rows a and b; -1: there is none."""
+    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
+    mask = len(tables.keys) - 1
+    i = (min(a, b) * 73856093 ^ max(a, b) * 19349663) & mask
+    while tables.keys[i] != -1:
+        if tables.keys[i] == key:
+            return int(tables.values[i])
+        i = (i + 1) & mask
+    return -1
+
+
+@kernel
+def _enter(tables: Tables, a: int, b: int, p: int) -> None:
+    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
+    mask = len(tables.keys) - 1
+    i = (min(a, b) * 73856093 ^ max(a, b) * 19349663) & mask
+    while tables.keys[i] != -1:
+        i = (i + 1) & mask
+    tables.keys[i] = key
+    tables.values[i] = p
+
+
+@kernel
+def rehash(tables: Tables) -> None:
+    """Make the hash table anew from the pairs in use: nothing is ever taken out of it singly."""
+    tables.keys[:] = -1
+    for p in range(len(tables.pairs)):
+        if tables.pairs[p].a >= 0:
+            _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
+
+
+@kernel
+def new_pair(tables: Tables, a: int, b: int) -> int:
+    """Take a pair from the free list, A the shape that was added first; -1: there is none."""
     counters = tables.counters
     p = counters[FREE_PAIR]
     if p >= 0:
         pair = tables.pairs[p]
         counters[FREE_PAIR] = pair.next
         counters[FREE_PAIRS] -= 1
-        pair.shape_a = shape_a
-        pair.shape_b = shape_b
+        first = tables.shapes[a].ident < tables.shapes[b].ident
+        pair.a = a if first else b
+        pair.b = b if first else a
         pair.head = -1
         pair.side_a = 0
         pair.side_b = 0
         pair.next = -1
+        pair.near = -1
         pair.stamp = -1
-    return p
+        pair.verdict = 1
+        pair.arbiter = 0
+        pair.jx = 0.0
+        pair.jy = 0.0
+        pair.stiffness = 0.0
+        _enter(tables, a, b, p)
+    return int(p)
 
 
 @kernel
@@ -102,12 +275,12 @@ def free_regions(regions: np.ndarray, counters: np.ndarray, r: int) -> None:
 
 @kernel
 def end_pair(tables: Tables, p: int) -> None:
-    """The two shapes have separated: forget the pair and its regions."""
+    """Forget the pair and its regions. The hash table keeps its key until `rehash`."""
     pair = tables.pairs[p]
     free_regions(tables.regions, tables.counters, pair.head)
     pair.head = -1
-    pair.shape_a = -1
-    pair.shape_b = -1
+    pair.a = -1
+    pair.b = -1
     pair.next = tables.counters[FREE_PAIR]
     tables.counters[FREE_PAIR] = p
     tables.counters[FREE_PAIRS] += 1

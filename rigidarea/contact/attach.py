@@ -1,0 +1,462 @@
+"""`attach(space)`: a pymunk space whose contacts are area contacts, until `detach()`."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import weakref
+from typing import Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..chipmunk import address_of, kinds_of_joints, layout
+from ..kernel.constants import FOLLOWED, SUBSTEPS
+from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
+from ..outline import Outline, positive
+from ..store import Store
+from . import frame, joints, record
+from .memory import Memory, recall, remember
+from .report import regions_of, total_energy
+
+LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
+DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
+INTEGRATIONS = ("implicit", "explicit")
+#: Penetration that `attach` allows, as a fraction of a body's smallest extent, where it chooses the stiffness. A
+#: tower of about (0.65 / this)^(1/3) boxes stands: 14.
+PENETRATION = 2e-4
+
+
+class SimulationError(RuntimeError):
+    """A step went wrong for a reason that the message names (body and step)."""
+
+
+class AreaContact:
+    """Area contact of one space: what `attach` returns."""
+
+    def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
+        self._settings = settings
+        self._memory: Memory = {}
+        self._install(space)
+
+    # --- attaching ---
+
+    def _install(self, space: pymunk.Space) -> None:
+        self._error: BaseException | None = None
+        self._store = Store()
+        self._shapes: dict[int, pymunk.Shape] = {}
+        self._state = state = self._store.state[0]
+        settings = self._settings
+        for name, offset in layout().items():
+            state[name] = offset
+        state["law"] = LAWS[settings["law"]]
+        state["direction"] = DIRECTIONS[settings["direction"]]
+        state["exponent"] = settings["exponent"]
+        state["length"] = settings["length"] or 0.0
+        state["stiffness"] = settings["stiffness"] or 0.0
+        state["stiffness_given"] = settings["stiffness"] is not None
+        state["penetration"] = settings["penetration"]
+        state["rest_speed"] = -1.0 if settings["rest_speed"] is None else settings["rest_speed"]
+        state["explicit"] = settings["integration"] == "explicit"
+        state["followed"] = math.inf if state["explicit"] else FOLLOWED
+        state["substeps"] = state["substeps_before"] = SUBSTEPS
+        state["held"] = state["frame"] = state["broken"] = -1
+        state["handler_count"] = state["shape_count"] = -1
+        self._scratch = np.zeros(8)
+        self._kinds = np.array(kinds_of_joints(), np.int64)
+        state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
+        state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
+        state["release_at"] = joints.release.address
+        own = weakref.ref(self)  # C keeps no Python object alive
+        self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
+        state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
+        self._space: pymunk.Space | None = space
+        self._plain = type(space)
+        space.__class__ = _attached(self._plain)
+        _contacts[space] = self
+        self._hide(space)
+        lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
+        self._end = weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
+        self._register()
+        if self._memory:
+            recall(self._store, space, self._memory)
+            self._memory = {}
+
+    def _hide(self, space: pymunk.Space) -> None:
+        """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
+        idle, none = joints.idle.address, joints.no_impulse.address
+        self._classes = np.array(
+            [
+                *(idle, idle, idle, none),
+                *(frame.silence.address, frame.solve.address, idle, none),
+            ],
+            np.uint64,
+        )
+        self._state["idle_kind"] = self._classes.ctypes.data
+        body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
+        joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
+        own = ffi.cast("uintptr_t *", joint)
+        pivot = int(own[0])
+        own[0] = self._classes.ctypes.data + 32
+        at = int(self._state["constraint_post_solve"]) // 8
+        own[at] = frame.report.address
+        lib.cpSpaceAddConstraint(space._space, joint)
+        self._hidden = joint, body, pivot
+        self._state["hidden"] = address_of(joint)
+        key = (None, None)
+        if key not in space._handlers:
+            space.on_collision()
+        self._handler = space._handlers[key]
+        self._state["global_handler"] = address_of(self._handler._handler)
+        self._state["pre_solve_at"] = record.pre_solve.address  # set at the begin of a frame
+
+    @property
+    def space(self) -> pymunk.Space:
+        """The attached space. RuntimeError after `detach`."""
+        if self._space is None:
+            raise RuntimeError("this contact is detached: attach the space again")
+        return self._space
+
+    def detach(self) -> None:
+        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again."""
+        space = self._space
+        if space is None:
+            return
+        if space._locked:
+            raise RuntimeError("detach() within a step: call it after the step")
+        self._end.detach()
+        lib.cpSpaceSetUserData(space._space, ffi.NULL)
+        joint, _, pivot = self._hidden
+        lib.cpSpaceRemoveConstraint(space._space, joint)
+        ffi.cast("uintptr_t *", joint)[0] = pivot
+        lib.cpConstraintFree(joint)
+        self._handler.pre_solve = self._handler.pre_solve  # pymunk sets Chipmunk's pointer anew
+        at, own = int(self._state["body_position_func"]) // 8, int(self._state["position_func"])
+        for body in space.bodies:
+            function = ffi.cast("uintptr_t *", body._body)
+            if int(function[at]) == int(self._state["hold_at"]):
+                function[at] = own
+        space.__class__ = self._plain
+        del _contacts[space]
+        self._space = None
+
+    # --- shapes ---
+
+    def _register(self) -> None:
+        """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
+        space, store = self.space, self._store
+        present = {shape._hashid: shape for shape in space.shapes}
+        bodies = {address_of(body._body): body for body in (*space.bodies, space.static_body)}
+        for shape in space.shapes:
+            if shape.body is not None:
+                bodies.setdefault(address_of(shape.body._body), shape.body)
+        for constraint in space.constraints:
+            for body in (constraint.a, constraint.b):
+                bodies.setdefault(address_of(body._body), body)
+        gone = self._shapes.keys() - present.keys()
+        store.forget(gone, store.known_bodies() - bodies.keys())
+        for ident in gone:
+            del self._shapes[ident]
+        hold, own = int(self._state["hold_at"]), int(self._state["position_func"])
+        at = int(self._state["body_position_func"]) // 8
+        for address, body in bodies.items():
+            store.body(address)
+            function = ffi.cast("uintptr_t *", body._body)
+            if int(function[at]) == own and not space._locked and not self._state["explicit"]:
+                function[at] = hold
+        for ident, shape in present.items():
+            if ident not in self._shapes:
+                self._take(shape)
+        self._hear()
+        store.settle()
+        state = self._state
+        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
+        state["shape_count"] = len(present)
+        if self._settings["length"] is None:
+            state["length"] = max(
+                (max(s.bb.right - s.bb.left, s.bb.top - s.bb.bottom) for s in present.values() if _moves(s)),
+                default=1.0,
+            )
+
+    def _take(self, shape: pymunk.Shape) -> None:
+        outline = Outline.from_pymunk(shape)
+        body = shape.body
+        assert body is not None
+        left, bottom, right, top = outline.bounds
+        self._store.shape(
+            shape._hashid,
+            address_of(shape._shape),
+            outline,
+            outline.mirror,
+            address_of(body._body),
+            shape.sensor,
+            outline.smallest_extent,
+            (0.5 * (right - left), 0.5 * (top - bottom)),
+        )
+        self._shapes[shape._hashid] = shape
+
+    def _hear(self) -> None:
+        """Which shapes' collision types have callbacks of the user's, that may say no."""
+        space = self.space
+        keys = [key for key in space._handlers if key != (None, None)]
+        alone = {a for a, b in keys if b is None}
+        pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
+        rows = self._store.slots
+        for ident, shape in self._shapes.items():
+            kind = shape.collision_type
+            self._store.tables.shapes[rows[ident]]["heard"] = (kind in alone) + 2 * (kind in pairs)
+        entries = ffi.cast(
+            "unsigned int **", address_of(space._space) + int(self._state["space_handlers"])
+        )
+        self._state["handler_count"] = int(entries[0][0])
+
+    def refresh(self, shape: pymunk.Shape) -> None:
+        """Read a shape's geometry again, after `unsafe_set_vertices` and the like."""
+        self._store.forget([shape._hashid], ())
+        self._take(shape)
+        self._hear()
+        self._store.settle()
+
+    @property
+    def stiffness(self) -> float | None:
+        """k of F = k A (force/length^2) for all pairs; None: each pair's by the load that it carries."""
+        return float(self._state["stiffness"]) if self._state["stiffness_given"] else None
+
+    @stiffness.setter
+    def stiffness(self, value: float | None) -> None:
+        given = None if value is None else positive(value, "stiffness")
+        self._settings["stiffness"] = given
+        self._state["stiffness"], self._state["stiffness_given"] = given or 0.0, given is not None
+        self._store.tables.pairs["stiffness"] = 0.0
+
+    # --- stepping ---
+
+    def step(self, dt: float, frames: int = 1, steps: int | None = None) -> None:
+        """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
+
+        steps: substeps of each frame (default SUBSTEPS). More are more accurate; any number is stable.
+        Raises ValueError for arguments out of range, SimulationError (naming body and frame) where a body's state
+        stops being finite; all bodies are then as they were before that frame.
+        """
+        positive(dt, "dt")
+        _count(frames, "frames")
+        space = self.space
+        if space._locked:
+            raise RuntimeError("step() within a step: call it after the step")
+        if steps is not None:
+            self._state["substeps"] = _count(steps, "steps")
+        try:
+            if frames == 1:
+                space.step(dt)
+                return
+            done = 0
+            while done < frames:
+                if space._handlers.keys() - {(None, None)} or self._step_alone(dt):
+                    space.step(dt)
+                    done += 1
+                else:
+                    done += self._run(dt, frames - done)
+        finally:
+            self._state["substeps"] = SUBSTEPS
+
+    def _step_alone(self, dt: float) -> bool:
+        """Whether pymunk has something to do around each step."""
+        space = self.space
+        return bool(space.threaded or space._bodies_to_check or space._handlers[None, None].pre_solve)
+
+    def _run(self, dt: float, frames: int) -> int:
+        """Frames on end, in machine code."""
+        space = self.space
+        self._state["stop"] = 0
+        space._locked = True
+        try:
+            advance = ffi.cast("long long(*)(void *, double, long long)", frame.advance.address)
+            taken = int(advance(space._space, dt, frames))
+        finally:
+            space._locked = False
+        self._raise()
+        if space._add_later or space._remove_later:
+            space.step(0.0)  # what a velocity function added or removed: pymunk's own way
+        return max(taken, 1)
+
+    def _raise(self) -> None:
+        error, self._error = self._error, None
+        if error is not None:
+            raise error
+
+    # --- what it shows ---
+
+    @property
+    def regions(self) -> np.ndarray:
+        """The contact regions of the last substep, one REGIONS row each; the order means nothing."""
+        assert self.space is not None  # says so if detached
+        return regions_of(self._store, self._shapes)
+
+    def energy(self) -> float:
+        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
+        return total_energy(self.space, self._store)
+
+    # --- what machine code asks for ---
+
+    def _answer(self, request: int) -> None:
+        store = self._store
+        if request == record.REGISTER:
+            self._register()
+        elif request == record.MORE_PAIRS:
+            store.grow_pairs()
+        elif request == record.MORE_REGIONS:
+            store.grow_regions()
+        elif request == record.MORE_WORK:
+            store.grow_work()
+        elif request == record.MORE_JOINTS:
+            store.grow_joints(len(self.space.constraints) + 1)
+        elif request == record.BROKEN:
+            space = self.space
+            address = int(store.tables.bodies[int(self._state["broken"])]["address"])
+            names = [f"bodies[{i}]" for i, b in enumerate(space.bodies) if address_of(b._body) == address]
+            raise SimulationError(
+                f"the state of {names[0] if names else 'a body'} is not finite in frame "
+                f"{lib.cpSpaceGetTimestamp(space._space)} of the space: all bodies are as they were before it"
+            )
+
+    # --- copies ---
+
+    def __getstate__(self) -> dict[str, Any]:
+        memory = self._memory if self._space is None else remember(self._store, self._space)
+        return {"_settings": dict(self._settings), "_memory": memory}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._space = None
+        self._error = None
+
+
+def _serve(own: weakref.ref[AreaContact], request: int) -> None:
+    contact = own()
+    if contact is None or contact._space is None:
+        return
+    try:
+        contact._answer(request)
+    except Exception as error:  # ctypes would print it and go on: keep it, raise it after the step
+        contact._state["failed"] = contact._state["stop"] = 1
+        if contact._error is None:
+            contact._error = error
+            contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
+
+
+def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
+    space._post_step_callbacks.pop(key)
+    contact._raise()
+
+
+def _moves(shape: pymunk.Shape) -> bool:
+    return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor
+
+
+# --- an attached space's class: its own, and copies of it take their contact along ---
+
+_contacts: weakref.WeakKeyDictionary[pymunk.Space, AreaContact] = weakref.WeakKeyDictionary()
+_classes: dict[type, type] = {}
+
+
+def _attached(plain: type) -> type:
+    if plain not in _classes:
+
+        def reduce(self: Any, protocol: Any) -> Any:
+            contact = _contacts[self]
+            self.__class__ = plain
+            try:
+                made = self.__reduce_ex__(protocol)
+            finally:
+                self.__class__ = _classes[plain]
+            return _copy, (made, contact)
+
+        _classes[plain] = type(plain.__name__, (plain,), {"__reduce_ex__": reduce, "__doc__": plain.__doc__})
+        _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
+    return _classes[plain]
+
+
+def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
+    build, arguments, state = made[:3]
+    space = build(*arguments)
+    space.__setstate__(state)
+    contact._install(space)
+    return space
+
+
+def attached(space: pymunk.Space) -> AreaContact | None:
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too."""
+    return _contacts.get(space)
+
+
+# --- settings ---
+
+
+def _not_negative(value: float, name: str) -> float:
+    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value >= 0):
+        raise ValueError(f"{name} must be a finite number >= 0, got {value!r}")
+    return float(value)
+
+
+def _count(value: int, name: str) -> int:
+    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value < 2**31:
+        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+    return int(value)
+
+
+def _one_of(value: str, name: str, known: Any) -> str:
+    if value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    return value
+
+
+def attach(
+    space: pymunk.Space,
+    stiffness: float | None = None,
+    *,
+    penetration: float = PENETRATION,
+    law: str = "area",
+    length: float | None = None,
+    direction: str = "chord",
+    exponent: float = 1.0,
+    rest_speed: float | None = None,
+    integration: str = "implicit",
+) -> AreaContact:
+    """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
+
+    stiffness: k of F = k A (force/length^2), for every pair. None: each pair's own, such that no body sinks deeper
+        than `penetration` (a fraction of its smallest extent) under the load that it has carried.
+    law: "area" (F = k A at the centroid, Eq. 5 and 7), or "energy" (F = k A L / length along the gradient of
+        k A^2 / (2 length), conservative between any two outlines; length None: the largest body's size).
+    direction: "chord" (exact and independent of the sampling), or "nodal" (Eq. 8-15, weights depth^exponent).
+    rest_speed: first touch slower than this (length/time) rests instead of bouncing. None: by what presses.
+    integration: "implicit": a frame is a few substeps, in which all contacts and joints are solved together;
+        stable at any stiffness and any step. "explicit": a step is one of symplectic Euler with F = k A at the
+        step's place, stable up to w h = 2 (in a stack 1), joints after it; for verification.
+
+    Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
+    their `friction`, callbacks' overrides included. `space.iterations` is the number of sweeps a substep.
+
+    Raises ValueError for settings out of range, and for a space that is attached already; LayoutError where
+    Chipmunk's memory is not as this version of pymunk has it.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    settings = {
+        "stiffness": None if stiffness is None else positive(stiffness, "stiffness"),
+        "penetration": positive(penetration, "penetration"),
+        "law": _one_of(law, "law", LAWS),
+        "length": None if length is None else positive(length, "length"),
+        "direction": _one_of(direction, "direction", DIRECTIONS),
+        "exponent": _not_negative(exponent, "exponent"),
+        "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
+        "integration": _one_of(integration, "integration", INTEGRATIONS),
+    }
+    if attached(space) is not None:
+        raise ValueError("this space is attached already; use attached(space), or detach() it first")
+    if lib.cpSpaceGetUserData(space._space) != ffi.NULL:
+        raise ValueError("expected a space whose user data is free; something else has taken it")
+    if space._locked:
+        raise RuntimeError("attach() within a step: call it after the step")
+    return AreaContact(space, settings)

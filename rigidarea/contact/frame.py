@@ -1,0 +1,350 @@
+"""A frame: one step of Chipmunk's, in which a constraint of ours solves all contacts and joints together.
+
+The constraint (`hidden`, known to Chipmunk alone) has a class of its own, and Chipmunk calls that class's functions
+where a constraint's turn is: `silence` after the pairs are known, so that its own solver finds nothing to do; `solve`
+once velocities are integrated; `report` after its sweeps, so that whoever asks an arbiter gets an answer.
+
+`solve` is the frame: substeps of drift, kick, overlap, rows, sweeps, drift.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from ..chipmunk import function
+from ..kernel.jit import callback, kernel
+from ..kernel.memory import array_at
+from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.solve import (
+    adapt_stiffness,
+    drift,
+    find_near,
+    finish,
+    finite,
+    gather,
+    kick,
+    place,
+    respond_explicitly,
+    sweep,
+    warm_start,
+)
+from ..kernel.tables import BODIES, DRIFTS, LED, ROWS, SUBSTEP, Tables
+from ..store import load_law, load_pool, load_tables, load_work, row_of_body
+from .joints import APPLY, APPLY_CACHED, PRE_STEP, add_impulse, joints_of, run, scale_impulse
+from .record import (
+    BROKEN,
+    MORE_PAIRS,
+    MORE_REGIONS,
+    MORE_WORK,
+    ask,
+    begin,
+    floats,
+    members,
+    read_motion,
+    read_place,
+    state_of,
+    timestamp,
+    user_data,
+    words,
+)
+
+_time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
+_cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
+_step = function("cpSpaceStep", types.void(types.uintp, types.float64))
+
+
+@kernel(inline="always")
+def _space_of(constraint: int) -> int:
+    return words(constraint + 8, 1)[0]
+
+
+@callback(types.void(types.uintp, types.float64))
+def silence(constraint: int, dt: float) -> None:
+    """Chipmunk's own solver gets no contact points: every pair is ours."""
+    space = _space_of(constraint)
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    if s.frame != np.int64(timestamp(space)) and not begin(s, space, dt):
+        return
+    tables = load_tables(s)
+    for p in range(len(tables.pairs)):
+        pair = tables.pairs[p]
+        if pair.stamp == s.frame and pair.a >= 0 and pair.verdict:
+            count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
+            pair.points = count[0]
+            count[0] = 0
+
+
+@kernel
+def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> None:
+    """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities."""
+    for address in members(space, s.space_bodies):
+        i = row_of_body(s, address)
+        if i < 0:
+            continue
+        body = tables.bodies[i]
+        if body.stamp != s.frame:  # woken within this step
+            body.stamp = s.frame
+            read_place(s, address, body)
+            read_motion(s, address, body)
+            body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+            body.kind = DRIFTS
+            body.old_vx = body.vx
+            body.old_vy = body.vy
+            body.old_w = body.w
+        if s.explicit or body.kind == LED:
+            read_place(s, address, body)
+        read_motion(s, address, body)
+        whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
+        body.kick_x = 0.0
+        body.kick_y = 0.0
+        body.kick_w = 0.0
+        if not whole:
+            share = h / dt
+            body.kick_x = (body.vx - body.old_vx) * share
+            body.kick_y = (body.vy - body.old_vy) * share
+            body.kick_w = (body.w - body.old_w) * share
+            body.vx = body.old_vx
+            body.vy = body.old_vy
+            body.w = body.old_w
+        elif s.explicit:  # the kick has been given; contacts want to know it all the same
+            body.kick_x = body.vx - body.old_vx
+            body.kick_y = body.vy - body.old_vy
+            body.kick_w = body.w - body.old_w
+
+
+@kernel(inline="always")
+def write_place(s: Any, body: Any) -> None:
+    """Put a body where the solve has taken it."""
+    p = floats(body.address + s.body_position, 2)
+    p[0] = body.x
+    p[1] = body.y
+    floats(body.address + s.body_angle, 1)[0] = body.angle
+    t = floats(body.address + s.body_transform, 6)
+    t[0] = body.c
+    t[1] = body.s
+    t[2] = -body.s
+    t[3] = body.c
+    t[4] = body.ox
+    t[5] = body.oy
+
+
+@kernel(inline="always")
+def write_motion(s: Any, body: Any) -> None:
+    """Give it its velocity."""
+    v = floats(body.address + s.body_velocity, 2)
+    v[0] = body.vx
+    v[1] = body.vy
+    floats(body.address + s.body_spin, 1)[0] = body.w
+
+
+@kernel(inline="always")
+def _read_velocity(s: Any, body: Any) -> None:
+    v = floats(body.address + s.body_velocity, 2)
+    body.vx = v[0]
+    body.vy = v[1]
+    body.w = floats(body.address + s.body_spin, 1)[0]
+
+
+@kernel
+def _joint(s: Any, tables: Tables, joint: Any, which: int, x: float) -> None:
+    """One function of one joint, on the velocities of the solve."""
+    if joint.a >= 0:
+        write_motion(s, tables.bodies[joint.a])
+    if joint.b >= 0:
+        write_motion(s, tables.bodies[joint.b])
+    run(joint, which, x)
+    if joint.a >= 0:
+        _read_velocity(s, tables.bodies[joint.a])
+    if joint.b >= 0:
+        _read_velocity(s, tables.bodies[joint.b])
+
+
+@kernel
+def _joints(s: Any, tables: Tables, which: int, x: float) -> None:
+    for joint in joints_of(s):
+        if joint.taken:
+            _joint(s, tables, joint, which, x)
+
+
+@kernel
+def _start_joints(s: Any, tables: Tables, h: float, factor: float) -> None:
+    """The joints as they are where the bodies are now, and what they did last."""
+    for joint in joints_of(s):
+        if joint.taken:
+            if joint.a >= 0:
+                write_place(s, tables.bodies[joint.a])
+            if joint.b >= 0:
+                write_place(s, tables.bodies[joint.b])
+    for joint in joints_of(s):
+        if joint.taken:
+            if factor != 1.0:
+                scale_impulse(joint, factor)
+            _joint(s, tables, joint, PRE_STEP, h)
+    _joints(s, tables, APPLY_CACHED, 1.0)
+
+
+@kernel
+def _contacts(s: Any, space: int, h: float, time: float) -> bool:
+    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
+    g = floats(space + s.space_gravity, 2)
+    while True:
+        status = find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1])
+        if status == DONE:
+            break
+        if not ask(s, MORE_PAIRS):
+            return False
+    load_tables(s).counters[SUBSTEP] += 1
+    load_tables(s).counters[ROWS] = 0
+    start = 0
+    while True:
+        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
+        if status == DONE:
+            return True
+        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
+            return False
+
+
+@kernel
+def _explicit_frame(s: Any, space: int, dt: float) -> bool:
+    """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
+    _start(s, space, load_tables(s), dt, dt)
+    if not _contacts(s, space, dt, dt):
+        return False
+    tables = load_tables(s)
+    respond_explicitly(tables)
+    finish(tables, s.frame, dt)
+    return True
+
+
+@kernel
+def _frame(s: Any, space: int, dt: float) -> bool:
+    """All substeps of a frame."""
+    n = s.substeps
+    h = dt / n
+    _start(s, space, load_tables(s), dt, h)
+    for i in range(n):
+        drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
+        kick(load_tables(s), s.frame)
+        if not _contacts(s, space, h, dt - i * h):
+            return False
+        tables = load_tables(s)
+        if s.joint_count > 0:
+            _start_joints(s, tables, h, 1.0 / s.substeps_before if i == 0 else 1.0)
+        warm_start(tables)
+        for k in range(s.sweeps):
+            sweep(tables, k % 2 == 0)
+            if s.joint_count > 0:
+                _joints(s, tables, APPLY, h)
+        if s.joint_count > 0:
+            for joint in joints_of(s):
+                if joint.taken:
+                    add_impulse(joint)
+        finish(tables, s.frame, h)
+    tables = load_tables(s)
+    if s.stiffness_given == 0:
+        adapt_stiffness(tables, load_law(s))
+    drift(tables, s.frame, 0.5 * h)
+    s.substeps_before = n
+    return True
+
+
+@kernel
+def _finish_frame(s: Any, tables: Tables) -> None:
+    """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at."""
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp != s.frame or body.address == 0:
+            continue
+        if body.mobile:
+            write_motion(s, body)
+        if body.kind == DRIFTS and s.explicit == 0:
+            write_place(s, body)
+            words(body.address + s.body_position_func, 1)[0] = s.hold_at
+            shape = words(body.address + s.body_shapes, 1)[0]
+            while shape != 0:
+                _cache_box(s.scratch_at, shape)
+                shape = words(shape + s.shape_next, 1)[0]
+
+
+@kernel
+def _undo(s: Any, tables: Tables) -> None:
+    """A frame that failed: every body as it was."""
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == s.frame and body.address != 0:
+            body.x = body.old_x
+            body.y = body.old_y
+            body.angle = body.old_a
+            body.vx = body.old_vx
+            body.vy = body.old_vy
+            body.w = body.old_w
+            place(body)
+
+
+@callback(types.void(types.uintp, types.float64))
+def solve(constraint: int, coefficient: float) -> None:
+    """The frame, once velocities are integrated."""
+    space = _space_of(constraint)
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    iterations = array_at(space, (1,), np.int32)
+    s.sweeps = iterations[0]
+    iterations[0] = 0
+    if s.frame != np.int64(timestamp(space)) or s.failed:
+        return
+    dt = _time_step(space)
+    good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
+    tables = load_tables(s)
+    if good:
+        s.broken = finite(tables, s.frame)
+        if s.broken >= 0:
+            ask(s, BROKEN)
+            good = False
+    if not good:
+        _undo(s, tables)
+    s.contacts = tables.counters[ROWS]
+    _finish_frame(s, tables)
+
+
+@callback(types.void(types.uintp, types.uintp))
+def report(constraint: int, space: int) -> None:
+    """After Chipmunk's sweeps: arbiters get their contact points again, with the impulse of the frame."""
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    array_at(space, (1,), np.int32)[0] = s.sweeps
+    if s.frame != np.int64(timestamp(space)):
+        return
+    tables = load_tables(s)
+    for p in range(len(tables.pairs)):
+        pair = tables.pairs[p]
+        if pair.stamp != s.frame or pair.a < 0 or not pair.verdict:
+            continue
+        arbiter = pair.arbiter
+        array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = pair.points
+        if pair.points == 0:
+            continue
+        n = floats(arbiter + s.arbiter_normal, 2)
+        sign = -1.0 if pair.swapped else 1.0
+        normal = sign * (pair.jx * n[0] + pair.jy * n[1]) / pair.points
+        tangent = sign * (pair.jy * n[0] - pair.jx * n[1]) / pair.points
+        point = words(arbiter + s.arbiter_contacts, 1)[0]
+        for i in range(pair.points):
+            floats(point + i * s.contact_size + s.contact_normal_impulse, 1)[0] = normal
+            floats(point + i * s.contact_size + s.contact_tangent_impulse, 1)[0] = tangent
+
+
+@callback(types.int64(types.uintp, types.float64, types.int64))
+def advance(space: int, dt: float, frames: int) -> int:
+    """So many frames on end; returns how many went well."""
+    for i in range(frames):
+        _step(space, dt)
+        if user_data(space) == 0 or state_of(space).failed or state_of(space).stop:
+            return i
+    return frames

@@ -1,0 +1,179 @@
+"""Joints are solved with the contacts, substep by substep: Chipmunk calls them once a frame, which would be too late.
+
+For the length of a frame a joint is *taken*: between the user's pre_solve and post_solve of it, its class (a struct
+of four functions) is one that does nothing, and the solve calls the functions of its own class instead, with the
+substep's time. Outside of that it is Chipmunk's as ever. Its impulse at the end is the frame's sum, so that a joint
+that is to break at a force breaks at it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from ..kernel.jit import callback, kernel
+from ..kernel.memory import array_at, caller
+from ..kernel.tables import ANEW, APART, BODIES, Tables
+from ..store import JOINT, KINDS, STATE, row_of_body
+from ..chipmunk import function
+
+_user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
+_call_user = caller(types.void(types.uintp, types.uintp))
+_call = caller(types.void(types.uintp, types.float64))
+
+#: Places of a class's functions.
+PRE_STEP, APPLY_CACHED, APPLY = 0, 1, 2
+
+
+@kernel(inline="always")
+def _words(address: int, n: int) -> np.ndarray:
+    return array_at(address, (n,), np.uint64)
+
+
+@kernel(inline="always")
+def joints_of(s: Any) -> np.ndarray:
+    """The joints of this frame: JOINT records."""
+    return array_at(s.joints_at, (s.joint_count,), JOINT)
+
+
+@callback(types.void(types.uintp, types.float64))
+def idle(constraint: int, x: float) -> None:
+    """A function of a joint that is taken."""
+
+
+@callback(types.float64(types.uintp))
+def no_impulse(constraint: int) -> float:
+    """The impulse of a joint that is taken."""
+    return 0.0
+
+
+@kernel
+def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
+    """At a frame's begin: list the space's joints, and be called around each of them."""
+    s.joint_count = 0
+    apart = 0
+    for address in constraints:
+        if address == s.hidden:
+            continue
+        s.joint_count += 1
+        joint = joints_of(s)[s.joint_count - 1]
+        bodies = _words(address + s.constraint_a, 2)
+        before = _words(address + s.constraint_pre_solve, 1)
+        after = _words(address + s.constraint_post_solve, 1)
+        joint.address = address
+        joint.kind = _words(address, 1)[0]
+        joint.pre_solve = before[0]
+        joint.post_solve = after[0]
+        joint.taken = 0
+        joint.a = row_of_body(s, bodies[0])
+        joint.b = row_of_body(s, bodies[1])
+        joint.x = 0.0
+        joint.y = 0.0
+        joint.at = -1
+        joint.count = 0
+        kinds = array_at(s.kinds_at, (3 * KINDS,), np.int64)
+        for k in range(KINDS):
+            if np.uint64(kinds[k]) == joint.kind:
+                joint.at = kinds[KINDS + k]
+                joint.count = kinds[2 * KINDS + k]
+        before[0] = s.seize_at
+        after[0] = s.release_at
+        if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
+            if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
+                tables.counters[ANEW] = 1
+            tables.apart[apart, 0] = joint.a
+            tables.apart[apart, 1] = joint.b
+            apart += 1
+    if apart != tables.counters[APART]:
+        tables.counters[ANEW] = 1
+        tables.counters[APART] = apart
+    if tables.counters[ANEW]:
+        for i in range(tables.counters[BODIES]):
+            tables.bodies[i].joined = 0
+        for i in range(apart):
+            tables.bodies[tables.apart[i, 0]].joined = 1
+            tables.bodies[tables.apart[i, 1]].joined = 1
+
+
+@kernel(inline="always")
+def _joint_of(s: Any, constraint: int) -> int:
+    joints = joints_of(s)
+    for i in range(len(joints)):
+        k = (s.joint_cursor + i) % len(joints)
+        if joints[k].address == constraint:
+            s.joint_cursor = k + 1
+            return k
+    return -1
+
+
+@kernel
+def give_back(s: Any, joint: Any) -> None:
+    """The joint as it was, its impulse that of the whole frame."""
+    if joint.taken:
+        _words(joint.address, 1)[0] = joint.kind
+        joint.taken = 0
+        if joint.count > 0:
+            impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+            impulse[0] = joint.x
+            if joint.count > 1:
+                impulse[1] = joint.y
+    before = _words(joint.address + s.constraint_pre_solve, 1)
+    after = _words(joint.address + s.constraint_post_solve, 1)
+    if before[0] == s.seize_at:
+        before[0] = joint.pre_solve
+    if after[0] == s.release_at:
+        after[0] = joint.post_solve
+
+
+@callback(types.void(types.uintp, types.uintp))
+def seize(constraint: int, space: int) -> None:
+    """In the place of a joint's pre_solve: the user's first, then Chipmunk is to leave it alone."""
+    s = array_at(_user_data(space), (1,), STATE)[0]
+    k = _joint_of(s, constraint)
+    if k < 0:
+        return
+    joint = joints_of(s)[k]
+    if joint.pre_solve != 0:
+        _call_user(joint.pre_solve, constraint, space)
+    joint.taken = 1
+    _words(constraint, 1)[0] = s.idle_kind
+
+
+@callback(types.void(types.uintp, types.uintp))
+def release(constraint: int, space: int) -> None:
+    """In the place of its post_solve: it is Chipmunk's again, then the user's."""
+    s = array_at(_user_data(space), (1,), STATE)[0]
+    k = _joint_of(s, constraint)
+    if k < 0:
+        return
+    joint = joints_of(s)[k]
+    give_back(s, joint)
+    if joint.post_solve != 0:
+        _call_user(joint.post_solve, constraint, space)
+
+
+@kernel
+def scale_impulse(joint: Any, factor: float) -> None:
+    """What the joint starts from: of the last frame's sum, a substep's share."""
+    if joint.count > 0:
+        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        for i in range(joint.count):
+            impulse[i] *= factor
+
+
+@kernel
+def add_impulse(joint: Any) -> None:
+    """Sum up what it has done in a substep."""
+    if joint.count > 0:
+        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        joint.x += impulse[0]
+        if joint.count > 1:
+            joint.y += impulse[1]
+
+
+@kernel(inline="always")
+def run(joint: Any, which: int, x: float) -> None:
+    """One of its own functions."""
+    _call(_words(joint.kind, 4)[which], joint.address, x)

@@ -1,0 +1,310 @@
+"""A step of Chipmunk's, as far as it is only watched: where bodies are, which pairs touch, what the user says of them.
+
+Everything here is called by Chipmunk, in machine code (or interpreted, with NUMBA_DISABLE_JIT=1: the same lines).
+Positions are held (`hold`): the solve moves bodies itself. `begin` takes down where they are and how they move before
+anything has changed a velocity. `pre_solve` runs after the user's own callbacks and notes the pair, with the
+friction, elasticity and surface velocity that they have left it, and whether they let it collide.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from ..chipmunk import function
+from ..kernel.jit import callback, kernel
+from ..kernel.memory import array_at, caller
+from ..kernel.solve import place
+from ..kernel.tables import (
+    ANEW,
+    BODIES,
+    DRIFTS,
+    FIXED,
+    FREE_PAIRS,
+    LED,
+    SHAPES,
+    Tables,
+    find_pair,
+    new_pair,
+)
+from ..store import STATE, load_tables, row_of_body
+from .joints import take_joints
+
+#: What machine code asks Python for.
+NOTHING, REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, BROKEN = range(7)
+
+user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
+timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
+shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
+space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
+hash_id = function("cpShapeGetHashID", types.uintp(types.uintp))
+body_type = function("cpBodyGetType", types.int32(types.uintp))
+_call_ask = caller(types.void(types.uintp))
+_call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
+_call_count = caller(types.int32(types.uintp))
+
+_STATIC = 2  # enum cpBodyType
+
+
+@kernel(inline="always")
+def floats(address: int, n: int) -> np.ndarray:
+    """n floats of Chipmunk's memory."""
+    return array_at(address, (n,), np.float64)
+
+
+@kernel(inline="always")
+def words(address: int, n: int) -> np.ndarray:
+    """n pointers of Chipmunk's memory."""
+    return array_at(address, (n,), np.uint64)
+
+
+@kernel(inline="always")
+def state_of(space: int) -> Any:
+    """The state record of an attached space."""
+    return array_at(user_data(space), (1,), STATE)[0]
+
+
+@kernel
+def ask(s: Any, request: int) -> bool:
+    """Ask Python for something; whether it could."""
+    s.request = request
+    _call_ask(s.ask_at, np.uint64(request))
+    return bool(s.failed == 0)
+
+
+@kernel(inline="always")
+def members(space: int, offset: int) -> np.ndarray:
+    """The pointers in one of the space's arrays, {int num, max; void **arr}."""
+    at = words(space + offset, 1)[0]
+    return words(words(at, 2)[1], array_at(at, (2,), np.int32)[0])
+
+
+@kernel(inline="always")
+def _shapes_there(s: Any, space: int) -> int:
+    """How many shapes the space has: its static and its dynamic index count theirs (struct cpSpatialIndex)."""
+    n = 0
+    for index in words(space + s.space_constraints - 16, 2):
+        n += _call_count(words(words(index, 1)[0], 2)[1], index)
+    return n
+
+
+@kernel(inline="always")
+def changed(s: Any, space: int) -> bool:
+    """Whether shapes or callbacks have come or gone since Python last looked."""
+    handlers = array_at(words(space + s.space_handlers, 1)[0], (1,), np.int32)[0]
+    return bool(
+        shape_counter(space) != s.shape_counter
+        or _shapes_there(s, space) != s.shape_count
+        or handlers != s.handler_count
+    )
+
+
+@kernel(inline="always")
+def read_place(s: Any, address: int, body: Any) -> None:
+    """Where a body is."""
+    p = floats(address + s.body_position, 2)
+    cog = floats(address + s.body_cog, 2)
+    body.x = p[0]
+    body.y = p[1]
+    body.angle = floats(address + s.body_angle, 1)[0]
+    body.cog_x = cog[0]
+    body.cog_y = cog[1]
+    place(body)
+
+
+@kernel(inline="always")
+def read_motion(s: Any, address: int, body: Any) -> None:
+    """How it moves, and how it lets itself be moved."""
+    v = floats(address + s.body_velocity, 2)
+    body.vx = v[0]
+    body.vy = v[1]
+    body.w = floats(address + s.body_spin, 1)[0]
+    body.inverse_mass = floats(address + s.body_inverse_mass, 1)[0]
+    body.inverse_moment = floats(address + s.body_inverse_moment, 1)[0]
+
+
+@kernel
+def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
+    """All bodies: those that are awake as they are now, the others as what does not move."""
+    for address in members(space, s.space_bodies):
+        i = row_of_body(s, address)
+        body = tables.bodies[i]
+        if body.stamp == s.frame:
+            continue
+        body.stamp = s.frame
+        read_place(s, address, body)
+        read_motion(s, address, body)
+        body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+        function = words(address + s.body_position_func, 1)
+        body.kind = DRIFTS if function[0] == s.hold_at else LED
+        if function[0] == s.position_func and s.explicit == 0:
+            # Chipmunk's own: a body that is new here. It will have been moved by a whole frame before the solve.
+            body.kind = DRIFTS
+            if s.held != s.frame:
+                _take_back(body, dt)
+        body.old_x = body.x
+        body.old_y = body.y
+        body.old_a = body.angle
+        body.old_vx = body.vx
+        body.old_vy = body.vy
+        body.old_w = body.w
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.address != 0 and body.stamp != s.frame:
+            x, y, angle = body.x, body.y, body.angle
+            read_place(s, body.address, body)
+            read_motion(s, body.address, body)
+            body.inverse_mass = 0.0  # asleep, or static
+            body.inverse_moment = 0.0
+            body.kick_x = 0.0
+            body.kick_y = 0.0
+            body.kick_w = 0.0
+            body.kind = FIXED
+            if x != body.x or y != body.y or angle != body.angle:
+                body.stamp = s.frame  # moved by hand
+
+
+@kernel(inline="always")
+def _take_back(body: Any, dt: float) -> None:
+    """Undo Chipmunk's own drift."""
+    body.x -= dt * body.vx
+    body.y -= dt * body.vy
+    body.angle -= dt * body.w
+    place(body)
+
+
+@kernel
+def begin(s: Any, space: int, dt: float) -> bool:
+    """The first thing in a frame: everything as it is. Whether it could be taken down."""
+    s.frame = np.int64(timestamp(space))
+    g = floats(space + s.space_gravity, 2)
+    s.gravity = (g[0] * g[0] + g[1] * g[1]) ** 0.5
+    s.failed = 0
+    s.broken = -1
+    hook = words(s.global_handler + s.handler_pre_solve, 1)
+    fresh = changed(s, space)
+    if hook[0] != s.pre_solve_at:  # the user has set one of theirs, or taken it away: ours comes after it
+        s.user_pre_solve = np.uint64(0) if hook[0] == s.no_pre_solve else hook[0]
+        hook[0] = s.pre_solve_at
+        fresh = True
+    if not fresh:
+        for address in members(space, s.space_bodies):
+            if row_of_body(s, address) < 0:
+                fresh = True
+                break
+    if fresh and not ask(s, REGISTER):
+        return False
+    tables = load_tables(s)
+    _watch(s, tables, space, dt)
+    for i in range(tables.counters[SHAPES]):
+        shape = tables.shapes[i]
+        if shape.outline >= 0:
+            material = floats(shape.address + s.shape_elasticity, 2)
+            shape.elasticity = material[0]
+            shape.friction = material[1]
+            surface = floats(shape.address + s.shape_surface_velocity, 2)
+            shape.surface_x = surface[0]
+            shape.surface_y = surface[1]
+            group = words(shape.address + s.shape_filter, 1)[0]
+            masks = array_at(shape.address + s.shape_filter + 8, (2,), np.uint32)
+            if group != shape.group or masks[0] != shape.categories or masks[1] != shape.mask:
+                tables.counters[ANEW] = 1
+                shape.group = group
+                shape.categories = masks[0]
+                shape.mask = masks[1]
+    if not s.explicit:
+        n = len(members(space, s.space_constraints))
+        if n > s.joints_n and not ask(s, MORE_JOINTS):
+            return False
+        take_joints(s, load_tables(s), members(space, s.space_constraints))
+    return True
+
+
+@callback(types.void(types.uintp, types.float64))
+def hold(body: int, dt: float) -> None:
+    """Chipmunk's position function of every body: it stays where it is. The first call begins the frame."""
+    space = space_of(body)
+    if space == 0 or user_data(space) == 0:
+        return
+    s = state_of(space)
+    now = np.int64(timestamp(space))
+    if s.held != now:
+        s.held = now
+        begin(s, space, dt)
+
+
+@kernel(inline="always")
+def _surface_velocity(
+    ax: float, ay: float, bx: float, by: float, nx: float, ny: float, given_x: float, given_y: float
+) -> tuple[float, float]:
+    """Surface velocity of the pair, B's minus A's: the shapes', unless a callback of the user set another.
+
+    Chipmunk has projected the shapes' onto its own tangent, which for a stand-in is not the contact's: where
+    `given` is that projection, what the shapes say is used instead.
+    """
+    x = bx - ax
+    y = by - ay
+    along = x * nx + y * ny
+    if abs(given_x - (x - nx * along)) + abs(given_y - (y - ny * along)) > 1e-12 * (abs(x) + abs(y)):
+        return given_x, given_y
+    return x, y
+
+
+@kernel(inline="always")
+def _row_of_shape(s: Any, shape: int) -> int:
+    ident = np.int64(hash_id(shape))
+    if ident >= s.slots_n:
+        return -1
+    return int(array_at(s.slots_at, (s.slots_n,), np.int32)[ident])
+
+
+@callback(types.void(types.uintp, types.uintp, types.uintp))
+def pre_solve(arbiter: int, space: int, data: int) -> None:
+    """One touching pair: note it, with what the user's callbacks have made of it."""
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    now = np.int64(timestamp(space))
+    if s.user_pre_solve != 0:
+        _call_hook(s.user_pre_solve, arbiter, space, data)
+    if s.frame != now and not begin(s, space, 0.0):
+        return
+    both = words(arbiter + s.arbiter_shape_a, 2)
+    a = _row_of_shape(s, both[0])
+    b = _row_of_shape(s, both[1])
+    if a < 0 or b < 0:
+        return
+    tables = load_tables(s)
+    if tables.shapes[a].sensor or tables.shapes[b].sensor:
+        return
+    if not (tables.bodies[tables.shapes[a].body].mobile or tables.bodies[tables.shapes[b].body].mobile):
+        return
+    p = find_pair(tables, a, b)
+    if p < 0:
+        if tables.counters[FREE_PAIRS] == 0:
+            if not ask(s, MORE_PAIRS):
+                return
+            tables = load_tables(s)
+        p = new_pair(tables, a, b)
+        tables.counters[ANEW] = 1
+    pair = tables.pairs[p]
+    pair.stamp = now
+    pair.arbiter = arbiter
+    pair.swapped = 0 if pair.a == a else 1
+    pair.verdict = 1 if array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0
+    pair.jx = 0.0
+    pair.jy = 0.0
+    pair.friction = floats(arbiter + s.arbiter_friction, 1)[0]
+    pair.elasticity = floats(arbiter + s.arbiter_elasticity, 1)[0]
+    n = floats(arbiter + s.arbiter_normal, 2)
+    given = floats(arbiter + s.arbiter_surface, 2)
+    sa = tables.shapes[a]
+    sb = tables.shapes[b]
+    x, y = _surface_velocity(
+        sa.surface_x, sa.surface_y, sb.surface_x, sb.surface_y, n[0], n[1], given[0], given[1]
+    )
+    sign = -1.0 if pair.swapped else 1.0
+    pair.surface_x = sign * x
+    pair.surface_y = sign * y

@@ -1,0 +1,63 @@
+"""What a contact shows of itself: its regions, the energy of the space."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+import pymunk
+
+from ..kernel.bed import stored
+from ..kernel.tables import SUBSTEP
+from ..store import Store, load_law
+
+#: One row a contact region, as `AreaContact.regions` gives them.
+REGIONS = np.dtype(
+    [
+        ("shape_a", "O"),
+        ("shape_b", "O"),
+        ("body_a", "O"),
+        ("body_b", "O"),
+        ("area", "f8"),  # (length^2)
+        ("centroid", "f8", 2),  # where the force acts, world (length)
+        ("direction", "f8", 2),  # unit, from A to B
+        ("chord", "f8"),  # (length)
+        ("stiffness", "f8"),  # k of F = k A (force/length^2)
+        ("force", "f8"),  # normal force on B along direction (force); on A the opposite
+        ("friction", "f8"),  # force on B along direction turned by +90 degrees
+        ("speed", "f8"),  # closing speed (length/time)
+        ("slip", "f8"),  # tangential speed of A relative to B, surface velocity included (length/time)
+    ]
+)
+
+
+def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:
+    """The regions of the last substep, one REGIONS row each."""
+    tables = store.tables
+    live = tables.regions[
+        (tables.regions["stamp"] == tables.counters[SUBSTEP]) & (tables.counters[SUBSTEP] > 0)
+    ]
+    out = np.zeros(len(live), REGIONS)
+    row: Any
+    for row, region, pair in zip(out, live, tables.pairs[live["pair"]]):
+        for side in ("a", "b"):
+            shape = shapes[int(tables.shapes[pair[side]]["ident"])]
+            row[f"shape_{side}"], row[f"body_{side}"] = shape, shape.body
+        row["centroid"] = region["x"], region["y"]
+        row["direction"] = region["nx"], region["ny"]
+    for name in ("area", "chord", "stiffness", "force", "friction", "speed", "slip"):
+        out[name] = live[name]
+    return out
+
+
+def total_energy(space: pymunk.Space, store: Store) -> float:
+    """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
+    total = 0.0
+    for body in space.bodies:
+        if body.body_type == pymunk.Body.DYNAMIC:
+            center = body.local_to_world(body.center_of_gravity)
+            total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(center)
+            if math.isfinite(body.moment):
+                total += 0.5 * body.moment * body.angular_velocity**2
+    return total + float(stored(store.pool, store.tables, store.work, load_law(store.state[0])))

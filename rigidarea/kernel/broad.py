@@ -1,0 +1,183 @@
+"""Which pairs may touch: sort and sweep over boxes with some room, made anew only when a shape leaves its box.
+
+Chipmunk looks for pairs once a step, and tells of those that touch then. A contact solved in several substeps needs
+those that come to touch within the frame as well. Sort and sweep (Baraff 1992): shapes in the order of their boxes'
+low x, which hardly changes from search to search, so that insertion sort takes it up where it was.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .constants import MARGIN
+from .jit import kernel
+from .pool import Pool
+from .tables import (
+    APART,
+    BODIES,
+    FREE_PAIRS,
+    NEAR,
+    SEARCH,
+    SHAPES,
+    Tables,
+    end_pair,
+    find_pair,
+    new_pair,
+    rehash,
+)
+
+GROW_PAIRS = -1
+
+
+@kernel(inline="always")
+def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, float]:
+    """(low x, low y, high x, high y) of the shape where its body is, either side of a two-sided one."""
+    head = pool.heads[shape.outline]
+    x = body.ox + body.c * head.x - body.s * head.y
+    y = body.oy + body.s * head.x + body.c * head.y
+    c = abs(body.c)
+    s = abs(body.s)
+    half_x = c * shape.half_x + s * shape.half_y
+    half_y = s * shape.half_x + c * shape.half_y
+    low_x, low_y, high_x, high_y = x - half_x, y - half_y, x + half_x, y + half_y
+    if shape.mirror >= 0:
+        other = pool.heads[shape.mirror]
+        x = body.ox + body.c * other.x - body.s * other.y
+        y = body.oy + body.s * other.x + body.c * other.y
+        low_x, low_y = min(low_x, x - half_x), min(low_y, y - half_y)
+        high_x, high_y = max(high_x, x + half_x), max(high_y, y + half_y)
+    return low_x, low_y, high_x, high_y
+
+
+@kernel
+def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
+    """Whether a shape that moves has left its box, or comes from outside of it within the last h."""
+    for i in range(tables.counters[SHAPES]):
+        shape = tables.shapes[i]
+        if shape.outline < 0:
+            continue
+        body = tables.bodies[shape.body]
+        if body.stamp != frame and shape.low_x <= shape.high_x:
+            continue
+        low_x, low_y, high_x, high_y = box_of(pool, shape, body)
+        dx = h * body.vx
+        dy = h * body.vy
+        if (
+            low_x - max(0.0, dx) < shape.low_x
+            or low_y - max(0.0, dy) < shape.low_y
+            or high_x - min(0.0, dx) > shape.high_x
+            or high_y - min(0.0, dy) > shape.high_y
+        ):
+            return True
+    return False
+
+
+@kernel
+def _widen(pool: Pool, tables: Tables, time: float) -> None:
+    """A new box for every shape: where it is, where it was and will be within `time`, and some room."""
+    for i in range(tables.counters[SHAPES]):
+        shape = tables.shapes[i]
+        if shape.outline < 0:
+            continue
+        body = tables.bodies[shape.body]
+        low_x, low_y, high_x, high_y = box_of(pool, shape, body)
+        dx = time * abs(body.vx) + MARGIN * shape.extent
+        dy = time * abs(body.vy) + MARGIN * shape.extent
+        shape.low_x = low_x - dx
+        shape.low_y = low_y - dy
+        shape.high_x = high_x + dx
+        shape.high_y = high_y + dy
+
+
+@kernel
+def search(pool: Pool, tables: Tables, time: float) -> int:
+    """Find all pairs whose boxes meet, the boxes made for `time` of motion: how many; GROW_PAIRS: no room.
+
+    tables.near has them then, in no order. Pairs that are near no more and have no region are forgotten.
+    """
+    _widen(pool, tables, time)
+    counters = tables.counters
+    shapes = tables.shapes
+    order = tables.sorted
+    n = counters[SHAPES]
+    for i in range(n):  # as far as the last search left it in order
+        me = order[i]
+        key = shapes[me].low_x
+        j = i
+        while j > 0 and shapes[order[j - 1]].low_x > key:
+            order[j] = order[j - 1]
+            j -= 1
+        order[j] = me
+    counters[SEARCH] += 1
+    mark = counters[SEARCH]
+    near = 0
+    for i in range(n):
+        one = shapes[order[i]]
+        if one.outline < 0:
+            continue
+        me = tables.bodies[one.body]
+        for j in range(i + 1, n):
+            other = shapes[order[j]]
+            if other.outline < 0:
+                continue
+            if other.low_x > one.high_x:
+                break
+            if other.low_y > one.high_y or other.high_y < one.low_y or one.body == other.body:
+                continue
+            it = tables.bodies[other.body]
+            if not (me.mobile or it.mobile) or (me.joined and it.joined and kept_apart(tables, one.body, other.body)):
+                continue
+            if one.sensor or other.sensor or not passes(one, other):
+                continue
+            p = find_pair(tables, order[i], order[j])
+            if p < 0:
+                if counters[FREE_PAIRS] == 0:
+                    return GROW_PAIRS
+                p = new_pair(tables, order[i], order[j])
+            tables.pairs[p].near = mark
+            near += 1
+    if near > len(tables.near):
+        return GROW_PAIRS
+    k = 0
+    for p in range(len(tables.pairs)):
+        pair = tables.pairs[p]
+        if pair.a >= 0:
+            if pair.near == mark:
+                tables.near[k] = p
+                k += 1
+            else:
+                end_pair(tables, p)
+    rehash(tables)
+    counters[NEAR] = k
+    return k
+
+
+@kernel
+def kept_apart(tables: Tables, a: int, b: int) -> bool:
+    """Whether a joint with collide_bodies = False holds the two bodies."""
+    for i in range(tables.counters[APART]):
+        p = tables.apart[i, 0]
+        q = tables.apart[i, 1]
+        if (p == a and q == b) or (p == b and q == a):
+            return True
+    return False
+
+
+@kernel(inline="always")
+def passes(one: Any, other: Any) -> bool:
+    """Chipmunk's filter: whether the two shapes may collide."""
+    return (one.group == 0 or one.group != other.group) and (
+        (one.categories & other.mask) != 0 and (other.categories & one.mask) != 0
+    )
+
+
+@kernel
+def extents(tables: Tables) -> None:
+    """Every body's smallest extent, from its shapes'."""
+    for i in range(tables.counters[BODIES]):
+        tables.bodies[i].extent = 0.0
+    for i in range(tables.counters[SHAPES]):
+        shape = tables.shapes[i]
+        if shape.outline >= 0 and not shape.sensor:
+            body = tables.bodies[shape.body]
+            body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)

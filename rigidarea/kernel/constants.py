@@ -1,0 +1,40 @@
+"""The numbers of the contact law that nobody is asked for: all dimensionless, each with its reason.
+
+What the user chooses (stiffness or penetration, law, sweeps, substeps) is not here.
+"""
+
+#: Substeps of a frame, unless asked otherwise. Two: what the first one met the second one already answers, and the
+#: sweeps, not the substeps, are what piles need (docs/architecture.md has the measurement).
+SUBSTEPS = 2
+#: (w h)^2 up to which a step h follows a contact of frequency w explicitly. Symplectic Euler is stable up to 4 alone,
+#: up to 1 between two others; a quarter of that keeps its error below the restitution's (design 2.3).
+FOLLOWED = 0.25
+#: A contact pressed too far opens again in so many substeps (1/e time): the row's S, its release overdamped.
+#: Much less: what sweeps left unsolved is handed back as speed; much more: piles go on sliding.
+RELEASE_STEPS = 16.0
+#: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time).
+RELEASE_SPEED = 1.0
+#: Damping ratio of a contact at rest that the step follows: beyond critical, so that what is pressed in comes to the
+#: surface without the speed to leave it.
+REST_DAMPING = 1.0
+#: Tangential over normal stiffness. Cundall & Strack (1979) leave it free; 2/7 makes a sphere's two periods equal.
+TANGENT_STIFFNESS = 2.0 / 7.0
+#: First touch slower than what the load gives in so many substeps (or natural times, where they are longer) is rest.
+REST_KICKS = 2.0
+#: Deeper at first touch than so many substeps' motion: put there, not come there. No impact then.
+MOST_ARRIVED = 2.0
+#: Restitution below this is taken as this: the exact law's damping grows as 1/e.
+LEAST_RESTITUTION = 0.01
+#: A chord below this fraction of sqrt(area) is rounding: the direction is then remembered, or found anew.
+NO_CHORD = 1e-6
+#: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
+LOOK = 0.5
+#: Room around a shape's box, as a fraction of its size, before pairs are searched again.
+MARGIN = 0.1
+#: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
+#: under gravity has at 60 frames a second, within a factor of 3.
+WEIGHTLESS_PHASE2 = 40.0
+#: Time over which a load is averaged, and for which it is remembered (seconds-like, in units of the space's time).
+LOAD_TIME, LOAD_MEMORY = 0.1, 1.0
+#: A stiffness grows or shrinks by no more than this factor a frame.
+STIFFNESS_CHANGE = 1.25

@@ -1,0 +1,440 @@
+"""From a pair of shapes to its contact regions: overlap, and which region of the substep before each one is.
+
+A region is matched with the nearest of its pair's regions of the substep before; it keeps its impulses, its friction
+spring and its direction while it lives. One that is new may be an impact: then its place is that of first touch,
+found by going back along the bodies' motion (`touch`), so that neither the point nor the direction depends on how
+deep a step has carried one body into the other, and nothing is jumped over.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .constants import LOOK, MOST_ARRIVED, NO_CHORD, REST_KICKS
+from .direction import chord_direction, nodal_direction
+from .jit import kernel
+from .overlap import A_EDGE, OVERFLOW, Work
+from .place import Pose, overlap_of_outlines, push_out, seen_from
+from .pool import Pool
+from .sides import length_on_first_edge, shown_sides
+from .stiffness import depth_for, first_stiffness
+from .tables import (
+    CHORD,
+    FREE_REGION,
+    FREE_REGIONS,
+    IMPACT,
+    LAW_AREA,
+    LAW_ENERGY,
+    REST,
+    STRUCK,
+    SUBSTEP,
+    Law,
+    Tables,
+    free_regions,
+)
+
+DONE, GROW_WORK, GROW_REGIONS = 0, 1, 2
+
+
+class Patch(NamedTuple):
+    """One loop of an overlap as a contact sees it, world axes."""
+
+    area: float
+    x: float
+    y: float
+    nx: float
+    ny: float
+    chord: float
+    middle: float
+    straight: float
+    depth: float
+    blind: bool  # the chord is nothing: no direction of its own
+
+
+@kernel(inline="always")
+def pose_of(body: Any) -> Pose:
+    """Where a body's outlines are."""
+    return Pose(body.ox, body.oy, body.c, body.s)
+
+
+@kernel(inline="always")
+def earlier(body: Any, time: float) -> Pose:
+    """Where they were `time` ago, at the velocity at which it has come."""
+    vx = body.vx - body.kick_x
+    vy = body.vy - body.kick_y
+    w = body.w - body.kick_w
+    if body.kind == 0:
+        vx = 0.0
+        vy = 0.0
+        w = 0.0
+    angle = time * w
+    cd = math.cos(angle)
+    sd = math.sin(angle)
+    c = body.c * cd + body.s * sd
+    s = body.s * cd - body.c * sd
+    x = body.x - time * vx
+    y = body.y - time * vy
+    return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
+
+
+@kernel
+def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float) -> float:
+    """Extent of a loop along the world direction (wx, wy)."""
+    nx = pose.c * wx + pose.s * wy
+    ny = pose.c * wy - pose.s * wx
+    low = np.inf
+    high = -np.inf
+    for i in range(start, stop):
+        h = nx * work.polygon[i, 0] + ny * work.polygon[i, 1]
+        low = min(low, h)
+        high = max(high, h)
+    return high - low
+
+
+@kernel
+def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Patch:
+    """Loop k of the work, of outline ia at `pose`."""
+    loop = work.loops[k]
+    head = pool.heads[ia]
+    lx = loop.x + head.x
+    ly = loop.y + head.y
+    x = pose.x + pose.c * lx - pose.s * ly
+    y = pose.y + pose.s * lx + pose.c * ly
+    if law.direction == CHORD:
+        nx, ny = chord_direction(loop.chord_x, loop.chord_y, loop.area)
+    else:
+        nx, ny = nodal_direction(work.polygon, work.label, loop.start, loop.stop, law.exponent)
+        if nx == 0.0 and ny == 0.0:
+            nx, ny = chord_direction(loop.chord_x, loop.chord_y, loop.area)
+    blind = nx == 0.0 and ny == 0.0
+    chord = math.sqrt(loop.chord_x * loop.chord_x + loop.chord_y * loop.chord_y)
+    middle = 0.0
+    if blind:
+        chord = math.sqrt(loop.area)
+    else:
+        middle = loop.lever / chord
+    wx = pose.c * nx - pose.s * ny
+    wy = pose.s * nx + pose.c * ny
+    depth = _extent(work, loop.start, loop.stop, pose, wx, wy) if not blind else chord
+    straight = min(loop.straight, chord)
+    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, blind)
+
+
+@kernel(inline="always")
+def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> int:
+    """The region of the list nearest to (x, y) that is not yet taken in this substep; -1: none."""
+    best = -1
+    least = np.inf
+    r = head
+    while r >= 0:
+        if regions[r].stamp != stamp:
+            d = (regions[r].x - x) ** 2 + (regions[r].y - y) ** 2
+            if d < least:
+                least = d
+                best = r
+        r = regions[r].next
+    return best
+
+
+@kernel(inline="always")
+def _fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) -> None:
+    """The region's place and arms: about the centres (ax, ay) and (bx, by)."""
+    region.area = patch.area
+    region.x = patch.x
+    region.y = patch.y
+    region.nx = patch.nx
+    region.ny = patch.ny
+    region.chord = patch.chord
+    region.middle = patch.middle
+    region.straight = patch.straight
+    region.depth = patch.depth
+    region.arm_a = (patch.x - ax) * patch.ny - (patch.y - ay) * patch.nx
+    region.arm_b = (patch.x - bx) * patch.ny - (patch.y - by) * patch.nx
+    region.lean_a = (patch.x - ax) * patch.nx + (patch.y - ay) * patch.ny
+    region.lean_b = (patch.x - bx) * patch.nx + (patch.y - by) * patch.ny
+
+
+@kernel(inline="always")
+def _centre(body: Any, pose: Pose) -> tuple[float, float]:
+    """A body's centre of gravity, its outlines at `pose`."""
+    return (
+        pose.x + pose.c * body.cog_x - pose.s * body.cog_y,
+        pose.y + pose.s * body.cog_x + pose.c * body.cog_y,
+    )
+
+
+@kernel(inline="always")
+def closing(r: Any, a: Any, b: Any, full: float) -> float:
+    """Closing speed at the region (length/time), with the part `full` of the substep's kick taken off."""
+    return (
+        (a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.nx
+        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.ny
+        + (a.w - full * a.kick_w) * r.arm_a
+        - (b.w - full * b.kick_w) * r.arm_b
+    )
+
+
+@kernel(inline="always")
+def inverse_mass(r: Any, a: Any, b: Any) -> float:
+    """1/m_eff of the two bodies along the region's direction (design 2.3)."""
+    return (
+        a.inverse_mass
+        + b.inverse_mass
+        + r.arm_a * r.arm_a * a.inverse_moment
+        + r.arm_b * r.arm_b * b.inverse_moment
+    )
+
+
+@kernel
+def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
+    """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
+    dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
+    way = math.sqrt(dx * dx + dy * dy)
+    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    least = LOOK * min(sa.extent, sb.extent)
+    n = h * (way + turn) / least
+    if n <= 1.0:
+        return 1
+    return int(min(n, 1e6)) + 1
+
+
+@kernel
+def overlap_before(
+    pool: Pool, work: Work, ia: int, ib: int, a: Any, b: Any, h: float, looks: int
+) -> tuple[int, float]:
+    """(regions, how long ago) at the first of `looks` places on the way of the last h where the two overlap."""
+    for i in range(looks):
+        back = h * (looks - 1 - i) / looks
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, back), ib, earlier(b, back), work)
+        if n != 0:
+            return n, back
+    return 0, 0.0
+
+
+@kernel
+def _touch(
+    pool: Pool, work: Work, law: Law, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+) -> bool:
+    """Put a new region where the two have touched first; False: it has not come there by moving.
+
+    Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
+    u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
+    there is a region to see its direction by. Sets `region.back`, the time since touch.
+    """
+    come = back > 0.0
+    region.back = back
+    for _ in range(3):
+        d = region.depth
+        u = closing(region, a, b, 0.5)
+        gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+        u -= gain * back
+        root = u * u - 2.0 * gain * d
+        if u <= 0.0 or root < 0.0:
+            return come
+        tau = 2.0 * d / (u + math.sqrt(root))
+        if tau + back > MOST_ARRIVED * h:
+            return come
+        come = True
+        region.back = back + tau
+        back += 0.999 * tau
+        pose = earlier(a, back)
+        other = earlier(b, back)
+        n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
+        best = -1
+        least = np.inf
+        for k in range(n):
+            patch = _patch(pool, work, law, k, ia, pose)
+            far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+            if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
+                least = far
+                best = k
+        if best < 0:
+            return come
+        patch = _patch(pool, work, law, best, ia, pose)
+        ax, ay = _centre(a, pose)
+        bx, by = _centre(b, other)
+        _fill(region, patch, ax, ay, bx, by)
+        if patch.depth < 0.01 * d:
+            return come
+    return come
+
+
+@kernel
+def _enter(
+    pool: Pool, work: Work, law: Law, k: float, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+) -> None:
+    """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
+    region.stiffness = k
+    stiffness = region_stiffness(law, k, region.chord)
+    inverse = inverse_mass(region, a, b)
+    phase2 = stiffness * inverse * h * h
+    push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
+    region.rest_depth = depth_for(law, region, k, push)
+    if phase2 <= law.followed and back == 0.0:
+        region.mode = IMPACT
+    else:
+        region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
+    u = closing(region, a, b, 0.5)
+    gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+    u -= gain * region.back
+    slow = law.rest_speed
+    if slow < 0.0:
+        slow = REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(stiffness * inverse))
+    region.first_speed = max(u, 0.0)
+    region.opened = 0
+    if u <= slow:
+        if region.mode == IMPACT:
+            region.mode = REST
+        region.first_speed = 0.0
+
+
+@kernel(inline="always")
+def region_stiffness(law: Law, k: float, chord: float) -> float:
+    """dF/ddelta of a region (design 2.3)."""
+    if law.law == LAW_AREA:
+        return k * chord
+    return k * chord * chord / law.length
+
+
+@kernel
+def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
+    """Bring pair p's regions up to where its bodies are: their places, and which of them are new. DONE, or GROW_...
+
+    Nothing is changed unless the answer is DONE.
+    """
+    pair = tables.pairs[p]
+    regions = tables.regions
+    counters = tables.counters
+    stamp = counters[SUBSTEP]
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    pose_a = pose_of(a)
+    pose_b = pose_of(b)
+    ia = sa.outline
+    ib = sb.outline
+    if sa.mirror >= 0 or sb.mirror >= 0:
+        ia, ib = shown_sides(pool, tables, pair, earlier(a, h), earlier(b, h))
+    fresh = pair.head < 0
+    back = 0.0
+    looks = jumped(tables, pair, a, b, h) if fresh else 1
+    if looks > 1:
+        n, back = overlap_before(pool, work, ia, ib, a, b, h, looks)
+        if back > 0.0:
+            pose_a = earlier(a, back)
+            pose_b = earlier(b, back)
+    else:
+        n, _ = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
+    if n == OVERFLOW:
+        return GROW_WORK
+    if n == 0:
+        if not fresh:
+            free_regions(regions, counters, pair.head)
+            pair.head = -1
+        return DONE
+    if n > counters[FREE_REGIONS]:
+        return GROW_REGIONS
+    rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
+    old = pair.head
+    kept = -1
+    for k in range(n):
+        area_cap = np.inf
+        if sa.mirror >= 0 or sb.mirror >= 0:
+            on_line = np.inf
+            if sa.mirror >= 0:
+                on_line = min(on_line, length_on_first_edge(pool, ia, rel, A_EDGE, work, k))
+            if sb.mirror >= 0:
+                on_line = min(on_line, length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k))
+            if on_line == 0.0:
+                continue  # reaches under the line without crossing it
+            area_cap = 2.0 * on_line * on_line  # only the line's end pokes in
+        patch = _patch(pool, work, law, k, ia, pose_a)
+        r = _match(regions, old, patch.x, patch.y, stamp)
+        born = r < 0
+        if born:
+            r = counters[FREE_REGION]
+            counters[FREE_REGION] = regions[r].next
+            counters[FREE_REGIONS] -= 1
+        else:  # unhook
+            if old == r:
+                old = regions[r].next
+            else:
+                q = old
+                while regions[q].next != r:
+                    q = regions[q].next
+                regions[q].next = regions[r].next
+        region = regions[r]
+        region.next = kept
+        kept = r
+        region.pair = p
+        region.stamp = stamp
+        wx = patch.nx
+        wy = patch.ny
+        if patch.blind and born:
+            nx, ny = push_out(pool, ia, ib, rel)
+            wx = pose_a.c * nx - pose_a.s * ny
+            wy = pose_a.s * nx + pose_a.c * ny
+        past = 0
+        if not born:
+            # Past the middle of a body the chord shrinks to nothing and comes out the other way: a region then keeps
+            # the way it came in, while it lives (design 2.1). A wide chord that turns by more than 90 degrees is not
+            # that: the sliver of a corner has found another edge, and that is another contact.
+            against = not patch.blind and wx * region.nx + wy * region.ny < 0.0
+            if patch.blind or (against and (region.past or region.chord * region.chord < region.area)):
+                wx = region.nx
+                wy = region.ny
+                past = 1
+            elif against:
+                born = True
+        region.past = past
+        x = patch.x
+        y = patch.y
+        middle = patch.middle
+        straight = patch.straight
+        if patch.blind or past:
+            middle = 0.0
+            straight = 0.0
+        elif law.law == LAW_ENERGY:  # the gradient's line of action: through the chord's middle
+            x -= wy * middle
+            y += wx * middle
+            middle = 0.0
+        patch = Patch(
+            min(patch.area, area_cap), x, y, wx, wy, patch.chord, middle, straight, patch.depth, patch.blind
+        )
+        region.born = 1 if born else 0
+        if back > 0.0:
+            ax, ay = _centre(a, pose_a)
+            bx, by = _centre(b, pose_b)
+            _fill(region, patch, ax, ay, bx, by)
+        else:
+            _fill(region, patch, a.x, a.y, b.x, b.y)
+        if born:
+            region.l1 = 0.0
+            region.l2 = 0.0
+            region.lt = 0.0
+            region.step = h
+            region.spring = 0.0
+            region.tangent_stiffness = 0.0
+            region.load = 0.0
+            region.peak = 0.0
+            region.back = 0.0
+        elif region.mode == STRUCK:
+            region.mode = REST
+    free_regions(regions, counters, old)
+    pair.head = kept
+    if pair.stiffness == 0.0 and kept >= 0:
+        pair.stiffness = first_stiffness(law, regions[kept], a, b, h)
+    r = kept
+    while r >= 0:  # after the loops have been read: looking back takes the work
+        region = regions[r]
+        if region.born:
+            _enter(pool, work, law, pair.stiffness, region, ia, ib, a, b, back, h)
+        r = region.next
+    return DONE

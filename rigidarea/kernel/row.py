@@ -1,0 +1,340 @@
+"""One contact region as rows of the solve: a normal force at each end of its face, and friction (design 2.9).
+
+    l = h (F0 + C (v' - vt)),   F0 = k A,   C = c + theta (1 + S) h k L,   l >= 0
+
+l an impulse, v' the closing speed after the solve, h the substep. At rest l = h k A, whatever the step: nothing is
+softened. theta = 0 where the step follows the contact, which is the explicit law; theta -> 1 where it does not: the
+spring is then taken at the end of the step, and opens again in S steps. C -> infinity with a target speed vt is an
+impact shorter than the step. All of them share one form with alpha = 1/(1 + h C W), gamma = h C alpha, W the inverse
+effective mass: a visit adds
+
+    dl = [alpha (h F0 - l) + gamma (v - vt)] / (alpha + gamma W)
+
+so that alpha = 1, gamma = 0 is a given force, and alpha = 0 a given speed.
+
+A straight face is two such rows, at the ends e1, e2 of its straight stretch s, solved as one block with
+C [[a, b], [b, a]], a + b = 1/2, a - b = s / 6L: that is a bed's stiffness k L and, against turning, k s^3/12; F0 is
+shared so that k A acts at the centroid; and with both l >= 0 the resultant stays within the face. Friction is a
+third row along the tangent, bounded by mu (l1 + l2).
+
+n from A to B, t = (-n_y, n_x); an impulse l pushes A along -n and B along +n.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .constants import RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .impact import begin_impact, damping_ratio, follow_impact, impact_force
+from .jit import kernel
+from .meet import closing, inverse_mass, region_stiffness
+from .memory import record
+from .stiffness import carried
+from .tables import IMPACT, LAW_AREA, REST, STRUCK, Law
+
+ROW = record(
+    [
+        ("region", "i4"),
+        ("a", "i4"),  # rows of the bodies
+        ("b", "i4"),
+        ("ends", "i4"),  # 1 or 2
+        ("nx", "f8"),
+        ("ny", "f8"),
+        ("arm_a", "f8"),
+        ("arm_b", "f8"),
+        ("lean_a", "f8"),
+        ("lean_b", "f8"),
+        ("e1", "f8"),
+        ("e2", "f8"),
+        ("alpha", "f8"),
+        ("gamma_a", "f8"),  # gamma [[a, b], [b, a]]
+        ("gamma_b", "f8"),
+        ("f1", "f8"),  # h F0 of the ends
+        ("f2", "f8"),
+        ("t1", "f8"),  # vt
+        ("t2", "f8"),
+        ("m11", "f8"),  # alpha + gamma C W
+        ("m12", "f8"),
+        ("m21", "f8"),
+        ("m22", "f8"),
+        ("det", "f8"),  # one over its determinant; of a single end: one over m11
+        ("friction", "f8"),
+        ("alpha_t", "f8"),
+        ("gamma_t", "f8"),
+        ("ft", "f8"),
+        ("tt", "f8"),
+        ("mt", "f8"),  # 1 / (alpha_t + gamma_t W_t)
+        ("l1", "f8"),
+        ("l2", "f8"),
+        ("lt", "f8"),
+        ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
+    ]
+)
+
+
+@kernel(inline="always")
+def slipping(r: Any, a: Any, b: Any, full: float) -> float:
+    """Tangential speed of A relative to B at the region, `full` of the substep's kick taken off (length/time)."""
+    return (
+        -(a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.ny
+        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.nx
+        + (a.w - full * a.kick_w) * r.lean_a
+        - (b.w - full * b.kick_w) * r.lean_b
+    )
+
+
+@kernel
+def _ends(row: Any, r: Any) -> None:
+    """The face's two ends from the point of application, and how F0 and C are shared."""
+    straight = r.straight
+    if straight <= 1e-6 * r.chord:
+        row.ends = 1
+        row.e1 = 0.0
+        row.e2 = 0.0
+        return
+    half = 0.5 * straight
+    middle = min(0.999 * half, max(-0.999 * half, r.middle))  # the point of application lies between them
+    row.ends = 2
+    row.e1 = middle - half
+    row.e2 = middle + half
+
+
+@kernel
+def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float) -> None:
+    """An impact shorter than the step: speeds at first touch returned, and what they have moved since made good.
+
+    It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
+    and where that is no leaving, it rests. Its depth is now d = u0 back + g back^2 / 2; had it left at once it would
+    be e u0 back - g back^2 / 2 apart. So the change of velocity acts `shift` ago.
+    """
+    back = r.back
+    row.alpha = 0.0
+    full = closing(r, a, b, 0.0)
+    gain = (full - closing(r, a, b, 1.0)) / h
+    since = gain * (back + 0.5 * h)
+    touch = full - since
+    turn = a.w - b.w
+    turn_since = (a.kick_w - b.kick_w) / h * (back + 0.5 * h)
+    e = min(1.0, elasticity) if r.first_speed > 0.0 else 0.0
+    row.t1 = 0.0
+    row.t2 = 0.0
+    for end in range(row.ends):
+        at = row.e1 if end == 0 else row.e2
+        u0 = touch - (turn - turn_since) * at
+        target = (since - turn_since * at) - e * max(0.0, u0)
+        if u0 > 0.0 or e == 0.0:
+            target = min(0.0, target)
+        if end == 0:
+            row.t1 = target
+        else:
+            row.t2 = target
+    leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
+    depth = touch * back + 0.5 * gain * back * back
+    apart = e * touch * back - 0.5 * gain * back * back if leaving < 0.0 else -min(depth, r.rest_depth)
+    change = full - leaving
+    row.shift = min(back, max(0.0, (depth + apart) / change)) if change > 0.0 else 0.0
+    row.alpha_t = 0.0
+    row.tt = surface
+    if leaving < 0.0:
+        row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * (back + 0.5 * h)
+
+
+@kernel
+def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) -> None:
+    """Everything of region r that stays the same during the sweeps. `a`, `b`: its bodies, the kick already given.
+
+    Row.region, a, b are set by the caller.
+    """
+    row.nx = r.nx
+    row.ny = r.ny
+    row.arm_a = r.arm_a
+    row.arm_b = r.arm_b
+    row.lean_a = r.lean_a
+    row.lean_b = r.lean_b
+    row.friction = pair.friction
+    row.shift = 0.0
+    row.t1 = 0.0
+    row.t2 = 0.0
+    ia = a.inverse_moment
+    ib = b.inverse_moment
+    masses = a.inverse_mass + b.inverse_mass
+    inverse = inverse_mass(r, a, b)
+    inverse_t = masses + r.lean_a * r.lean_a * ia + r.lean_b * r.lean_b * ib
+    surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
+    k = r.stiffness
+    stiffness = region_stiffness(law, k, r.chord)
+    elastic = k * r.area if law.law == LAW_AREA else k * r.area * r.chord / law.length
+    middle_speed = closing(r, a, b, 0.5)
+    if r.mode == IMPACT:
+        if r.born:
+            begin_impact(r, pair.elasticity, r.first_speed, h)
+        else:
+            follow_impact(r, pair.elasticity, middle_speed, inverse, h)
+    r.speed = middle_speed
+    r.slip = slipping(r, a, b, 0.5) - surface
+    _ends(row, r)
+    gamma = 0.0
+    if r.mode == STRUCK:
+        _struck(row, r, a, b, pair.elasticity, surface, inverse, h)
+        gamma = 1.0 / inverse
+        force = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        r.spring = 0.0
+        row.l1 = 0.0
+        row.l2 = 0.0
+        row.lt = 0.0
+    elif r.mode == IMPACT:
+        row.ends = 1
+        row.e1 = 0.0
+        row.e2 = 0.0
+        row.alpha = 1.0
+        force = h * impact_force(r, elastic, middle_speed, inverse, h)
+        row.alpha_t = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        row.tt = surface
+        r.spring = 0.0
+        row.l1 = force
+        row.l2 = 0.0
+        row.lt = r.lt * (h / r.step)
+    else:
+        phase2 = stiffness * inverse * h * h
+        theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
+        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
+        c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
+        least = a.extent if b.inverse_mass == 0.0 else b.extent
+        if a.inverse_mass > 0.0 and b.inverse_mass > 0.0:
+            least = min(a.extent, b.extent)
+        if law.followed < math.inf:
+            c = max(c, elastic / (RELEASE_SPEED * least))
+        q = h * c * inverse
+        row.alpha = 1.0 / (1.0 + q)
+        gamma = h * c * row.alpha
+        force = h * elastic
+        kt = TANGENT_STIFFNESS * stiffness
+        # the spring remembers a force; where the region shrinks the force shrinks with it: no energy comes free
+        if kt < r.tangent_stiffness:
+            r.spring *= kt / r.tangent_stiffness
+        r.tangent_stiffness = kt
+        ct = 2.0 * math.sqrt(kt / inverse_t) + kt * theta * h
+        qt = h * ct * inverse_t
+        row.alpha_t = 1.0 / (1.0 + qt)
+        row.gamma_t = h * ct * row.alpha_t
+        row.ft = h * r.spring
+        row.tt = surface
+        scale = h / r.step
+        row.l1 = r.l1 * scale
+        row.l2 = r.l2 * scale
+        row.lt = r.lt * scale
+        if row.ends == 1:
+            row.l1 += row.l2
+            row.l2 = 0.0
+    row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
+    if row.ends == 1:
+        row.gamma_a = gamma
+        row.gamma_b = 0.0
+        row.f1 = force
+        row.f2 = 0.0
+        row.m11 = row.alpha + gamma * inverse
+        row.det = 1.0 / row.m11
+        return
+    turning = (row.e2 - row.e1) / (6.0 * r.chord)
+    row.gamma_a = gamma * (0.25 + 0.5 * turning)
+    row.gamma_b = gamma * (0.25 - 0.5 * turning)
+    row.f1 = force * row.e2 / (row.e2 - row.e1)
+    row.f2 = force - row.f1
+    a1 = r.arm_a - row.e1
+    a2 = r.arm_a - row.e2
+    b1 = r.arm_b - row.e1
+    b2 = r.arm_b - row.e2
+    w11 = masses + a1 * a1 * ia + b1 * b1 * ib
+    w12 = masses + a1 * a2 * ia + b1 * b2 * ib
+    w22 = masses + a2 * a2 * ia + b2 * b2 * ib
+    row.m11 = row.alpha + row.gamma_a * w11 + row.gamma_b * w12
+    row.m12 = row.gamma_a * w12 + row.gamma_b * w22
+    row.m21 = row.gamma_a * w12 + row.gamma_b * w11
+    row.m22 = row.alpha + row.gamma_a * w22 + row.gamma_b * w12
+    row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
+
+
+@kernel(inline="always")
+def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
+    """Give the two bodies impulses d1, d2 at the ends and dt along the tangent."""
+    normal = d1 + d2
+    turn = d1 * row.e1 + d2 * row.e2
+    fx = normal * row.nx - dt * row.ny
+    fy = normal * row.ny + dt * row.nx
+    a.vx -= fx * a.inverse_mass
+    a.vy -= fy * a.inverse_mass
+    a.w -= (normal * row.arm_a - turn + dt * row.lean_a) * a.inverse_moment
+    b.vx += fx * b.inverse_mass
+    b.vy += fy * b.inverse_mass
+    b.w += (normal * row.arm_b - turn + dt * row.lean_b) * b.inverse_moment
+
+
+@kernel(inline="always")
+def visit(row: Any, a: Any, b: Any) -> None:
+    """Solve one row for the bodies' present velocities: both ends as a block, then friction under them."""
+    ux = a.vx - b.vx
+    uy = a.vy - b.vy
+    v = ux * row.nx + uy * row.ny + a.w * row.arm_a - b.w * row.arm_b
+    if row.ends == 1:
+        d1 = (row.alpha * (row.f1 - row.l1) + row.gamma_a * (v - row.t1)) * row.det
+        d1 = max(d1, -row.l1)
+        d2 = 0.0
+    else:
+        turn = a.w - b.w
+        v1 = v - turn * row.e1 - row.t1
+        v2 = v - turn * row.e2 - row.t2
+        r1 = row.alpha * (row.f1 - row.l1) + row.gamma_a * v1 + row.gamma_b * v2
+        r2 = row.alpha * (row.f2 - row.l2) + row.gamma_a * v2 + row.gamma_b * v1
+        d1 = (r1 * row.m22 - row.m12 * r2) * row.det
+        d2 = (row.m11 * r2 - row.m21 * r1) * row.det
+        if row.l1 + d1 < 0.0 or row.l2 + d2 < 0.0:  # one end is open
+            if row.l1 + d1 < row.l2 + d2:
+                d1 = -row.l1
+                d2 = max(-row.l2, (r2 - row.m21 * d1) / row.m22)
+            else:
+                d2 = -row.l2
+                d1 = max(-row.l1, (r1 - row.m12 * d2) / row.m11)
+        row.l2 += d2
+    row.l1 += d1
+    push(row, a, b, d1, d2, 0.0)
+    if row.friction > 0.0:
+        slip = -(a.vx - b.vx) * row.ny + (a.vy - b.vy) * row.nx + a.w * row.lean_a - b.w * row.lean_b
+        most = row.friction * (row.l1 + row.l2)
+        l = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
+        l = min(most, max(-most, l))
+        push(row, a, b, 0.0, 0.0, l - row.lt)
+        row.lt = l
+
+
+@kernel
+def settle(row: Any, r: Any, pair: Any, a: Any, b: Any, h: float) -> None:
+    """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
+    normal = row.l1 + row.l2
+    if r.mode == REST and row.friction > 0.0:
+        slip = slipping(r, a, b, 0.0) - row.tt
+        most = row.friction * normal / h
+        r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
+    r.l1 = row.l1
+    r.l2 = row.l2
+    r.lt = row.lt
+    r.step = h
+    r.force = normal / h
+    r.friction = row.lt / h
+    carried(r, r.force, h)
+    pair.jx += normal * row.nx - row.lt * row.ny
+    pair.jy += normal * row.ny + row.lt * row.nx
+    if row.shift > 0.0:
+        turn = row.l1 * row.e1 + row.l2 * row.e2
+        fx = (normal * row.nx - row.lt * row.ny) * row.shift
+        fy = (normal * row.ny + row.lt * row.nx) * row.shift
+        a.shift_x -= fx * a.inverse_mass
+        a.shift_y -= fy * a.inverse_mass
+        a.shift_a -= (normal * row.arm_a - turn + row.lt * row.lean_a) * row.shift * a.inverse_moment
+        b.shift_x += fx * b.inverse_mass
+        b.shift_y += fy * b.inverse_mass
+        b.shift_a += (normal * row.arm_b - turn + row.lt * row.lean_b) * row.shift * b.inverse_moment

@@ -1,0 +1,262 @@
+"""A substep of all bodies and contacts: drift, kick, overlap, rows, sweeps, settle.
+
+Positions and velocities leapfrog: contacts are met where the bodies are in the middle of the substep, which is where
+the first half of the substep's drift has taken them; second order in time (Hairer, Lubich, Wanner, Acta Numerica 12
+(2003), doi:10.1017/S0962492902000144). Two half drifts between two substeps are one whole drift.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .broad import box_of, search, somebody_left
+from .jit import kernel
+from .meet import DONE, GROW_REGIONS, meet
+from .pool import Pool
+from .row import make_row, push, settle, visit
+from .stiffness import adapted
+from .tables import ANEW, BODIES, DRIFTS, NEAR, REST, ROWS, Law, Tables
+from .work import Work
+
+#: What a kernel may ask for before it can go on.
+GROW_PAIRS = 3
+
+
+@kernel(inline="always")
+def place(body: Any) -> None:
+    """What follows from a body's centre and angle."""
+    body.c = math.cos(body.angle)
+    body.s = math.sin(body.angle)
+    body.ox = body.x - (body.c * body.cog_x - body.s * body.cog_y)
+    body.oy = body.y - (body.s * body.cog_x + body.c * body.cog_y)
+
+
+@kernel
+def drift(tables: Tables, frame: int, time: float) -> None:
+    """Move every body that we move, at its present velocity."""
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == frame and body.kind == DRIFTS:
+            body.x += time * body.vx
+            body.y += time * body.vy
+            body.angle += time * body.w
+            place(body)
+
+
+@kernel
+def kick(tables: Tables, frame: int) -> None:
+    """What everything but contacts and joints adds in a substep."""
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == frame:
+            body.vx += body.kick_x
+            body.vy += body.kick_y
+            body.w += body.kick_w
+
+
+@kernel
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> int:
+    """Search pairs again if somebody has left the boxes of the last search. DONE or GROW_PAIRS."""
+    if not (tables.counters[ANEW] or somebody_left(pool, tables, frame, h)):
+        return DONE
+    if search(pool, tables, time) < 0:
+        return GROW_PAIRS
+    tables.counters[ANEW] = 0
+    _arrange(tables, gx, gy)
+    return DONE
+
+
+@kernel
+def _arrange(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first."""
+    size = math.hypot(gx, gy)
+    ux, uy = (-gx / size, -gy / size) if size > 0.0 else (0.0, 1.0)
+    near = tables.near
+    n = tables.counters[NEAR]
+    for i in range(n):
+        pair = tables.pairs[near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        x = 0.0
+        y = 0.0
+        if a.mobile:
+            x += a.x
+            y += a.y
+        if b.mobile:
+            x += b.x
+            y += b.y
+        share = 0.5 if a.mobile and b.mobile else 1.0
+        pair.order = share * (ux * x + uy * y)
+        pair.beside = share * abs(ux * y - uy * x)
+    gap = 1
+    while gap < n:
+        gap = 3 * gap + 1
+    while gap > 0:  # Shell's sort, in place
+        for i in range(gap, n):
+            p = near[i]
+            j = i
+            while j >= gap and _after(tables.pairs[near[j - gap]], tables.pairs[p]):
+                near[j] = near[j - gap]
+                j -= gap
+            near[j] = p
+        gap //= 3
+
+
+@kernel(inline="always")
+def _after(one: Any, other: Any) -> bool:
+    if one.order != other.order:
+        return bool(one.order > other.order)
+    return bool(one.beside > other.beside)
+
+
+@kernel(inline="always")
+def _may_touch(pool: Pool, tables: Tables, pair: Any, h: float) -> bool:
+    """Whether the boxes of the two shapes meet, on the way that they have come in the last h."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    alx, aly, ahx, ahy = box_of(pool, sa, a)
+    blx, bly, bhx, bhy = box_of(pool, sb, b)
+    dx = h * (a.vx - b.vx)
+    dy = h * (a.vy - b.vy)
+    return bool(
+        alx - max(0.0, dx) <= bhx
+        and ahx - min(0.0, dx) >= blx
+        and aly - max(0.0, dy) <= bhy
+        and ahy - min(0.0, dy) >= bly
+    )
+
+
+@kernel
+def allowed(tables: Tables, pair: Any, frame: int) -> bool:
+    """Whether the pair may collide in this frame: the user's verdict, where there is somebody to ask.
+
+    A pair that Chipmunk has not reported in this frame has come to touch within it. Where a callback of the user's
+    would be asked, it waits for that.
+    """
+    if pair.stamp == frame:
+        return bool(pair.verdict)
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    pair.friction = sa.friction * sb.friction
+    pair.elasticity = sa.elasticity * sb.elasticity
+    pair.surface_x = sb.surface_x - sa.surface_x
+    pair.surface_y = sb.surface_y - sa.surface_y
+    if (sa.heard | sb.heard) & 1 or sa.heard & sb.heard & 2:
+        return bool(pair.verdict) and pair.stamp == frame - 1
+    return True
+
+
+@kernel
+def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int) -> tuple[int, int]:
+    """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
+    counters = tables.counters
+    for i in range(start, counters[NEAR]):
+        p = tables.near[i]
+        pair = tables.pairs[p]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        if a.stamp != frame and b.stamp != frame:
+            continue
+        if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+            continue
+        if pair.head < 0 and not _may_touch(pool, tables, pair, h):
+            continue
+        if not allowed(tables, pair, frame):
+            continue
+        status = meet(pool, tables, work, law, p, h)
+        if status != DONE:
+            return status, i
+        r = pair.head
+        while r >= 0:
+            region = tables.regions[r]
+            if counters[ROWS] == len(tables.rows):
+                return GROW_REGIONS, i
+            row = tables.rows[counters[ROWS]]
+            counters[ROWS] += 1
+            row.region = r
+            row.a = sa.body
+            row.b = sb.body
+            make_row(row, region, law, a, b, pair, h)
+            r = region.next
+    return DONE, counters[NEAR]
+
+
+@kernel
+def warm_start(tables: Tables) -> None:
+    """Begin with the impulses of the substep before."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        push(row, tables.bodies[row.a], tables.bodies[row.b], row.l1, row.l2, row.lt)
+
+
+@kernel
+def sweep(tables: Tables, up: bool) -> None:
+    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps)."""
+    n = tables.counters[ROWS]
+    for i in range(n):
+        row = tables.rows[i if up else n - 1 - i]
+        visit(row, tables.bodies[row.a], tables.bodies[row.b])
+
+
+@kernel
+def finish(tables: Tables, frame: int, h: float) -> None:
+    """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        region = tables.regions[row.region]
+        settle(row, region, tables.pairs[region.pair], tables.bodies[row.a], tables.bodies[row.b], h)
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
+            if body.kind == DRIFTS:
+                body.x += body.shift_x
+                body.y += body.shift_y
+                body.angle += body.shift_a
+                place(body)
+            body.shift_x = 0.0
+            body.shift_y = 0.0
+            body.shift_a = 0.0
+
+
+@kernel
+def respond_explicitly(tables: Tables) -> None:
+    """The explicit law: every row answers to the same velocities, none to what another has done."""
+    counters = tables.counters
+    for i in range(counters[ROWS]):
+        row = tables.rows[i]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        keep = (a.vx, a.vy, a.w, b.vx, b.vy, b.w)
+        push(row, a, b, row.l1, row.l2, row.lt)
+        visit(row, a, b)
+        a.vx, a.vy, a.w, b.vx, b.vy, b.w = keep
+    warm_start(tables)
+
+
+@kernel
+def adapt_stiffness(tables: Tables, law: Law) -> None:
+    """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        region = tables.regions[row.region]
+        pair = tables.pairs[region.pair]
+        if region.mode == REST:
+            pair.stiffness = adapted(law, region, pair.stiffness, tables.bodies[row.a], tables.bodies[row.b])
+            region.stiffness = pair.stiffness
+
+
+@kernel
+def finite(tables: Tables, frame: int) -> int:
+    """The first body whose state is not finite; -1: all are."""
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == frame:
+            total = body.x + body.y + body.angle + body.vx + body.vy + body.w
+            if not math.isfinite(total):
+                return i
+    return -1
