@@ -25,6 +25,7 @@ from ..kernel.solve import (
     finish,
     finite,
     gather,
+    join,
     kick,
     place,
     respond_explicitly,
@@ -210,6 +211,20 @@ def _contacts(s: Any, space: int, h: float, time: float) -> bool:
 
 
 @kernel
+def _join(s: Any, h: float) -> int:
+    """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
+    start = 0
+    total = 0
+    while True:
+        status, start, joined = join(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
+        total += joined
+        if status == DONE:
+            return total
+        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
+            return -1
+
+
+@kernel
 def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
     _start(s, space, load_tables(s), dt, dt)
@@ -217,7 +232,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
         return False
     tables = load_tables(s)
     respond_explicitly(tables)
-    finish(tables, s.frame, dt)
+    finish(tables, load_law(s), s.frame, dt, True)
     return True
 
 
@@ -236,7 +251,16 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         if s.joint_count > 0:
             _start_joints(s, tables, h, 1.0 / s.substeps_before if i == 0 else 1.0)
         warm_start(tables)
+        look = 0
+        wait = 1
         for k in range(s.sweeps):
+            if k == look:  # less and less often, as long as nobody joins
+                joined = _join(s, h)
+                if joined < 0:
+                    return False
+                wait = 1 if joined > 0 else 2 * wait
+                look += wait
+                tables = load_tables(s)
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)
@@ -244,10 +268,10 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             for joint in joints_of(s):
                 if joint.taken:
                     add_impulse(joint)
-        finish(tables, s.frame, h)
+        finish(tables, load_law(s), s.frame, h, i == n - 1)
     tables = load_tables(s)
     if s.stiffness_given == 0:
-        adapt_stiffness(tables, load_law(s))
+        adapt_stiffness(tables, dt)
     drift(tables, s.frame, 0.5 * h)
     s.substeps_before = n
     return True

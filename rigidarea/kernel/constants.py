@@ -34,7 +34,7 @@ MARGIN = 0.1
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
 #: under gravity has at 60 frames a second, within a factor of 3.
 WEIGHTLESS_PHASE2 = 40.0
-#: Time over which a load is averaged, and for which it is remembered (seconds-like, in units of the space's time).
-LOAD_TIME, LOAD_MEMORY = 0.1, 1.0
+#: Time over which the load that a pair carries is averaged (time).
+LOAD_TIME = 0.5
 #: A stiffness grows or shrinks by no more than this factor a frame.
-STIFFNESS_CHANGE = 1.25
+STIFFNESS_CHANGE = 1.05

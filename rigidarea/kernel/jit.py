@@ -62,7 +62,7 @@ def cached(compiler: Callable[..., Any]) -> Callable[..., Any]:
 
 
 #: `@njit` for functions that may allocate.
-njit: Any = cached(numba.njit)
+njit: Any = cached(functools.partial(numba.njit, error_model="numpy"))
 #: Decorator for kernels, `@kernel` or `@kernel(inline="always")`. They look at arrays that somebody else keeps
 #: alive; counting references to them would cost more than clipping two boxes. The price: a kernel cannot allocate.
 kernel: Any = functools.partial(njit, _nrt=False)
@@ -82,4 +82,4 @@ def callback(signature: Any) -> Any:
         from .memory import prototype
 
         return lambda function: _Interpreted(function, prototype(signature))
-    return functools.partial(cached(functools.partial(numba.cfunc, signature)), _nrt=False)
+    return functools.partial(cached(functools.partial(numba.cfunc, signature)), _nrt=False, error_model="numpy")

@@ -20,14 +20,16 @@ from .overlap import A_EDGE, OVERFLOW, Work
 from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .sides import length_on_first_edge, shown_sides
-from .stiffness import depth_for, first_stiffness
+from .stiffness import choose_stiffness, depth_for
 from .tables import (
     CHORD,
+    DRIFTS,
     FREE_REGION,
     FREE_REGIONS,
     IMPACT,
     LAW_AREA,
     LAW_ENERGY,
+    NEARING,
     REST,
     STRUCK,
     SUBSTEP,
@@ -66,7 +68,7 @@ def earlier(body: Any, time: float) -> Pose:
     vx = body.vx - body.kick_x
     vy = body.vy - body.kick_y
     w = body.w - body.kick_w
-    if body.kind == 0:
+    if body.kind != DRIFTS:
         vx = 0.0
         vy = 0.0
         w = 0.0
@@ -77,6 +79,21 @@ def earlier(body: Any, time: float) -> Pose:
     s = body.s * cd - body.c * sd
     x = body.x - time * vx
     y = body.y - time * vy
+    return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
+
+
+@kernel(inline="always")
+def later(body: Any, time: float) -> Pose:
+    """Where they will be in `time`, at their present velocity."""
+    if body.kind != DRIFTS:
+        return pose_of(body)
+    angle = time * body.w
+    cd = math.cos(angle)
+    sd = math.sin(angle)
+    c = body.c * cd - body.s * sd
+    s = body.s * cd + body.c * sd
+    x = body.x + time * body.vx
+    y = body.y + time * body.vy
     return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
 
 
@@ -267,9 +284,10 @@ def _touch(
 
 @kernel
 def _enter(
-    pool: Pool, work: Work, law: Law, k: float, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+    pool: Pool, work: Work, law: Law, pair: Any, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
 ) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
+    k = pair.stiffness
     region.stiffness = k
     stiffness = region_stiffness(law, k, region.chord)
     inverse = inverse_mass(region, a, b)
@@ -291,6 +309,8 @@ def _enter(
     if u <= slow:
         if region.mode == IMPACT:
             region.mode = REST
+        region.first_speed = 0.0
+    elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
 
 
@@ -422,19 +442,105 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.step = h
             region.spring = 0.0
             region.tangent_stiffness = 0.0
-            region.load = 0.0
-            region.peak = 0.0
             region.back = 0.0
-        elif region.mode == STRUCK:
+        elif region.mode >= STRUCK:
             region.mode = REST
     free_regions(regions, counters, old)
     pair.head = kept
     if pair.stiffness == 0.0 and kept >= 0:
-        pair.stiffness = first_stiffness(law, regions[kept], a, b, h)
+        choose_stiffness(law, pair, regions[kept], a, b, h)
     r = kept
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
         if region.born:
-            _enter(pool, work, law, pair.stiffness, region, ia, ib, a, b, back, h)
+            _enter(pool, work, law, pair, region, ia, ib, a, b, back, h)
+        region.stiffness = pair.stiffness
         r = region.next
+    return DONE
+
+
+@kernel
+def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
+    """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
+
+    DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one. A bounce is left to come: it
+    is found, and its place and time with it, when it has happened (`_touch`).
+    """
+    pair = tables.pairs[p]
+    regions = tables.regions
+    counters = tables.counters
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    ia = sa.outline
+    ib = sb.outline
+    if sa.mirror >= 0 or sb.mirror >= 0:
+        ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
+    looks = jumped(tables, pair, a, b, h)
+    n = 0
+    ahead = h
+    for i in range(looks):
+        ahead = h * (i + 1) / looks
+        pose_a = later(a, ahead)
+        pose_b = later(b, ahead)
+        n, rel = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
+        if n != 0:
+            break
+    if n == 0:
+        return DONE
+    if n == OVERFLOW:
+        return GROW_WORK
+    if n > counters[FREE_REGIONS]:
+        return GROW_REGIONS
+    kept = -1
+    ax, ay = _centre(a, pose_a)
+    bx, by = _centre(b, pose_b)
+    for k in range(n):
+        if sa.mirror >= 0 and length_on_first_edge(pool, ia, rel, A_EDGE, work, k) == 0.0:
+            continue
+        if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
+            continue
+        patch = _patch(pool, work, law, k, ia, pose_a)
+        if patch.blind:
+            continue
+        r = counters[FREE_REGION]
+        region = regions[r]
+        _fill(region, patch, ax, ay, bx, by)
+        u = closing(region, a, b, 0.0)
+        if u <= 0.0:
+            continue
+        if pair.stiffness == 0.0:
+            choose_stiffness(law, pair, region, a, b, h)
+        region.stiffness = pair.stiffness
+        stiffness = region_stiffness(law, pair.stiffness, region.chord)
+        inverse = inverse_mass(region, a, b)
+        if stiffness * inverse * h * h <= law.followed:
+            continue  # the steps follow it
+        gain = max(0.0, u - closing(region, a, b, 1.0)) / h
+        slow = law.rest_speed
+        if slow < 0.0:
+            slow = REST_KICKS * gain * max(h, 1.0 / math.sqrt(stiffness * inverse))
+        if min(1.0, pair.elasticity) * u > 0.0 and u > slow:
+            continue
+        counters[FREE_REGION] = region.next
+        counters[FREE_REGIONS] -= 1
+        region.next = kept
+        kept = r
+        region.pair = p
+        region.stamp = counters[SUBSTEP]
+        region.past = 0
+        region.born = 1
+        region.mode = NEARING
+        region.opened = 0
+        region.l1 = 0.0
+        region.l2 = 0.0
+        region.lt = 0.0
+        region.step = h
+        region.spring = 0.0
+        region.tangent_stiffness = 0.0
+        region.first_speed = 0.0
+        region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, gain / inverse))
+        region.back = (u * ahead - region.depth + region.rest_depth) / h  # the closing speed that is left to it
+    pair.head = kept
     return DONE

@@ -30,8 +30,8 @@ from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
-from .stiffness import carried
-from .tables import IMPACT, LAW_AREA, REST, STRUCK, Law
+from .stiffness import area_allowed
+from .tables import IMPACT, LAW_AREA, NEARING, REST, STRUCK, Law
 
 ROW = record(
     [
@@ -102,27 +102,28 @@ def _ends(row: Any, r: Any) -> None:
 
 @kernel
 def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float) -> None:
-    """An impact shorter than the step: speeds at first touch returned, and what they have moved since made good.
+    """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
-    and where that is no leaving, it rests. Its depth is now d = u0 back + g back^2 / 2; had it left at once it would
-    be e u0 back - g back^2 / 2 apart. So the change of velocity acts `shift` ago.
+    and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
+    so much further on it is put (`shift`), unless it rests.
     """
     back = r.back
     row.alpha = 0.0
     full = closing(r, a, b, 0.0)
     gain = (full - closing(r, a, b, 1.0)) / h
-    since = gain * (back + 0.5 * h)
-    touch = full - since
+    time = back + 0.5 * h
+    touch = full - gain * time
     turn = a.w - b.w
-    turn_since = (a.kick_w - b.kick_w) / h * (back + 0.5 * h)
+    turn_gain = (a.kick_w - b.kick_w) / h
     e = min(1.0, elasticity) if r.first_speed > 0.0 else 0.0
     row.t1 = 0.0
     row.t2 = 0.0
     for end in range(row.ends):
         at = row.e1 if end == 0 else row.e2
-        u0 = touch - (turn - turn_since) * at
-        target = (since - turn_since * at) - e * max(0.0, u0)
+        since = (gain - turn_gain * at) * time
+        u0 = touch - (turn - turn_gain * time) * at
+        target = since - e * max(0.0, u0)
         if u0 > 0.0 or e == 0.0:
             target = min(0.0, target)
         if end == 0:
@@ -130,14 +131,11 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
         else:
             row.t2 = target
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
-    depth = touch * back + 0.5 * gain * back * back
-    apart = e * touch * back - 0.5 * gain * back * back if leaving < 0.0 else -min(depth, r.rest_depth)
-    change = full - leaving
-    row.shift = min(back, max(0.0, (depth + apart) / change)) if change > 0.0 else 0.0
     row.alpha_t = 0.0
     row.tt = surface
     if leaving < 0.0:
-        row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * (back + 0.5 * h)
+        row.shift = back
+        row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
 
 
 @kernel
@@ -175,8 +173,15 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     r.slip = slipping(r, a, b, 0.5) - surface
     _ends(row, r)
     gamma = 0.0
-    if r.mode == STRUCK:
-        _struck(row, r, a, b, pair.elasticity, surface, inverse, h)
+    if r.mode >= STRUCK:
+        if r.mode == STRUCK:
+            _struck(row, r, a, b, pair.elasticity, surface, inverse, h)
+        else:
+            row.alpha = 0.0
+            row.alpha_t = 0.0
+            row.t1 = r.back
+            row.t2 = r.back
+            row.tt = surface
         gamma = 1.0 / inverse
         force = 0.0
         row.gamma_t = 1.0 / inverse_t
@@ -312,7 +317,7 @@ def visit(row: Any, a: Any, b: Any) -> None:
 
 
 @kernel
-def settle(row: Any, r: Any, pair: Any, a: Any, b: Any, h: float) -> None:
+def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last: bool) -> None:
     """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
     normal = row.l1 + row.l2
     if r.mode == REST and row.friction > 0.0:
@@ -325,7 +330,10 @@ def settle(row: Any, r: Any, pair: Any, a: Any, b: Any, h: float) -> None:
     r.step = h
     r.force = normal / h
     r.friction = row.lt / h
-    carried(r, r.force, h)
+    if law.stiffness == 0.0:
+        pair.carrying += normal
+        if last and r.mode != NEARING:
+            pair.area += area_allowed(law, r, a, b)
     pair.jx += normal * row.nx - row.lt * row.ny
     pair.jy += normal * row.ny + row.lt * row.nx
     if row.shift > 0.0:

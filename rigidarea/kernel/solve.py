@@ -12,11 +12,11 @@ from typing import Any
 
 from .broad import box_of, search, somebody_left
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, meet
+from .meet import DONE, GROW_REGIONS, meet, meet_ahead
 from .pool import Pool
 from .row import make_row, push, settle, visit
-from .stiffness import adapted
-from .tables import ANEW, BODIES, DRIFTS, NEAR, REST, ROWS, Law, Tables
+from .stiffness import carry
+from .tables import ANEW, BODIES, DRIFTS, NEAR, ROWS, Law, Tables
 from .work import Work
 
 #: What a kernel may ask for before it can go on.
@@ -112,7 +112,7 @@ def _after(one: Any, other: Any) -> bool:
 
 @kernel(inline="always")
 def _may_touch(pool: Pool, tables: Tables, pair: Any, h: float) -> bool:
-    """Whether the boxes of the two shapes meet, on the way that they have come in the last h."""
+    """Whether the boxes of the two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     a = tables.bodies[sa.body]
@@ -121,11 +121,12 @@ def _may_touch(pool: Pool, tables: Tables, pair: Any, h: float) -> bool:
     blx, bly, bhx, bhy = box_of(pool, sb, b)
     dx = h * (a.vx - b.vx)
     dy = h * (a.vy - b.vy)
+    turn = abs(h) * (abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y))
     return bool(
-        alx - max(0.0, dx) <= bhx
-        and ahx - min(0.0, dx) >= blx
-        and aly - max(0.0, dy) <= bhy
-        and ahy - min(0.0, dy) >= bly
+        alx - max(0.0, dx) <= bhx + turn
+        and ahx - min(0.0, dx) >= blx - turn
+        and aly - max(0.0, dy) <= bhy + turn
+        and ahy - min(0.0, dy) >= bly - turn
     )
 
 
@@ -146,6 +147,28 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     pair.surface_y = sb.surface_y - sa.surface_y
     if (sa.heard | sb.heard) & 1 or sa.heard & sb.heard & 2:
         return bool(pair.verdict) and pair.stamp == frame - 1
+    return True
+
+
+@kernel(inline="always")
+def _add_rows(tables: Tables, law: Law, p: int, h: float) -> bool:
+    """Rows for all regions of pair p; False: no room for them."""
+    counters = tables.counters
+    pair = tables.pairs[p]
+    first = tables.shapes[pair.a].body
+    second = tables.shapes[pair.b].body
+    r = pair.head
+    while r >= 0:
+        region = tables.regions[r]
+        if counters[ROWS] == len(tables.rows):
+            return False
+        row = tables.rows[counters[ROWS]]
+        counters[ROWS] += 1
+        row.region = r
+        row.a = first
+        row.b = second
+        make_row(row, region, law, tables.bodies[first], tables.bodies[second], pair, h)
+        r = region.next
     return True
 
 
@@ -171,19 +194,39 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
         status = meet(pool, tables, work, law, p, h)
         if status != DONE:
             return status, i
-        r = pair.head
-        while r >= 0:
-            region = tables.regions[r]
-            if counters[ROWS] == len(tables.rows):
-                return GROW_REGIONS, i
-            row = tables.rows[counters[ROWS]]
-            counters[ROWS] += 1
-            row.region = r
-            row.a = sa.body
-            row.b = sb.body
-            make_row(row, region, law, a, b, pair, h)
-            r = region.next
+        if not _add_rows(tables, law, p, h):
+            return GROW_REGIONS, i
     return DONE, counters[NEAR]
+
+
+@kernel
+def join(
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
+) -> tuple[int, int, int]:
+    """Rows for pairs that the velocities, as solved so far, would bring to overlap in the next drift.
+
+    So what stands at touch is held from the start, and a blow goes on from body to body within the substep. Returns
+    (DONE or GROW_..., where it stopped, how many rows joined).
+    """
+    counters = tables.counters
+    before = counters[ROWS]
+    for i in range(start, counters[NEAR]):
+        p = tables.near[i]
+        pair = tables.pairs[p]
+        if pair.head >= 0:
+            continue
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+            continue
+        if not _may_touch(pool, tables, pair, -h) or not allowed(tables, pair, frame):
+            continue
+        status = meet_ahead(pool, tables, work, law, p, h)
+        if status != DONE:
+            return status, i, counters[ROWS] - before
+        if not _add_rows(tables, law, p, h):
+            return GROW_REGIONS, i, counters[ROWS] - before
+    return DONE, counters[NEAR], counters[ROWS] - before
 
 
 @kernel
@@ -204,12 +247,14 @@ def sweep(tables: Tables, up: bool) -> None:
 
 
 @kernel
-def finish(tables: Tables, frame: int, h: float) -> None:
+def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         region = tables.regions[row.region]
-        settle(row, region, tables.pairs[region.pair], tables.bodies[row.a], tables.bodies[row.b], h)
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        settle(row, region, law, tables.pairs[region.pair], a, b, h, last)
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
@@ -239,15 +284,10 @@ def respond_explicitly(tables: Tables) -> None:
 
 
 @kernel
-def adapt_stiffness(tables: Tables, law: Law) -> None:
+def adapt_stiffness(tables: Tables, dt: float) -> None:
     """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries."""
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        region = tables.regions[row.region]
-        pair = tables.pairs[region.pair]
-        if region.mode == REST:
-            pair.stiffness = adapted(law, region, pair.stiffness, tables.bodies[row.a], tables.bodies[row.b])
-            region.stiffness = pair.stiffness
+    for i in range(tables.counters[NEAR]):
+        carry(tables.pairs[tables.near[i]], dt)
 
 
 @kernel

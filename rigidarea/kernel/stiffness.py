@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from .constants import LOAD_MEMORY, LOAD_TIME, STIFFNESS_CHANGE, WEIGHTLESS_PHASE2
+from .constants import LOAD_TIME, STIFFNESS_CHANGE, WEIGHTLESS_PHASE2
 from .jit import kernel
-from .tables import LAW_AREA, STRUCK, Law
+from .tables import LAW_AREA, Law
 
 
 @kernel(inline="always")
@@ -47,29 +47,31 @@ def depth_for(law: Law, r: Any, k: float, load: float) -> float:
 
 
 @kernel
-def first_stiffness(law: Law, r: Any, a: Any, b: Any, h: float) -> float:
-    """k of a pair that touches for the first time: for the weight of the lighter body that can move."""
+def choose_stiffness(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> None:
+    """The stiffness of a pair that touches for the first time: for the weight of the lighter body that can move."""
     if law.stiffness > 0.0:
-        return law.stiffness
-    inverse = max(a.inverse_mass, b.inverse_mass)
-    depth = allowed_depth(law, a, b)
-    acceleration = max(law.gravity, WEIGHTLESS_PHASE2 * depth / (h * h) if law.gravity == 0.0 else 0.0)
-    return stiffness_for(law, r, acceleration / inverse, depth)
-
-
-@kernel
-def carried(r: Any, force: float, h: float) -> None:
-    """Remember what the region carries: its average, and for a while the largest that this has been."""
-    if r.mode == STRUCK:
+        pair.stiffness = law.stiffness
         return
-    share = h / (h + LOAD_TIME)
-    r.load += share * (force - r.load)
-    r.peak = max(r.load, r.peak * (1.0 - h / (h + LOAD_MEMORY)))
+    depth = allowed_depth(law, a, b)
+    acceleration = law.gravity if law.gravity > 0.0 else WEIGHTLESS_PHASE2 * depth / (h * h)
+    pair.least = acceleration / max(a.inverse_mass, b.inverse_mass)
+    pair.load = pair.least
+    pair.stiffness = stiffness_for(law, r, pair.load, depth)
 
 
 @kernel
-def adapted(law: Law, r: Any, k: float, a: Any, b: Any) -> float:
-    """k for the load that the region has carried; never by more than STIFFNESS_CHANGE at a time."""
-    depth = allowed_depth(law, a, b)
-    wanted = stiffness_for(law, r, max(r.peak, law.gravity / max(a.inverse_mass, b.inverse_mass)), depth)
-    return min(STIFFNESS_CHANGE * k, max(k / STIFFNESS_CHANGE, wanted))
+def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
+    """The region's area (length^2; by the energy law weighted with chord / length) at the depth allowed."""
+    return 1.0 / stiffness_for(law, r, 1.0, allowed_depth(law, a, b))
+
+
+@kernel
+def carry(pair: Any, dt: float) -> None:
+    """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it."""
+    if pair.area > 0.0 and pair.stiffness > 0.0:
+        pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
+        wanted = max(pair.load, pair.least) / pair.area
+        k = pair.stiffness
+        pair.stiffness = min(STIFFNESS_CHANGE * k, max(k / STIFFNESS_CHANGE, wanted))
+    pair.carrying = 0.0
+    pair.area = 0.0

@@ -103,13 +103,18 @@ PAIR = record(
         ("jx", "f8"),  # impulse on B in this frame
         ("jy", "f8"),
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
+        ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
+        ("least", "f8"),  # of its load: the weight of the lighter body
+        ("carrying", "f8"),  # normal impulse in this frame
+        ("area", "f8"),  # what its regions' area would be at the depth allowed (length^2)
         ("order", "f8"),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
     ],
 )
 
-#: What a region is doing: resting; an impact that the steps follow; an impact shorter than the step, over by its end.
-REST, IMPACT, STRUCK = 0, 1, 2
+#: What a region is doing: resting; an impact that the steps follow; a bounce shorter than the step, over by its end;
+#: an overlap yet to come, that the next drift would bring.
+REST, IMPACT, STRUCK, NEARING = 0, 1, 2, 3
 
 #: One contact region, remembered while it lives. Also what it did in the last substep.
 REGION = record(
@@ -143,8 +148,6 @@ REGION = record(
         ("step", "f8"),  # of them (time)
         ("spring", "f8"),  # force of friction's spring (force)
         ("tangent_stiffness", "f8"),  # its stiffness when last loaded (force/length)
-        ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
-        ("peak", "f8"),  # its largest value, remembered for LOAD_MEMORY
         ("force", "f8"),  # normal force (force)
         ("friction", "f8"),  # tangential force on B along t (force)
         ("speed", "f8"),  # closing speed (length/time)
@@ -257,6 +260,8 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.jx = 0.0
         pair.jy = 0.0
         pair.stiffness = 0.0
+        pair.carrying = 0.0
+        pair.area = 0.0
         _enter(tables, a, b, p)
     return int(p)
 
