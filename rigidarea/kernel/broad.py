@@ -29,7 +29,7 @@ from .tables import (
 GROW_PAIRS = -1
 
 
-@kernel(inline="always")
+@kernel
 def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, float]:
     """(low x, low y, high x, high y) of the shape where its body is, either side of a two-sided one."""
     head = pool.heads[shape.outline]

@@ -9,9 +9,10 @@ SUBSTEPS = 2
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly. Symplectic Euler is stable up to 4 alone,
 #: up to 1 between two others; a quarter of that keeps its error below the restitution's (design 2.3).
 FOLLOWED = 0.25
-#: A contact pressed too far opens again in so many substeps (1/e time): the row's S, its release overdamped.
-#: Much less: what sweeps left unsolved is handed back as speed; much more: piles go on sliding.
-RELEASE_STEPS = 16.0
+#: A contact pressed too far opens again in so many substeps (1/e time), times w h where that is above 1: the row's S,
+#: its release overdamped. Less: what sweeps have left unsolved is handed back before they have learnt of it, and piles
+#: sway; more: they go on sliding for seconds. The stiffer, the more of it is left (docs/architecture.md).
+RELEASE_STEPS = 9.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time).
 RELEASE_SPEED = 1.0
 #: Damping ratio of a contact at rest that the step follows: beyond critical, so that what is pressed in comes to the

@@ -16,8 +16,9 @@ import numpy as np
 from .constants import LOOK, MOST_ARRIVED, NO_CHORD, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .jit import kernel
-from .overlap import A_EDGE, OVERFLOW, Work
-from .place import Pose, overlap_of_outlines, push_out, seen_from
+from .overlap import A_EDGE, OVERFLOW, Relative, Work
+from .place import Pose, push_out, seen_from
+from .place import overlap_of_outlines as _inlined_overlap
 from .pool import Pool
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness, depth_for
@@ -56,13 +57,19 @@ class Patch(NamedTuple):
     blind: bool  # the chord is nothing: no direction of its own
 
 
+@kernel
+def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
+    """`place.overlap_of_outlines`, compiled once for all who look from here."""
+    return _inlined_overlap(pool, ia, a, ib, b, work)
+
+
 @kernel(inline="always")
 def pose_of(body: Any) -> Pose:
     """Where a body's outlines are."""
     return Pose(body.ox, body.oy, body.c, body.s)
 
 
-@kernel(inline="always")
+@kernel
 def earlier(body: Any, time: float) -> Pose:
     """Where they were `time` ago, at the velocity at which it has come."""
     vx = body.vx - body.kick_x
@@ -82,7 +89,7 @@ def earlier(body: Any, time: float) -> Pose:
     return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
 
 
-@kernel(inline="always")
+@kernel
 def later(body: Any, time: float) -> Pose:
     """Where they will be in `time`, at their present velocity."""
     if body.kind != DRIFTS:
@@ -98,10 +105,8 @@ def later(body: Any, time: float) -> Pose:
 
 
 @kernel
-def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float) -> float:
-    """Extent of a loop along the world direction (wx, wy)."""
-    nx = pose.c * wx + pose.s * wy
-    ny = pose.c * wy - pose.s * wx
+def _extent(work: Work, start: int, stop: int, nx: float, ny: float) -> float:
+    """Extent of a loop along (nx, ny), in its own frame."""
     low = np.inf
     high = -np.inf
     for i in range(start, stop):
@@ -109,6 +114,34 @@ def _extent(work: Work, start: int, stop: int, pose: Pose, wx: float, wy: float)
         low = min(low, h)
         high = max(high, h)
     return high - low
+
+
+@kernel
+def _depth(work: Work, start: int, stop: int, nx: float, ny: float) -> float:
+    """How far a loop's outlines have gone into each other: its least width, of those across n and its longest edges.
+
+    Along n alone a thin long strip would seem deep, since its chord runs from corner to opposite corner.
+    """
+    least = _extent(work, start, stop, nx, ny)
+    for own in range(2):
+        longest = 0.0
+        bx = 0.0
+        by = 0.0
+        j = stop - 1
+        for i in range(start, stop):
+            if work.label[j] == own:
+                dx = work.polygon[i, 0] - work.polygon[j, 0]
+                dy = work.polygon[i, 1] - work.polygon[j, 1]
+                length = dx * dx + dy * dy
+                if length > longest:
+                    longest = length
+                    bx = dx
+                    by = dy
+            j = i
+        if longest > 0.0:
+            length = math.sqrt(longest)
+            least = min(least, _extent(work, start, stop, -by / length, bx / length))
+    return least
 
 
 @kernel
@@ -135,7 +168,7 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
         middle = loop.lever / chord
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
-    depth = _extent(work, loop.start, loop.stop, pose, wx, wy) if not blind else chord
+    depth = _depth(work, loop.start, loop.stop, nx, ny) if not blind else chord
     straight = min(loop.straight, chord)
     return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, blind)
 
@@ -156,7 +189,7 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
     return best
 
 
-@kernel(inline="always")
+@kernel
 def _fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) -> None:
     """The region's place and arms: about the centres (ax, ay) and (bx, by)."""
     region.area = patch.area
@@ -323,6 +356,17 @@ def region_stiffness(law: Law, k: float, chord: float) -> float:
 
 
 @kernel
+def _face(pool: Pool, sa: Any, sb: Any, a: Any, b: Any) -> float:
+    """The chord on which one of the two would lie on the other (length)."""
+    face = np.inf
+    if a.mobile:
+        face = min(face, pool.heads[sa.outline].face)
+    if b.mobile:
+        face = min(face, pool.heads[sb.outline].face)
+    return face
+
+
+@kernel
 def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
     """Bring pair p's regions up to where its bodies are: their places, and which of them are new. DONE, or GROW_...
 
@@ -448,7 +492,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     free_regions(regions, counters, old)
     pair.head = kept
     if pair.stiffness == 0.0 and kept >= 0:
-        choose_stiffness(law, pair, regions[kept], a, b, h)
+        choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
     r = kept
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
@@ -511,7 +555,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if u <= 0.0:
             continue
         if pair.stiffness == 0.0:
-            choose_stiffness(law, pair, region, a, b, h)
+            choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
         region.stiffness = pair.stiffness
         stiffness = region_stiffness(law, pair.stiffness, region.chord)
         inverse = inverse_mass(region, a, b)

@@ -208,7 +208,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         phase2 = stiffness * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
-        c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
+        c += theta * (1.0 + RELEASE_STEPS * max(1.0, math.sqrt(phase2))) * h * stiffness
         least = a.extent if b.inverse_mass == 0.0 else b.extent
         if a.inverse_mass > 0.0 and b.inverse_mass > 0.0:
             least = min(a.extent, b.extent)

@@ -110,7 +110,7 @@ def _after(one: Any, other: Any) -> bool:
     return bool(one.beside > other.beside)
 
 
-@kernel(inline="always")
+@kernel
 def _may_touch(pool: Pool, tables: Tables, pair: Any, h: float) -> bool:
     """Whether the boxes of the two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]
@@ -150,7 +150,7 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     return True
 
 
-@kernel(inline="always")
+@kernel
 def _add_rows(tables: Tables, law: Law, p: int, h: float) -> bool:
     """Rows for all regions of pair p; False: no room for them."""
     counters = tables.counters

@@ -47,8 +47,12 @@ def depth_for(law: Law, r: Any, k: float, load: float) -> float:
 
 
 @kernel
-def choose_stiffness(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> None:
-    """The stiffness of a pair that touches for the first time: for the weight of the lighter body that can move."""
+def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float) -> None:
+    """The stiffness of a pair that touches for the first time: for the weight of the lighter body that can move.
+
+    face: the chord on which it would lie (length). Not the one on which it has landed: k tuned on a corner is far too
+    stiff for the face that comes down next (design 2.3). What it rests on in the end, `carry` learns.
+    """
     if law.stiffness > 0.0:
         pair.stiffness = law.stiffness
         return
@@ -56,7 +60,9 @@ def choose_stiffness(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> N
     acceleration = law.gravity if law.gravity > 0.0 else WEIGHTLESS_PHASE2 * depth / (h * h)
     pair.least = acceleration / max(a.inverse_mass, b.inverse_mass)
     pair.load = pair.least
-    pair.stiffness = stiffness_for(law, r, pair.load, depth)
+    pair.stiffness = pair.least / (depth * face)
+    if law.law != LAW_AREA:
+        pair.stiffness *= law.length / face
 
 
 @kernel
@@ -72,6 +78,9 @@ def carry(pair: Any, dt: float) -> None:
         pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
         wanted = max(pair.load, pair.least) / pair.area
         k = pair.stiffness
-        pair.stiffness = min(STIFFNESS_CHANGE * k, max(k / STIFFNESS_CHANGE, wanted))
+        if wanted > k:
+            pair.stiffness = min(STIFFNESS_CHANGE * k, 1.1 * wanted)
+        elif wanted < 0.5 * k:  # a load that comes and goes is not followed
+            pair.stiffness = k / STIFFNESS_CHANGE
     pair.carrying = 0.0
     pair.area = 0.0
