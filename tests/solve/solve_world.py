@@ -84,7 +84,12 @@ class World:
         return self.add(body, pymunk.Poly.create_box(body, size), at=at, **motion)
 
     def disc(
-        self, at: Sequence[float], radius: float = 0.5, mass: float = 1.0, kind: int = pymunk.Body.DYNAMIC, **motion: Any
+        self,
+        at: Sequence[float],
+        radius: float = 0.5,
+        mass: float = 1.0,
+        kind: int = pymunk.Body.DYNAMIC,
+        **motion: Any,
     ) -> pymunk.Body:
         body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, radius), body_type=kind)
         return self.add(body, pymunk.Circle(body, radius), at=at, **motion)

@@ -62,15 +62,21 @@ def restitution(landing, partner, e, steps, stiffness=None, gravity=0.0, speed=3
     return separation / speed
 
 
+def missed(asked):
+    """Of (e, steps, found): those further from e than is promised."""
+    return [(e, n, found) for e, n, found in asked if not abs(found - e) <= (NEAR if e else NEAR_ZERO)]
+
+
 @pytest.mark.parametrize("stiffness", [None, 1e4, 1e7, 1e9])
 @pytest.mark.parametrize("partner", ["floor", "free"])
 @pytest.mark.parametrize("landing", ["disc", "flat", "corner"])
 def test_restitution_is_as_asked(landing, partner, stiffness):
     """Newton: separation = e × approach, whether the step follows the contact (1e4: 30 ms) or not (1e9: 0.1 ms)."""
+    asked = []
     for e in (0.0, 0.1, 0.5, 0.9, 1.0):
         for steps in STEPS:
-            found = restitution(landing, partner, e, steps, stiffness)
-            assert found == pytest.approx(e, abs=NEAR if e else NEAR_ZERO), (e, steps)
+            asked.append((e, steps, restitution(landing, partner, e, steps, stiffness)))
+    assert not missed(asked)
 
 
 @pytest.mark.parametrize("partner", ["floor", "free"])
@@ -82,20 +88,22 @@ def test_restitution_off_the_centre(landing, aside, partner):
     """
     if partner == "floor" and aside:
         pytest.skip("a floor has no centre")
+    asked = []
     for e in (0.1, 0.5, 1.0):
         for steps in STEPS:
-            found = restitution(landing, partner, e, steps, RIGID, aside=aside)
-            assert found == pytest.approx(e, abs=NEAR), (e, steps)
+            asked.append((e, steps, restitution(landing, partner, e, steps, RIGID, aside=aside)))
+    assert not missed(asked)
 
 
 @pytest.mark.parametrize("stiffness", [None, 1e6])
 @pytest.mark.parametrize("landing", ["disc", "flat", "corner"])
 def test_two_that_fall_together_meet_as_without_gravity(landing, stiffness):
     """Equivalence: in the falling frame there is no gravity."""
+    asked = []
     for e in (0.0, 0.5, 1.0):
         for steps in (1, 4, None):
-            found = restitution(landing, "free", e, steps, stiffness, gravity=10.0)
-            assert found == pytest.approx(e, abs=NEAR if e else NEAR_ZERO), (e, steps)
+            asked.append((e, steps, restitution(landing, "free", e, steps, stiffness, gravity=10.0)))
+    assert not missed(asked)
 
 
 def apex(landing, e, steps, speed=4.0, g=10.0):
@@ -118,9 +126,13 @@ def apex(landing, e, steps, speed=4.0, g=10.0):
 @pytest.mark.parametrize("landing", ["disc", "flat", "corner"])
 def test_apex_of_a_landing(landing):
     """Apex = e² × height. In touch for some 15 ms, gravity changes what damping takes by (g/(w v))² = 1e-4 only."""
+    asked = []
     for e in (0.0, 0.25, 0.5, 0.75, 1.0):
-        for steps in STEPS if ENGINE == "area" else [200]:  # pymunk is first order in gravity's share of an impact
-            assert apex(landing, e, steps) == pytest.approx(e, abs=NEAR if e else NEAR_ZERO), (e, steps)
+        for steps in (
+            STEPS if ENGINE == "area" else [200]
+        ):  # pymunk is first order in gravity's share of an impact
+            asked.append((e, steps, apex(landing, e, steps)))
+    assert not missed(asked)
 
 
 # --- friction in impacts ---
@@ -175,7 +187,7 @@ def test_a_gripping_corner(steps):
 @pytest.mark.parametrize("steps", STEPS)
 @pytest.mark.parametrize("mu", [0.1, 0.8])
 def test_two_free_discs_hit_with_friction(mu, steps):
-    """Equal discs, lines of centres 0.6 of the diameter apart: J_n = (1 + e) v_n m/2; 
+    """Equal discs, lines of centres 0.6 of the diameter apart: J_n = (1 + e) v_n m/2;
     J_t = v_t/(2/m + 2 r²/I) = v_t m/6 or mu J_n; momentum and angular momentum as before to rounding (1e-9 of m v r).
     """
     e, v, r = 0.5, 4.0, 0.5
@@ -195,7 +207,9 @@ def test_two_free_discs_hit_with_friction(mu, steps):
     near = NEAR * v + v * v * DT / (steps or 2)
     assert np.array(b.velocity) == pytest.approx(pushed, abs=near)
     assert np.array(a.velocity) == pytest.approx(np.array((v, 0)) - pushed, abs=near)
-    spin = -along * r / (r * r / 2)  # friction pushes b along t at -r n of it, a against t at +r n: the same sense
+    spin = (
+        -along * r / (r * r / 2)
+    )  # friction pushes b along t at -r n of it, a against t at +r n: the same sense
     assert (a.angular_velocity, b.angular_velocity) == pytest.approx((spin, spin), abs=4 * near)
 
 
