@@ -246,7 +246,7 @@ def test_damping_is_a_frames(steps):
 
 @pytest.mark.parametrize("steps", STEPS)
 def test_what_a_contact_reports_is_the_frames(steps):
-    """A box at rest: post_solve's total_impulse is m g dt, upward on the box, by any number of steps; each_arbiter too."""
+    """A box at rest: post_solve's total_impulse is m g dt, upward on the box, by any steps; each_arbiter too."""
     world = World(10.0, friction=0.5)
     world.floor()
     body = world.box((0, 0.5), mass=3.0)

@@ -170,7 +170,7 @@ def test_a_gripping_corner(steps):
 
     J_t / J_n = 0.71 here, inside the cone of mu = 2.
     """
-    angle, arm = LANDINGS["tilted"]
+    _, arm = LANDINGS["tilted"]
     e, speed, inertia = 0.5, 3.0, 1 / 6
     world = World(stiffness=RIGID, friction=2.0, elasticity=e)
     world.floor()
