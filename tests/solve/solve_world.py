@@ -113,10 +113,14 @@ class World:
     def floor(self, y: float = 0.0, half: float = 500.0) -> pymunk.Segment:
         return self.segment((-half, y), (half, y))
 
+    def fixed(self, points: Sequence[Sequence[float]]) -> pymunk.Poly:
+        """A static convex polygon."""
+        return self._static(pymunk.Poly(self.space.static_body, [(float(x), float(y)) for x, y in points]))
+
     def block(self, left: float, bottom: float, right: float, top: float) -> pymunk.Poly:
         """A static box."""
         ring = [(left, bottom), (right, bottom), (right, top), (left, top)]
-        return self._static(pymunk.Poly(self.space.static_body, ring))
+        return self.fixed(ring)
 
     def _static(self, shape: Any) -> Any:
         shape.friction, shape.elasticity = self.friction, self.elasticity
