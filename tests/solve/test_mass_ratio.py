@@ -124,4 +124,4 @@ def test_a_wall_of_crates_with_a_heavy_one(steps):
     start = world.state()
     world.run(6.0, steps)
     assert displacement(world, start) < 0.1
-    assert world.fastest() < 1e-3 if ENGINE == "area" else 0.1
+    assert world.fastest() < (1e-3 if ENGINE == "area" else 0.1)
