@@ -6,6 +6,8 @@ import numpy as np
 from solve_world import ENGINE, World
 
 G = 10.0
+LADDER, CARD = math.radians(60), math.radians(20)
+"""Slope of the ladder, and of a card from the vertical."""
 
 
 # --- ladder ---
@@ -16,7 +18,7 @@ def ladder_limit(slope):
     return 1 / (2 * math.tan(slope))
 
 
-def ladder(share, engine=ENGINE, slope=math.radians(60), length=2.0, thick=0.1, iterations=None):
+def ladder(share, engine=ENGINE, slope=LADDER, length=2.0, thick=0.1, iterations=None):
     """A rhombus of 1 kg whose tips touch floor and wall, at `share` of the friction limit."""
     world = World(G, friction=share * ladder_limit(slope), engine=engine, iterations=iterations)
     world.floor()
@@ -125,19 +127,19 @@ def overhang(share, count=5, engine=ENGINE, iterations=None, height=0.2, **setti
 def overhang_stiffness(share, count=5, height=0.2):
     """k (N/m²) below which the lowest of the books' beds must tip, for books of 1 kg and 1 m.
 
-    The load P = n m g acts d = (1 - share)/(2 n) inside the edge; a bed that cannot pull presses along 3 d, so it tilts
-    by φ = 2 P/(9 k d²), and the load, H = n h/2 above the edge, comes φ H nearer to it. d² (d0 - d) = 2 P H/(9 k) has
+    The load P = n m g acts d0 = (1 - share)/2 inside the edge, as at every book (m d_m = (m - 1) d_(m-1) + (1 - share)/2,
+    d_m of the m uppermost). A bed that cannot pull presses along 3 d if the load is d inside, so it tilts by φ = 2 P/(9 k d²), and the load, H = n h/2 above the edge, comes φ H nearer to it. d² (d0 - d) = 2 P H/(9 k) has
     a solution while 2 P H/(9 k) <= 4 d0³/27. (Tilts further up only add to it.)
     """
     load, high = count * G, count * height / 2
-    inside = (1 - share) / (2 * count)
+    inside = (1 - share) / 2
     return 3 * load * high / (2 * inside**3)
 
 
 # --- cards ---
 
 
-def card_house(storeys=3, slope=math.radians(20), engine=ENGINE, friction=0.8, iterations=None):
+def card_house(storeys=3, slope=CARD, engine=ENGINE, friction=0.8, iterations=None):
     """Tents of two cards each, `storeys` of them side by side at the bottom, flat cards between storeys.
 
     A card is 0.02 x 1. Tents: the upper corners touch; feet stand on the floor, or on the flat cards over the tops
