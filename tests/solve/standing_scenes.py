@@ -127,9 +127,10 @@ def overhang(share, count=5, engine=ENGINE, iterations=None, height=0.2, **setti
 def overhang_stiffness(share, count=5, height=0.2):
     """k (N/m²) below which the lowest of the books' beds must tip, for books of 1 kg and 1 m.
 
-    The load P = n m g acts d0 = (1 - share)/2 inside the edge, as at every book (m d_m = (m - 1) d_(m-1) + (1 - share)/2,
-    d_m of the m uppermost). A bed that cannot pull presses along 3 d if the load is d inside, so it tilts by φ = 2 P/(9 k d²), and the load, H = n h/2 above the edge, comes φ H nearer to it. d² (d0 - d) = 2 P H/(9 k) has
-    a solution while 2 P H/(9 k) <= 4 d0³/27. (Tilts further up only add to it.)
+    The load P = n m g acts d0 = (1 - share)/2 inside the edge, as at every book (m d_m = (m - 1) d_(m-1)
+    + (1 - share)/2, d_m of the m uppermost). A bed that cannot pull presses along 3 d if the load is d inside, so it
+    tilts by φ = 2 P/(9 k d²), and the load, H = n h/2 above the edge, comes φ H nearer to it. d² (d0 - d) = 2 P H/(9 k)
+    has a solution while 2 P H/(9 k) <= 4 d0³/27. (Tilts further up only add to it.)
     """
     load, high = count * G, count * height / 2
     inside = (1 - share) / 2

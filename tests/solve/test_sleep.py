@@ -45,7 +45,7 @@ def test_what_wakes_a_pile(steps):
     """A hit, a force, an impulse, a support removed, `activate`: as pymunk's islands do, the whole pile at once."""
 
     def hit(world):
-        world.box((0, 5.7), (0.3, 0.3), velocity=(0, -3))
+        world.box((0, 5.3), (0.3, 0.3), velocity=(0, -3))
         world.step(steps, 10)
 
     def push(world):
