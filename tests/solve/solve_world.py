@@ -49,7 +49,8 @@ class World:
         if iterations is not None:
             self.space.iterations = iterations
         if engine == "pymunk":
-            self.space.collision_slop = 1e-3  # 0.1 is meant for pixels, and the bodies here have sizes of 1
+            # 0.1 is meant for pixels; most bodies here have sizes of 1, and gravity tells which is which
+            self.space.collision_slop = 1e-4 * max(abs(self.space.gravity), 10.0)
         self.friction, self.elasticity = math.sqrt(friction), math.sqrt(elasticity)
         self.bodies: list[pymunk.Body] = []
         self.contact = ra.attach(self.space, stiffness, **settings) if engine == "area" else None

@@ -184,18 +184,23 @@ def test_a_gripping_corner(steps):
     assert found == pytest.approx(expected, abs=3 * NEAR * speed)  # spin = speed / 0.7 m, twice over
 
 
+def two_discs(mu, steps, e=0.5, v=4.0, r=0.5):
+    """A disc at v meets an equal one at rest 0.6 of the diameter aside: the world, and its momenta before."""
+    world = World(stiffness=RIGID, friction=mu, elasticity=e)
+    world.disc((-1.02, 0.0), r, velocity=(v, 0))
+    world.disc((0.0, 0.6), r)
+    before = world.momentum()
+    world.step(steps, frames=20)
+    return world, before
+
+
 @pytest.mark.parametrize("steps", STEPS)
 @pytest.mark.parametrize("mu", [0.1, 0.8])
 def test_two_free_discs_hit_with_friction(mu, steps):
-    """Equal discs, lines of centres 0.6 of the diameter apart: J_n = (1 + e) v_n m/2;
-    J_t = v_t/(2/m + 2 r²/I) = v_t m/6 or mu J_n; momentum and angular momentum as before to rounding (1e-9 of m v r).
-    """
+    """J_n = (1 + e) v_n m/2; J_t = v_t/(2/m + 2 r²/I) = v_t m/6 or mu J_n; momenta to rounding (1e-9 of m v r)."""
     e, v, r = 0.5, 4.0, 0.5
-    world = World(stiffness=RIGID, friction=mu, elasticity=e)
-    a = world.disc((-1.02, 0.0), r, velocity=(v, 0))
-    b = world.disc((0.0, 0.6), r)
-    before = world.momentum()
-    world.step(steps, frames=20)
+    world, before = two_discs(mu, steps, e, v, r)
+    a, b = world.bodies
     assert world.momentum() == pytest.approx(before, abs=KEPT * v)
     n = np.array((0.8, 0.6))
     t = np.array((-0.6, 0.8))
@@ -236,21 +241,26 @@ def test_momentum_of_free_bodies_with_friction(stiffness, steps):
 # --- what must not bounce, and what must not gain ---
 
 
-@pytest.mark.parametrize("steps", [1, 2, 4, 16, None])
-@pytest.mark.parametrize("upper, lower", [(1.0, 1.0), (100.0, 1.0), (1.0, 100.0)])
-def test_a_box_dropped_on_a_box_stays(upper, lower, steps):
-    """e = 0, from 3 m: nothing moves up faster than 0.01 of the speed of arrival, and both come to rest in place."""
+def dropped(upper, lower, steps, height=3.0):
+    """A box of `upper` kg from `height` on one of `lower` kg at rest: (fastest upward over arrival speed, world)."""
     world = World(10.0, friction=0.5)
     world.floor()
     world.box((0, 0.5), mass=lower)
     world.run(1.0, steps)  # at rest on its bed
-    world.box((0, 1.5 + 3.0), mass=upper)
-    speed = math.sqrt(2 * 10.0 * 3.0)
+    world.box((0, 1.5 + height), mass=upper)
     fastest = 0.0
     for _ in range(180):
         world.step(steps)
         fastest = max(fastest, *(b.velocity.y for b in world.bodies))
-    assert fastest < NEAR_ZERO * speed
+    return fastest / math.sqrt(2 * 10.0 * height), world
+
+
+@pytest.mark.parametrize("steps", [1, 2, 4, 16, None])
+@pytest.mark.parametrize("upper, lower", [(1.0, 1.0), (100.0, 1.0), (1.0, 100.0)])
+def test_a_box_dropped_on_a_box_stays(upper, lower, steps):
+    """e = 0, from 3 m: nothing moves up faster than 0.01 of the speed of arrival, and both come to rest in place."""
+    back, world = dropped(upper, lower, steps)
+    assert back < NEAR_ZERO
     heights = [b.position.y for b in world.bodies]
     # sinking of 2e-4 m a weight carried, the chosen stiffness being at most some seconds late
     assert heights == pytest.approx([0.5, 1.5], abs=0.03)

@@ -28,8 +28,10 @@ def test_the_scenes_cover_the_ranges():
 @pytest.mark.parametrize("law", ["energy", "area"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_a_random_scene(seed, law):
-    """Energy never grows by 1 % (`law="area"`: where a straight edge or impulses conserve it); e = 1 without
-    friction loses 1 % at most (bodies that meet walls only, taken in flight); free momentum to 1e-9; nothing not finite.
+    """Energy never grows by 1 % (`law="area"`: where a straight edge or impulses conserve it).
+
+    e = 1 without friction loses 1 % at most (bodies that meet walls only, taken in flight); the momentum of free ones
+    stays to 1e-9; nothing is not finite.
     """
     r = recipe(seed, law)
     kept = run(r)
