@@ -16,9 +16,10 @@ def pit(kind, count, seed=0, engine=ENGINE, friction=0.5, iterations=None):
     draw = np.random.default_rng(seed)
     world = World(GRAVITY, friction=friction, engine=engine, iterations=iterations)
     width = 400.0
-    world.block(-40, -40, width + 40, 0)
-    world.block(-40, 0, 0, 4000)
-    world.block(width, 0, width + 40, 4000)
+    # thin walls, as games have them: whoever is pressed past their middle is let out on the other side
+    world.segment((-5, -5), (width + 5, -5), 5.0)
+    world.segment((-5, -5), (-5, 4000), 5.0)
+    world.segment((width + 5, -5), (width + 5, 4000), 5.0)
     columns = 10
     for i in range(count):
         size = float(draw.uniform(18, 26))
