@@ -169,6 +169,10 @@ class World:
         """Kinetic, potential, and what contacts store."""
         if self.contact is not None:
             return self.contact.energy()
+        return self.mechanical()
+
+    def mechanical(self) -> float:
+        """Kinetic and potential alone: what contacts cannot raise beyond what they had stored."""
         gravity = self.space.gravity
         return self.kinetic() - sum(b.mass * gravity.dot(b.position) for b in self.bodies)
 

@@ -232,10 +232,10 @@ def test_momentum_of_free_bodies_with_friction(stiffness, steps):
             world.box(at, (1.0, 0.7), mass=mass, angle=draw.uniform(0, 6), **motion)
         else:
             world.disc(at, 0.5, mass=mass, **motion)
-    before, energy = world.momentum(), world.energy()
+    before, energy = world.momentum(), world.kinetic()
     world.step(steps, frames=90)
     assert world.momentum() == pytest.approx(before, abs=KEPT * 100)  # Σ m v r
-    assert world.energy() <= 1.01 * energy
+    assert world.kinetic() <= 1.01 * energy
 
 
 # --- what must not bounce, and what must not gain ---
@@ -268,22 +268,22 @@ def test_a_box_dropped_on_a_box_stays(upper, lower, steps):
 
 
 def chain(steps, seconds=3.0, engine=ENGINE):
-    """Elastic discs of 1, 10 … 10,000 go for a wall, the lightest first: least and most energy over that at the start.
+    """Elastic discs of 1, 10 … 10,000 go for a wall, the lightest first: kinetic energy over that at the start.
 
-    Discs lie apart: what is in touch stores energy, which `energy` counts.
+    Its most in the last half second (contacts under way store some), and its most ever.
     """
     world = World(stiffness=1e6, elasticity=1.0, engine=engine)
     world.block(-2, -5, 0, 5)
     for i in range(5):
         world.disc((0.3 + 0.55 * i, 0.0), 0.25, mass=10.0**i, velocity=(-1, 0))
-    start = world.energy()
+    start = world.kinetic()
     seen = []
     for _ in range(round(seconds / DT)):
         world.step(steps)
-        seen.append(world.energy() / start)
+        seen.append(world.kinetic() / start)
         if not all(b.position.x > 0 for b in world.bodies):
             return -math.inf, math.inf
-    return min(seen), max(seen)
+    return max(seen[-30:]), max(seen)
 
 
 @pytest.mark.parametrize("steps", [1, 4, 64, None])
