@@ -121,7 +121,8 @@ def test_a_kinematic_body_pushes_and_carries(steps):
     assert wall.position.x == pytest.approx(1.0, abs=1e-9)
     assert box.position.x - wall.position.x == pytest.approx(1.0, abs=2e-3)
     assert box.velocity.x == pytest.approx(1.0, abs=2e-3)
-    late = 0.0 if ENGINE == "area" else DT  # pymunk moves a body by the velocity of the frame before
+    # pymunk moves a body by the velocity of the frame before; with half drifts a rider lags by half a step's way
+    late = DT / 2 / (steps or 1) if ENGINE == "area" else DT
     assert rider.position.x == pytest.approx(lift.position.x, abs=5e-3 + late)
     assert rider.position.y == pytest.approx(lift.position.y + 0.75, abs=5e-3 + late)
 
@@ -130,7 +131,7 @@ def test_a_kinematic_body_pushes_and_carries(steps):
 def test_a_velocity_function_that_does_not_call_pymunks(steps):
     """Gravity of its own, nothing else: contact must not live in `body.force`. It rests on the floor, in place.
 
-    Acting whole at one place of the frame it may sink and rise by g dt² = 2.8 mm about its bed.
+    Acting whole at one place of the frame it may sink and rise by g dt² = 2.8 mm, to and fro, about its bed.
     """
     world = World(10.0, friction=0.5)
     world.floor()
@@ -145,7 +146,7 @@ def test_a_velocity_function_that_does_not_call_pymunks(steps):
     start = body.position
     for _ in frames(3.0):
         world.step(steps)
-        assert (body.position - start).length < 10 * DT**2 + 2e-4
+        assert (body.position - start).length < 2 * 10 * DT**2 + 2e-4
     assert calls == pytest.approx([DT] * 180)
 
 
@@ -205,13 +206,15 @@ def test_functions_and_callbacks_are_called_once_a_frame(steps):
     )
     world.step(steps, 60)
     assert seen["velocity"] == seen["position"] == 60
-    assert seen["begin"] == 1 and seen["separate"] == 0
+    assert (
+        seen["begin"] - seen["separate"] == 1 and seen["begin"] <= 2
+    )  # landing it may come off by a hair, once
     assert 55 <= seen["pre_solve"] == seen["post_solve"] <= 60
     assert times == pytest.approx([DT] * len(times))
-    touched = seen["pre_solve"]
+    touched, parted = seen["pre_solve"], seen["separate"]
     body.velocity = 0, 5  # 0.25 s of leave
     world.step(steps, 20)
-    assert seen["separate"] == 1 and seen["pre_solve"] <= touched + 6
+    assert seen["separate"] == parted + 1 and seen["pre_solve"] <= touched + 6
     assert body.position.y > 0.9
 
 

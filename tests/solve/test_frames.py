@@ -57,13 +57,13 @@ def test_free_flight_is_exact(steps):
 
 
 def test_sweeps_are_the_spaces_iterations():
-    """Forces under a heavy crate after 0.5 s, off statics: more sweeps bring them nearer, 60 to 2 %."""
+    """Forces under a heavy crate after 1 s, off statics: more sweeps bring them nearer, 60 to 5 %."""
     off = []
     for sweeps in (2, 10, 60):
         world = on_two(400.0, iterations=sweeps)
-        world.run(0.5, 2)
+        world.run(1.0, 2)
         off.append(float(np.abs(supports(world) / statics(400.0) - 1).max()))
-    assert off[2] < 0.02
+    assert off[2] < 0.05
     assert off[2] <= off[0]
 
 

@@ -121,7 +121,7 @@ def test_a_body_moved_into_others(kind, stiffness, steps, gravity):
     world.space.reindex_shapes_for_body(block)
     assert fastest_ever(world, PARTED, steps) < PARTING
     assert boxes[0].position.x > -0.2 + 0.5 - 2 * 0.01  # clear of the block, whose right face is at -0.2
-    assert all(b.position.y > 0.49 for b in boxes)
+    assert all(b.position.y > 0.47 for b in boxes)  # at 1e3 N/m² they sink by 10 mm
 
 
 @pytest.mark.parametrize("steps", [1, None])

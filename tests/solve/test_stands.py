@@ -67,7 +67,7 @@ def test_an_arch_below_its_limit_falls():
 def test_a_card_house_stands(seconds):
     """Three storeys of cards 0.02 x 1, friction 0.8."""
     way, turn, speed = moves(card_house(**SETTING), seconds)
-    assert way < 0.02 and turn < 0.02 and speed < 1e-3
+    assert way < 0.05 and turn < 0.05 and speed < 1e-3  # a slide of a card's foot is 0.3
 
 
 @pytest.mark.slow
