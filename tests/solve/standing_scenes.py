@@ -100,9 +100,9 @@ def arch_limit(count, friction=0.8):
     return high
 
 
-def arch(share, count=15, engine=ENGINE, iterations=None):
+def arch(share, count=15, engine=ENGINE, iterations=None, **settings):
     """A semicircular arch of `count` voussoirs of t/R = `share` of the limit, springing from the floor."""
-    world = World(G, friction=0.8, engine=engine, iterations=iterations)
+    world = World(G, friction=0.8, engine=engine, iterations=iterations, **settings)
     world.floor()
     for ring in voussoirs(count, share * arch_limit(count)):
         area, centre = _area_and_centre(ring)

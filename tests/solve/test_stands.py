@@ -53,9 +53,17 @@ def test_the_arch_limit():
 
 
 @long
-def test_an_arch_above_its_limit_stands(seconds):
-    """15 voussoirs at 1.1 × their limit. It settles by sinkings of its joints, some ten of them: 2 % of its radius."""
-    way, turn, speed = moves(arch(1.1, **SETTING), seconds)
+@pytest.mark.parametrize("penetration", [1e-6, 2e-4])
+def test_an_arch_above_its_limit_stands(penetration, seconds):
+    """15 voussoirs at 1.1 × their limit stand on beds stiff enough: thrust runs 5 mm inside the hinges' edges.
+
+    A bed of one k all along its joint would have to be 1e7 N/m²: followed in fine steps the arch fell at 1e5 and 1e6,
+    and stood at 1e7, moved by 8e-4 of its radius. That is 2e-4 of a block's 0.12 m only if k answers to the load on
+    what is left of the joint, 16 mm of it (2 P/(3 d k), as under the books); at 1e-6 in any case.
+    (pymunk's creeps: it stands 10 s, not 60.)
+    """
+    settings = SETTING | ({"penetration": penetration} if ENGINE == "area" else {})
+    way, turn, speed = moves(arch(1.1, **settings), seconds)
     assert way < 0.02 and turn < 0.03 and speed < 1e-2
 
 
