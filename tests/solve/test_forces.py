@@ -1,0 +1,266 @@
+"""A frame is one pymunk step to its user: forces, impulses, velocity functions, callbacks and joints, at any steps."""
+
+import math
+
+import pymunk
+import pytest
+from solve_world import DT, ENGINE, HOOKS, World
+
+import rigidarea as ra
+
+STEPS = [1, 2, 4, 7, None]
+if ENGINE == "pymunk":
+    STEPS = [None]  # of pymunk a frame is a step
+
+
+def frames(seconds):
+    return range(round(seconds / DT))
+
+
+# --- forces, impulses, velocities ---
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_force_set_before_each_frame_acts_all_through_it(steps):
+    """F = 6 N on 1 kg for 1 s: v = 6 to rounding, x = 3 (the frame's velocity change comes in equal parts)."""
+    world = World(stiffness=1e6)
+    body, other = (
+        world.box((0, 0)),
+        world.box((50, 0)),
+    )  # the second keeps the frame from being a special case
+    other.velocity = 1, 0
+    for _ in frames(1.0):
+        body.force = 6, 0
+        world.step(steps)
+    assert body.velocity == pytest.approx((6, 0), rel=1e-12)
+    assert body.force == (0, 0)
+    late = 0 if ENGINE == "area" else 6 * DT / 2  # pymunk is first order
+    assert body.position.x == pytest.approx(3 - late, rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_torque_and_a_force_off_the_centre(steps):
+    """Torque 0.5 N m on 1/6 kg m² for 1 s: 3 rad/s. A force of 1 N with an arm of 0.25 m adds 0.25 N m."""
+    for torque, force, spin in ((0.5, 0.0, 3.0), (0.0, 1.0, 1.5), (0.5, 1.0, 4.5)):
+        world = World(stiffness=1e6)
+        body = world.box((0, 0))
+        for _ in frames(1.0):
+            body.torque += torque
+            # in the world: at the right of the centre of mass whatever the angle
+            body.apply_force_at_world_point((0, force), body.position + (0.25, 0))
+            world.step(steps)
+        assert body.angular_velocity == pytest.approx(spin, rel=1e-12)
+        assert body.torque == 0
+        assert body.velocity.y == pytest.approx(force, rel=1e-12)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_force_on_a_resting_box_below_and_above_friction(steps):
+    """mu m g = 5: 4 N hold for ever (elastic slip below 1e-3 m), 8 N give (8 - 5) m/s² once slipping."""
+    for push, reached in ((4.0, 0.0), (8.0, 3.0)):
+        world = World(10.0, friction=0.5)
+        world.floor()
+        body = world.box((0, 0.25), (2.0, 0.5))  # low: the push does not tip it
+        world.run(1.0, steps)
+        start = body.position
+        for _ in frames(1.0):
+            body.force = push, 0
+            world.step(steps)
+        # friction's spring is stretched first: 2e-4 m of sinking, a third of which per weight of slip: 1 frame
+        assert body.velocity.x == pytest.approx(reached, abs=0.05)
+        if reached == 0.0:
+            assert (body.position - start).length < 1e-3
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_impulses_between_frames(steps):
+    """Each changes the velocity by J/m at once, and nothing forgets or repeats it."""
+    world = World(stiffness=1e6)
+    body = world.box((0, 0), mass=2.0)
+    x = 0.0
+    for i in range(30):
+        body.apply_impulse_at_local_point((0.4, 0))
+        assert body.velocity.x == pytest.approx(0.2 * (i + 1), rel=1e-12)
+        world.step(steps)
+        x += 0.2 * (i + 1) * DT
+        assert body.velocity.x == pytest.approx(0.2 * (i + 1), rel=1e-12)
+    assert body.position.x == pytest.approx(x, rel=1e-12)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+@pytest.mark.parametrize("kind", [pymunk.Body.DYNAMIC, pymunk.Body.KINEMATIC])
+def test_a_velocity_set_before_every_frame(kind, steps):
+    """On a smooth floor, in contact: x = Σ v dt to rounding; the floor does not feel it."""
+    world = World(10.0)
+    world.floor()
+    body = world.box((0, 0.5), kind=kind)
+    way = 0.0
+    for i in frames(1.0):
+        v = 2.0 * math.cos(0.3 * i)
+        body.velocity = v, 0
+        world.step(steps)
+        way += v * DT
+        assert body.position.x == pytest.approx(way, abs=1e-12)
+    # a y-velocity set to 0 before each frame: the bed is sought anew, within g dt² of it
+    assert body.position.y == pytest.approx(0.5, abs=10 * DT**2)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_kinematic_body_pushes_and_carries(steps):
+    """A wall at 1 m/s pushes a box before it; a platform whose velocity turns carries one with its friction."""
+    world = World(10.0, friction=0.4)
+    world.floor()
+    wall = world.box((-1.0, 1.0), (1.0, 1.5), kind=pymunk.Body.KINEMATIC, velocity=(1, 0))
+    box = world.box((0.05, 0.5))
+    lift = world.box((20, 2), (4.0, 0.5), kind=pymunk.Body.KINEMATIC)
+    rider = world.box((20, 2.75))
+    world.run(0.5, steps)
+    for i in frames(1.5):
+        lift.velocity = math.sin(i * DT), 0.5  # at most 1 m/s², below mu g = 4
+        world.step(steps)
+    assert wall.position.x == pytest.approx(1.0, abs=1e-9)
+    assert box.position.x - wall.position.x == pytest.approx(1.0, abs=2e-3)
+    assert box.velocity.x == pytest.approx(1.0, abs=2e-3)
+    # pymunk moves a body by the velocity of the frame before; with half drifts a rider lags by half a step's way
+    late = DT / 2 / (steps or 1) if ENGINE == "area" else DT
+    assert rider.position.x == pytest.approx(lift.position.x, abs=5e-3 + late)
+    assert rider.position.y == pytest.approx(lift.position.y + 0.75, abs=5e-3 + late)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_velocity_function_that_does_not_call_pymunks(steps):
+    """Gravity of its own, nothing else: contact must not live in `body.force`. It rests on the floor, in place.
+
+    Acting whole at one place of the frame it may sink and rise by g dt² = 2.8 mm, to and fro, about its bed.
+    """
+    world = World(10.0, friction=0.5)
+    world.floor()
+    body = world.box((0, 0.5))
+    calls = []
+
+    def own_gravity(body, gravity, damping, dt):
+        calls.append(dt)
+        body.velocity += gravity * dt
+
+    body.velocity_func = own_gravity
+    start = body.position
+    for _ in frames(3.0):
+        world.step(steps)
+        assert (body.position - start).length < 2 * 10 * DT**2 + 2e-4
+    assert calls == pytest.approx([DT] * 180)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_a_velocity_function_that_sets_the_velocity(steps):
+    """What it sets is what the body moves by from then on, whatever the steps; a box in its way is pushed along."""
+
+    def steady(body, gravity, damping, dt):
+        body.velocity = 3, 0
+
+    world = World(stiffness=1e6)
+    body = world.box((0, 0))
+    body.velocity_func = steady
+    world.step(steps)
+    first = body.position.x
+    assert 0.0 <= first <= 3 * DT  # pymunk drifts first; half drifts lie between
+    world.step(steps, 59)
+    assert body.position.x == pytest.approx(first + 59 * 3 * DT, rel=1e-12)
+
+    world = World(stiffness=1e6)
+    body, box = world.box((0, 0)), world.box((1.2, 0.0))
+    body.velocity_func = steady
+    world.run(2.0, steps)
+    assert box.position.x > body.position.x + 0.9
+    # the pushed box has half of the pusher's mass short of nothing: each frame halves what it lacks, e = 0
+    assert box.velocity.x == pytest.approx(3.0, abs=0.1)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_functions_and_callbacks_are_called_once_a_frame(steps):
+    """begin and separate once a touch, pre_solve and post_solve once a frame in touch, body functions once a frame."""
+    world = World(10.0, elasticity=0.0)
+    floor = world.floor()
+    body = world.box((0, 0.502))  # touches within the second frame
+    floor.collision_type, next(iter(body.shapes)).collision_type = 1, 2
+    seen = {name: 0 for name in ("begin", "pre_solve", "post_solve", "separate", "velocity", "position")}
+    times = []
+
+    def count(name):
+        def called(arbiter, space, data):
+            seen[name] += 1
+            times.append(space.current_time_step)
+
+        return called
+
+    def velocity(body, gravity, damping, dt):
+        seen["velocity"] += 1
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+
+    def position(body, dt):
+        seen["position"] += 1
+        pymunk.Body.update_position(body, dt)
+
+    body.velocity_func, body.position_func = velocity, position
+    world.space.on_collision(
+        1, 2, **{name: count(name) for name in ("begin", "pre_solve", "post_solve", "separate")}
+    )
+    world.step(steps, 60)
+    assert seen["velocity"] == seen["position"] == 60
+    assert (
+        seen["begin"] - seen["separate"] == 1 and seen["begin"] <= 2
+    )  # landing it may come off by a hair, once
+    assert 55 <= seen["pre_solve"] == seen["post_solve"] <= 60
+    assert times == pytest.approx([DT] * len(times))
+    touched, parted = seen["pre_solve"], seen["separate"]
+    body.velocity = 0, 5  # 0.25 s of leave
+    world.step(steps, 20)
+    assert seen["separate"] == parted + 1 and seen["pre_solve"] <= touched + 6
+    assert body.position.y > 0.9
+
+
+@pytest.mark.skipif(ENGINE == "pymunk", reason="a concave outline")
+@pytest.mark.parametrize("hook", HOOKS)
+@pytest.mark.parametrize("steps", [1, 4, None])
+def test_a_force_on_a_body_inside_a_cup(steps, hook):
+    """Stand-ins (hulls) touch, outlines do not: 0.5 N for 1 s on 1 kg is 0.5 m/s, the torque's share likewise."""
+    world = World(stiffness=5e4, **hook)
+    cup = ra.Outline([(-3, -2), (3, -2), (3, 3), (2, 3), (2, -1), (-2, -1), (-2, 3), (-3, 3)])
+    holder = cup.body(mass=5.0)
+    world.add(holder, cup.add_to(holder))
+    body = world.box((0, 1))
+    for _ in frames(1.0):
+        body.force, body.torque = (0.5, 0), 0.1
+        world.step(steps)
+    assert body.velocity == pytest.approx((0.5, 0), rel=1e-12)
+    assert body.angular_velocity == pytest.approx(0.6, rel=1e-12)
+    assert holder.velocity == (0, 0)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_damping_is_a_frames(steps):
+    """space.damping d: v = v0 d^t, exactly, whatever the steps."""
+    world = World(stiffness=1e6)
+    world.space.damping = 0.6
+    body = world.box((0, 0), velocity=(2, 0), spin=3)
+    world.run(1.0, steps)
+    assert body.velocity.x == pytest.approx(2 * 0.6, rel=1e-9)
+    assert body.angular_velocity == pytest.approx(3 * 0.6, rel=1e-9)
+
+
+@pytest.mark.parametrize("steps", STEPS)
+def test_what_a_contact_reports_is_the_frames(steps):
+    """A box at rest: post_solve's total_impulse is m g dt, upward on the box, by any steps; each_arbiter too."""
+    world = World(10.0, friction=0.5)
+    world.floor()
+    body = world.box((0, 0.5), mass=3.0)
+    next(iter(body.shapes)).collision_type = 2
+    seen = []
+    world.space.on_collision(
+        2, None, post_solve=lambda arbiter, space, data: seen.append(arbiter.total_impulse)
+    )
+    world.run(2.0, steps)
+    assert seen[-1].length == pytest.approx(3.0 * 10 * DT, rel=0.01)  # at rest to 1 %
+    assert abs(seen[-1].x) < 0.01 * seen[-1].length
+    found = []
+    body.each_arbiter(lambda arbiter: found.append(arbiter.total_impulse.length))
+    assert found == pytest.approx([3.0 * 10 * DT], rel=0.01)
