@@ -6,11 +6,21 @@ Light to import: a command imports its work when it is run.
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 from typing import Any
 
 from ..report import lines, output_arguments, write_json
 
+BENCHES = {
+    "everyday": "game scenes at the defaults, beside pymunk at 1 and 4 steps a frame and Box2D",
+    "frames": "crowds of up to 10,000 bodies",
+    "kernels": "one overlap, beside shapely",
+    "memory": "of a crowd, a body",
+    "sleep": "a sleeping pyramid of 5,050 boxes",
+    "start": "from import to the first step",
+    "step": "one area step beside one native step",
+}
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
 
@@ -45,14 +55,28 @@ def _docs(parser: argparse.ArgumentParser) -> None:
 
 def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
-    bench = subparsers.add_parser("bench", help="speed and memory, beside shapely, pymunk's solver and Box2D")
-    bench.add_argument("what", choices=("frames", "kernels", "memory", "step", "start"))
+    text = "speed and memory, beside shapely, pymunk's solver and Box2D"
+    described = "; ".join(f"{name}: {what}" for name, what in BENCHES.items())
+    bench = subparsers.add_parser(
+        "bench", help=text, description=f"{text[0].upper()}{text[1:]}. {described}."
+    )
+    bench.add_argument("what", choices=tuple(BENCHES))
     bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
     output_arguments(bench, Path("out") / "bench")
     bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
     bench.add_argument("--bodies", type=int, action="append", metavar="N", help="this many (repeatable)")
     bench.add_argument(
         "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
+    )
+    bench.add_argument(
+        "--seeds", type=int, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
+    )
+    bench.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="everyday: rigidarea at this setting (steps, iterations, penetration ...; repeatable), not its defaults",
     )
     bench.set_defaults(run=_bench)
     chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
@@ -80,7 +104,7 @@ def _write(arguments: argparse.Namespace, name: str, report: dict[str, Any]) -> 
 
     write_json(report, arguments.out / f"{name}.json")
     write_csv(arguments.out / f"{name}.csv", report["results"])
-    if report.get("summary"):
+    if isinstance(report.get("summary"), list) and report["summary"]:
         write_csv(arguments.out / f"{name}-summary.csv", report["summary"])
 
 
@@ -120,9 +144,23 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, start
+    from . import bench, draw, everyday, start
 
-    if arguments.what == "frames":
+    if arguments.what == "everyday":
+        report = everyday.everyday(
+            arguments.scene,
+            arguments.seeds or (1 if arguments.quick else None),
+            arguments.peer,
+            dict(_setting(text) for text in arguments.set),
+        )
+        _write(arguments, "bench-everyday", report)
+        _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
+        if arguments.json != "-":
+            print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
+        return 0
+    if arguments.what == "sleep":
+        report = everyday.sleep(peer_names=arguments.peer)
+    elif arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
         report = bench.frames(arguments.scene, sizes, arguments.peer)
         draw.frame_times(report, arguments.out)
@@ -137,6 +175,15 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
     _write(arguments, f"bench-{arguments.what}", report)
     return _tell(arguments, report, report["results"])
+
+
+def _setting(text: str) -> tuple[str, Any]:
+    """NAME=VALUE, the value as JSON has it."""
+    name, _, value = text.partition("=")
+    try:
+        return name, json.loads(value)
+    except json.JSONDecodeError:
+        raise ValueError(f"--set wants NAME=VALUE with a number, got {text!r}") from None
 
 
 def _chart(arguments: argparse.Namespace) -> int:

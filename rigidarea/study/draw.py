@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 COLOURS = {
     "rigidarea": "#0072B2",
-    "rigidarea-frame": "#56B4E9",
+    "rigidarea-default": "#56B4E9",
     "pymunk": "#D55E00",
     "box2d": "#009E73",
     "literal": "#CC79A7",
@@ -29,7 +29,7 @@ COLOURS = {
 }
 MARKERS = {
     "rigidarea": "o",
-    "rigidarea-frame": "P",
+    "rigidarea-default": "P",
     "rigidarea-explicit": ".",
     "rigidarea-implicit": "X",
     "compliant": "v",
