@@ -154,6 +154,7 @@ def _bench(arguments: argparse.Namespace) -> int:
             dict(_setting(text) for text in arguments.set),
         )
         _write(arguments, "bench-everyday", report)
+        draw.everyday_times(report, arguments.out)
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
         if arguments.json != "-":
             print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))

@@ -240,6 +240,42 @@ def frame_times(report: Row, out: Path) -> list[Path]:
     return save(figure, out, "bench-frames")
 
 
+def everyday_times(report: Row, out: Path) -> list[Path]:
+    """Median frame of every game scene over that of pymunk's one step, a line a scene."""
+    plt = _pyplot()
+    rows = list(reversed([row for row in report["results"] if row["native_1_ms"]]))
+    if not rows:
+        return []
+    figure, ax = plt.subplots(figsize=(10, 1.6 + 0.34 * len(rows)), layout="constrained")
+    kinds = (
+        ("frame_ms_median", "rigidarea-default", "rigidarea, the default"),
+        ("native_1_ms", "pymunk", "pymunk, one step a frame"),
+        ("native_4_ms", "pymunk", "pymunk, four"),
+        ("box2d_ms", "box2d", "Box2D v3, four substeps"),
+    )
+    for key, peer, label in kinds:
+        found = [(row[key] / row["native_1_ms"], y) for y, row in enumerate(rows) if row[key]]
+        hollow = {"mfc": "white"} if key == "native_4_ms" else {}
+        ax.plot(*zip(*found), ls="", marker=marker(peer), color=colour(peer), ms=8, label=label, **hollow)
+    for y, row in enumerate(rows):
+        ax.text(
+            1.01,
+            y,
+            f"{row['native_1_ms']:.3g} ms",
+            transform=ax.get_yaxis_transform(),
+            va="center",
+            fontsize=8,
+        )
+    names = [f"{row['title']}{'' if row['judged'] else ' *'}" for row in rows]
+    ax.set_yticks(range(len(rows)), names)
+    ax.set(xscale="log", xlabel="frame time over that of pymunk's one step, which stands on the right")
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.axvline(1, color="#666666", lw=1)
+    ax.text(0, -0.13, "* shown, not in the summary", transform=ax.transAxes, fontsize=8, ha="right", va="top")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return save(figure, out, "bench-everyday")
+
+
 def kernel_times(report: Row, out: Path) -> list[Path]:
     """One overlap query beside shapely's intersection, for every pair of outlines."""
     plt = _pyplot()

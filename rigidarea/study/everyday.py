@@ -129,9 +129,10 @@ def everyday(
 
     Rows: a scene each, medians over its seeds: scene, title, bodies, steps_per_frame, frame_ms_median, native_1_ms,
     native_4_ms, box2d_ms, ratio (to native_1, median over seeds), ratio_worst, speed_left (the fastest body of the
-    last second, the seeds' worst; likewise native_1_speed_left ...), contacts (pairs a frame), native_contacts (of native_4), native_1_contacts,
-    inside (whether every body of every seed stayed in the room; native_1_inside ...), shift (sideways, over a body's
-    side). `runs`: a row a scene, seed and engine. `summary`: median and worst ratio of the judged scenes.
+    last second, the seeds' worst; likewise native_1_speed_left ...), contacts (pairs a frame), native_contacts (of
+    native_4), native_1_contacts, inside (whether every body of every seed stayed in the room; native_1_inside ...),
+    shift (sideways, over a body's side). `runs`: a row a scene, seed and engine. `summary`: median and worst ratio of
+    the judged scenes, and which fell short in what.
     """
     chosen = list(names) or list(EVERYDAY)
     for name in chosen:

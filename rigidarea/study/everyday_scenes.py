@@ -223,8 +223,8 @@ def wall(seed: int) -> Scene:
 
 def struck_wall(seed: int) -> Scene:
     """The same wall, struck by a ball of the weight of twenty bricks."""
-    speed = 700.0 + 20.0 * random.Random(seed).random()
-    ball = disc("ball", 25.0, (-500.0, 140.0), 20.0, velocity=(speed, 100.0))
+    speed = 1500.0 + 20.0 * random.Random(seed).random()
+    ball = disc("ball", 25.0, (-400.0, 140.0), 20.0, velocity=(speed, 50.0))
     bodies = [_walls((-1000.0, 1000.0), (-1000.0, -WALL_PX), (1000.0, -WALL_PX), (1000.0, 1000.0))]
     return _scene("struck_wall", [*bodies, *_bricks(seed), ball], (-1000.0, 0.0, 1000.0, 1000.0))
 

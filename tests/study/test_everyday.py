@@ -171,6 +171,7 @@ def test_command(tmp_path, capsys):
     assert report["command"] == "bench everyday"
     assert report["results"][0]["steps_per_frame"] == 2
     assert (tmp_path / "bench-everyday.csv").exists()
+    assert (tmp_path / "bench-everyday.png").exists()
     wrong = parser.parse_args([*words, "--set", "steps=many"])
     with pytest.raises(ValueError, match="steps=many"):
         wrong.run(wrong)
