@@ -1,7 +1,7 @@
 """`bench everyday`: game scenes at the defaults, beside pymunk at one and four steps a frame and Box2D v3.
 
-All engines run the same scene in turn, frame by frame, on one core, and each frame is timed by itself in processor
-time: what slows the machine slows them alike. Nobody sleeps. `bench sleep`: what a frame costs once a large pile does.
+All engines run the same scene in turns of a few frames, on one core, and each frame is timed by itself in processor
+time: what slows the machine slows them alike, and nobody's memory is cold. Nobody sleeps. `bench sleep`: what a frame costs once a large pile does.
 """
 
 from __future__ import annotations
@@ -48,6 +48,10 @@ TOLD = (
 """Keys of a row that the command prints as a table; the files have all."""
 LAST_S = 1.0
 """The time at the end in which a scene is asked whether it has come to rest (s)."""
+BLOCK = 10
+"""Frames of one engine before it is the next one's turn: the first finds its memory gone from the cache, and the median
+leaves it out.
+"""
 WARM = 10
 """Frames whose time does not count."""
 
@@ -81,7 +85,7 @@ class Course:
 
 
 def race(scene: Scene, engines: Mapping[str, tuple[str, Settings]]) -> dict[str, Course]:
-    """Run a scene on every engine, in turn frame by frame."""
+    """Run a scene on every engine, in turns of `BLOCK` frames."""
     moving = [i for i, body in enumerate(scene.bodies) if body.kind == "dynamic"]
     names = tuple(body.name for body in scene.bodies)
     courses = {}
@@ -89,19 +93,18 @@ def race(scene: Scene, engines: Mapping[str, tuple[str, Settings]]) -> dict[str,
         run = get_peer(peer).build(scene, settings)
         courses[name] = Course(run, run.state()[moving])
     second = round(1 / scene.frame)
+    last = scene.frames - round(LAST_S / scene.frame)
     with one_core():
-        for frame in range(1, scene.frames + 1):
+        for first in range(0, scene.frames, BLOCK):
             for course in courses.values():
-                before = time.thread_time()
-                course.run.advance(1)
-                course.frame_ms.append(1e3 * (time.thread_time() - before))
-            late = frame * scene.frame > scene.duration - LAST_S
-            for course in courses.values() if late or frame % second == 0 else ():
-                if late:
-                    states = course.run.state()[moving]
-                    course.speed_left = max(course.speed_left, fastest(states))
-                if frame % second == 0 and hasattr(course.run, "contacts"):
-                    course.contacts.append(course.run.contacts())
+                for frame in range(first + 1, min(first + BLOCK, scene.frames) + 1):
+                    before = time.thread_time()
+                    course.run.advance(1)
+                    course.frame_ms.append(1e3 * (time.thread_time() - before))
+                    if frame > last:
+                        course.speed_left = max(course.speed_left, fastest(course.run.state()[moving]))
+                    if frame % second == 0 and hasattr(course.run, "contacts"):
+                        course.contacts.append(course.run.contacts())
     for course in courses.values():
         end = course.run.state()
         left = scene.measure(Trace(names, np.array([scene.duration]), end[None]))
