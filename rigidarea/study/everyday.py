@@ -1,7 +1,8 @@
 """`bench everyday`: game scenes at the defaults, beside pymunk at one and four steps a frame and Box2D v3.
 
 All engines run the same scene in turns of a few frames, on one core, and each frame is timed by itself in processor
-time: what slows the machine slows them alike, and nobody's memory is cold. Nobody sleeps. `bench sleep`: what a frame costs once a large pile does.
+time: what slows the machine slows them alike, and nobody's memory is cold. Nobody sleeps.
+`bench sleep`: what a frame costs once a large pile does.
 """
 
 from __future__ import annotations

@@ -48,6 +48,9 @@ class Peer(Protocol):
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """The settings to sweep, in order of growing cost where that is known."""
 
+    def default(self, scene: Scene) -> Settings | None:
+        """Those of `settings` with which its users find it; None for what nobody finds as it is."""
+
     def build(self, scene: Scene, settings: Settings) -> Run:
         """Set the scene up."""
 

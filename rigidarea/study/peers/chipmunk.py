@@ -141,6 +141,11 @@ class Chipmunk:
             for sampling in samplings(scene, quick)
         ]
 
+    def default(self, scene: Scene) -> Settings:
+        """One step a frame, ten iterations; the slop, 0.1 by default, as on bodies of 100 pixels."""
+        sampling = {"sampling": 1e-3} if samplings(scene, True) != [{}] else {}
+        return {"steps": 1, "iterations": 10, "slop": 1e-3, **sampling}
+
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A space of pymunk's own shapes."""
         space = pymunk.Space()

@@ -186,6 +186,10 @@ class Flexible:
             for more in finer
         ]
 
+    def default(self, scene: Scene) -> None:
+        """A submodule that is set up by hand."""
+        return None
+
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A simulation at this level."""
         return FlexibleRun(scene, settings, self.level)
