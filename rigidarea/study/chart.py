@@ -35,6 +35,17 @@ EVEN = 1.1
 """A cost ratio up to which two engines cost the same, as far as can be measured."""
 NOISE = 1.4
 """Ratio of two times measured once that says which is longer."""
+TOLD = (
+    *("scene", "peer", "matched_error", "cost_ratio_at_matched_error", "cost_ratio_mean", "cost_ratio_worst"),
+    *(
+        "default_error",
+        "default_cost_ratio",
+        "peer_default_error",
+        "defaults_cost_ratio",
+        "defaults_error_ratio",
+    ),
+)
+"""Keys of a summary row that the command prints as a table; the files have all."""
 REPEATS, QUICK_REPEATS = 5, 2
 PATIENCE_S, QUICK_PATIENCE_S = 0.5, 0.2
 """Time (s) after which a run is not repeated: its noise is small beside it."""

@@ -78,6 +78,7 @@ def add_commands(subparsers: Any) -> None:
         metavar="NAME=VALUE",
         help="everyday: rigidarea at this setting (steps, iterations, penetration ...; repeatable), not its defaults",
     )
+    _docs(bench)
     bench.set_defaults(run=_bench)
     chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
     output_arguments(chart, Path("out") / "chart")
@@ -144,7 +145,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, everyday, start
+    from . import bench, draw, draw_bench, everyday, page, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -154,7 +155,10 @@ def _bench(arguments: argparse.Namespace) -> int:
             dict(_setting(text) for text in arguments.set),
         )
         _write(arguments, "bench-everyday", report)
-        draw.everyday_times(report, arguments.out)
+        pictures = draw_bench.everyday_times(report, arguments.out)
+        if arguments.docs:
+            shown = {"everyday.png": pictures[0]} if pictures else {}
+            page.renew(arguments.docs, {"everyday": page.everyday(report)}, shown)
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
         if arguments.json != "-":
             print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
@@ -164,7 +168,7 @@ def _bench(arguments: argparse.Namespace) -> int:
     elif arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
         report = bench.frames(arguments.scene, sizes, arguments.peer)
-        draw.frame_times(report, arguments.out)
+        draw_bench.frame_times(report, arguments.out)
     elif arguments.what == "kernels":
         report = bench.kernels(arguments.scene)
         draw.kernel_times(report, arguments.out)
@@ -194,11 +198,21 @@ def _chart(arguments: argparse.Namespace) -> int:
     _write(arguments, "chart", report)
     draw.chart_pages(report, arguments.out)
     pictures = draw.chart_summary(report, arguments.out)
+    defaults = draw.chart_defaults(report, arguments.out)
     if arguments.docs and pictures:
         tables = {
+            "defaults": page.defaults(report),
             "ratios": page.ratios(report),
             "dominated": page.dominated(report),
             "known_well": page.known_well(report),
         }
-        page.renew(arguments.docs, tables, {"chart.png": pictures[0]})
-    return _tell(arguments, report, report["summary"] or report["results"])
+        shown = {"chart.png": pictures[0]} | ({"chart-defaults.png": defaults[0]} if defaults else {})
+        page.renew(arguments.docs, tables, shown)
+    _tell(
+        arguments,
+        report,
+        [{k: row.get(k) for k in chart.TOLD} for row in report["summary"]] or report["results"],
+    )
+    if arguments.json != "-":
+        print("\n".join(lines(report["summary_defaults"])))
+    return 0
