@@ -128,14 +128,12 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
         line = front.front(found)
         ax.plot(*zip(*line), color=colour(name), marker=marker(name), ms=4.5, lw=1.6, drawstyle="steps-post")
     top = [row["error"] for row in rows if row["scene"] == scene["scene"] and row["error"]]
-    most = 2 * min(max(top, default=1.0), 10.0)
+    most = 8 * min(max(top, default=1.0), 10.0)  # room for the words at the top
     for row in rows:
         if row["scene"] == scene["scene"] and row.get("default"):
             # at the edge: failed, or further off than the panel shows
             error = (
-                min(max(row["error"] or 0.0, floor / 3), most / 1.3)
-                if row["error"] is not None
-                else most / 1.3
+                min(max(row["error"] or 0.0, floor / 3), most / 6) if row["error"] is not None else most / 6
             )
             mine = get_peer(row["peer"]).ours
             ax.plot(

@@ -55,7 +55,7 @@ def number(value: float | None) -> str:
     if value is None or not math.isfinite(value):
         return "∞"
     return (
-        f"{value:.2g}"
+        f"{float(f'{value:.2g}'):g}"
         if value == 0 or 0.01 <= value < 1000
         else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
     )

@@ -76,7 +76,15 @@ def test_causes_are_of_scenes():
 
 @pytest.mark.parametrize(
     "value,text",
-    [(None, "∞"), (math.inf, "∞"), (0.0, "0"), (0.123, "0.12"), (1.5e-5, "2e-5"), (12345.0, "1e4")],
+    [
+        (None, "∞"),
+        (math.inf, "∞"),
+        (0.0, "0"),
+        (0.123, "0.12"),
+        (1.5e-5, "2e-5"),
+        (156.7, "160"),
+        (12345.0, "1e4"),
+    ],
 )
 def test_numbers(value, text):
     """Two digits; powers where they are shorter."""
