@@ -72,6 +72,9 @@ def add_commands(subparsers: Any) -> None:
         "--seeds", type=int, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
     )
     bench.add_argument(
+        "--seconds", type=float, metavar="S", help="everyday: simulated time (default 7; towers 2)"
+    )
+    bench.add_argument(
         "--set",
         action="append",
         default=[],
@@ -153,6 +156,7 @@ def _bench(arguments: argparse.Namespace) -> int:
             arguments.seeds or (1 if arguments.quick else None),
             arguments.peer,
             dict(_setting(text) for text in arguments.set),
+            arguments.seconds,
         )
         _write(arguments, "bench-everyday", report)
         pictures = draw_bench.everyday_times(report, arguments.out)

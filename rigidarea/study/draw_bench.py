@@ -78,6 +78,7 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     ax.set(xscale="log", xlabel="frame time over that of pymunk's one step, which stands on the right")
     ax.xaxis.set_major_formatter("{x:g}")
     ax.axvline(1, color="#666666", lw=1)
-    ax.text(0, -0.13, "* shown, not in the summary", transform=ax.transAxes, fontsize=8, ha="right", va="top")
+    note = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "center"}
+    ax.annotate("* shown, not in the summary", (0, 0), (-8, -30), fontsize=8, **note)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return save(figure, out, "bench-everyday")

@@ -112,6 +112,8 @@ def test_rows_of_a_race():
     assert report["summary"]["scenes"] == ["tower"]
     with pytest.raises(ValueError, match="unknown scene 'x'"):
         everyday.everyday(["x"])
+    with pytest.raises(ValueError, match="at least 1"):
+        everyday.everyday(["tower"], seconds=0.5)
     with pytest.raises(ValueError, match="unknown engine 'x'"):
         everyday.everyday(["tower"], peer_names=["x"])
 
@@ -165,7 +167,9 @@ def test_command(tmp_path, capsys):
     parser = argparse.ArgumentParser()
     add_commands(parser.add_subparsers(required=True))
     words = ["bench", "everyday", "tower", "--seeds", "1", "--peer", "rigidarea", "--peer", "native_1"]
-    arguments = parser.parse_args([*words, "--set", "steps=2", "--out", str(tmp_path), "--json", "-"])
+    arguments = parser.parse_args(
+        [*words, "--set", "steps=2", "--seconds", "2", "--out", str(tmp_path), "--json", "-"]
+    )
     assert arguments.run(arguments) == 0
     report = json.loads(capsys.readouterr().out)
     assert report["command"] == "bench everyday"
