@@ -55,7 +55,7 @@ class Variant:
     @property
     def given(self) -> bool:
         """Whether it is area contact whose stiffness is for the map to give, not for the library to choose."""
-        return self.area and self.peer != "rigidarea-frame"
+        return self.area and self.peer != "rigidarea-default"
 
 
 Outcome = tuple[str, float]
@@ -85,7 +85,7 @@ def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:
     side); `changes` replace settings, None drops the engine.
     """
     usual: dict[str, dict[str, Any]] = {
-        "rigidarea": {"peer": "rigidarea-frame"},
+        "rigidarea": {"peer": "rigidarea-default"},
         "explicit": {"peer": "rigidarea-explicit", "phase": 0.5},
         "pymunk": {"peer": "pymunk", "steps": 4, "iterations": 10, "slop": 1e-3},
         "box2d": {"peer": "box2d", "steps": 1, "substeps": 4, "stiff": False, "length": 1},

@@ -22,7 +22,7 @@ from .timing import one_core
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
 
 USUAL: dict[str, tuple[dict[str, Any], ...]] = {
-    "rigidarea-frame": ({},),
+    "rigidarea-default": ({},),
     "rigidarea": ({"stiffness": 1e4, "steps": 4}, {"stiffness": 1e6, "steps": 16}),
     "pymunk": ({"steps": 1, "iterations": 10, "slop": 1e-2}, {"steps": 4, "iterations": 10, "slop": 1e-2}),
     "box2d": ({"steps": 1, "substeps": 4, "stiff": False, "length": 1},),

@@ -29,8 +29,23 @@ RESOLUTION = 1e-4
 """Errors below it count as equally good, in every scene: a tenth of a pixel on a body drawn 1,000 pixels large, and a
 hundredth of what friction, restitution and mass of real bodies are known to.
 """
+USELESS = 1.0
+"""Errors above it are of runs that do not show the scene's motion at all: a default with such an error fails."""
+EVEN = 1.1
+"""A cost ratio up to which two engines cost the same, as far as can be measured."""
 NOISE = 1.4
 """Ratio of two times measured once that says which is longer."""
+TOLD = (
+    *("scene", "peer", "matched_error", "cost_ratio_at_matched_error", "cost_ratio_mean", "cost_ratio_worst"),
+    *(
+        "default_error",
+        "default_cost_ratio",
+        "peer_default_error",
+        "defaults_cost_ratio",
+        "defaults_error_ratio",
+    ),
+)
+"""Keys of a summary row that the command prints as a table; the files have all."""
 REPEATS, QUICK_REPEATS = 5, 2
 PATIENCE_S, QUICK_PATIENCE_S = 0.5, 0.2
 """Time (s) after which a run is not repeated: its noise is small beside it."""
@@ -83,7 +98,7 @@ def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
 
 def on_front(tasks: Sequence[Task], results: Sequence[Row]) -> list[bool]:
     """Which settings could be on their peer's front: none with as small an error took NOISE times less, and the error
-    is at most 1. Errors below RESOLUTION count as equal.
+    is at most USELESS. Errors below RESOLUTION count as equal.
     """
     groups: dict[tuple[str, str], list[tuple[float, float]]] = {}
     found = []
@@ -92,7 +107,7 @@ def on_front(tasks: Sequence[Task], results: Sequence[Row]) -> list[bool]:
         found.append((error, result["rough_s_per_s"]))
         groups.setdefault((task["scene"], task["peer"]), []).append(found[-1])
     return [
-        error <= 1.0
+        error <= USELESS
         and not any(e <= error and NOISE * c < cost for e, c in groups[task["scene"], task["peer"]])
         for task, (error, cost) in zip(tasks, found, strict=True)
     ]
@@ -117,6 +132,25 @@ def costs(
     return [known[key(task)] for task in tasks]
 
 
+def is_default(task: Row) -> bool:
+    """Whether a task or row has the settings with which its engine's users find it."""
+    default = get_peer(task["peer"]).default(get_scene(task["scene"]))
+    return default is not None and dict(default) == task["settings"]
+
+
+def default_point(rows: Sequence[Row], scene: str, peer: str | None = None) -> front.Point | None:
+    """(cost, error) of an engine's default settings on a scene (ours where `peer` is None); None if there is none.
+
+    A run that failed, or whose error is above `USELESS`, has an infinite error.
+    """
+    for row in rows:
+        mine = get_peer(row["peer"]).ours
+        if row["scene"] == scene and (row["peer"] == peer or (peer is None and mine)) and is_default(row):
+            error = row["error"] if row["error"] is not None and row["error"] <= USELESS else math.inf
+            return front.Point(row["cost_s_per_s"], error)
+    return None
+
+
 def points(
     rows: Sequence[Row], scene: str, ours: bool | None = None, peer: str | None = None
 ) -> list[front.Point]:
@@ -133,16 +167,80 @@ def points(
 
 
 def summarise(rows: Sequence[Row]) -> list[Row]:
-    """One row a scene and foreign peer: how our front (all our levels together) stands to theirs."""
+    """One row a scene and foreign peer: how our front (all our levels together) stands to theirs, and our default."""
     summary = []
     for name in dict.fromkeys(row["scene"] for row in rows):
         scene = get_scene(name)
         mine = points(rows, name, ours=True)
         for peer in dict.fromkeys(row["peer"] for row in rows if row["scene"] == name):
             if not get_peer(peer).ours:
-                found = front.compare(mine, points(rows, name, peer=peer), RESOLUTION)
-                summary.append({"scene": name, "peer": peer, "tags": sorted(scene.tags), **found._asdict()})
+                theirs = points(rows, name, peer=peer)
+                found = front.compare(mine, theirs, RESOLUTION)
+                ours, usual = default_point(rows, name), default_point(rows, name, peer)
+                alone = {} if ours is None else compare_defaults(ours, usual, theirs)
+                summary.append(
+                    {"scene": name, "peer": peer, "tags": sorted(scene.tags), **found._asdict(), **alone}
+                )
     return summary
+
+
+def compare_defaults(ours: front.Point, usual: front.Point | None, theirs: Sequence[front.Point]) -> Row:
+    """Our default beside a peer's whole front, and beside the peer's default.
+
+    `default_cost_ratio`: its cost over the least with which the peer has no larger an error (or, where the peer has
+    none so small, its least error): infinite if our default fails. `default_error`, `default_cost_s_per_s`,
+    `peer_default_error`, `peer_default_cost_s_per_s`; `defaults_cost_ratio` and `defaults_error_ratio`, ours over
+    theirs (errors below RESOLUTION count as equal to it).
+    """
+    found = {
+        "default_error": ours.error,
+        "default_cost_s_per_s": ours.cost,
+        "default_cost_ratio": math.inf,
+    }
+    if math.isfinite(ours.error):
+        found["default_cost_ratio"] = front.compare([ours], theirs, RESOLUTION).cost_ratio_at_matched_error
+    if usual is not None:
+        errors = [max(point.error, RESOLUTION) for point in (ours, usual)]
+        both_failed = not any(map(math.isfinite, errors))
+        found |= {
+            "peer_default_error": usual.error,
+            "peer_default_cost_s_per_s": usual.cost,
+            "defaults_cost_ratio": ours.cost / usual.cost,
+            "defaults_error_ratio": math.nan if both_failed else errors[0] / errors[1],
+        }
+    return found
+
+
+def summarise_defaults(summary: Sequence[Row]) -> list[Row]:
+    """One row a foreign peer: on how many scenes our front, and our default alone, is no dearer than `EVEN` times it.
+
+    `front_even`: our front at the smallest error that both reach. `default_even`: our default against the peer's whole
+    front at our default's error. `default_failed`: ours (`peer_default_failed`: theirs) fails or is off by more than
+    USELESS. `no_dearer`, `no_worse`, `both`: our default against the peer's default, in cost, error, and both at once.
+    """
+    rows = []
+    for peer in dict.fromkeys(row["peer"] for row in summary):
+        here = [row for row in summary if row["peer"] == peer]
+        alone = [row for row in here if "default_error" in row]
+        beside = [row for row in alone if "peer_default_error" in row]
+        cheap = [row["defaults_cost_ratio"] <= EVEN for row in beside]
+        # both failing is not to be better, nor to be worse
+        good = [not row["defaults_error_ratio"] > 1 for row in beside]
+        rows.append(
+            {
+                "peer": peer,
+                "scenes": len(here),
+                "front_even": sum(row["cost_ratio_at_matched_error"] <= EVEN for row in here),
+                "scenes_default": len(alone),
+                "default_even": sum(row["default_cost_ratio"] <= EVEN for row in alone),
+                "default_failed": sum(not math.isfinite(row["default_error"]) for row in alone),
+                "peer_default_failed": sum(not math.isfinite(row["peer_default_error"]) for row in beside),
+                "no_dearer": sum(cheap),
+                "no_worse": sum(good),
+                "both": sum(c and g for c, g in zip(cheap, good, strict=True)),
+            }
+        )
+    return rows
 
 
 def chart(
@@ -169,21 +267,24 @@ def chart(
         for store in stores:
             store.unlink(missing_ok=True)
     results = run_tasks(evaluate, tasks, stores[0], scheduler, workers, title="errors")
-    timed = on_front(tasks, results)
+    usual = [is_default(task) for task in tasks]
+    timed = [keep or default for keep, default in zip(on_front(tasks, results), usual, strict=True)]
     chosen_tasks = [task for task, keep in zip(tasks, timed, strict=True) if keep]
     seconds = iter(costs(chosen_tasks, rounds, stores[1], QUICK_PATIENCE_S if quick else PATIENCE_S))
     rows = []
-    for task, result, keep in zip(tasks, results, timed, strict=True):
-        row = {**task, **result, "error_name": get_scene(task["scene"]).error_name}
+    for task, result, keep, default in zip(tasks, results, timed, usual, strict=True):
+        row = {**task, **result, "error_name": get_scene(task["scene"]).error_name, "default": default}
         rough = row.pop("rough_s_per_s")
         rows.append(
             {**row, "cost_s_per_s": next(seconds) if keep else rough, "repeats": rounds if keep else 1}
         )
+    summary = summarise(rows)
     return envelope(
         "chart",
         {"quick": quick, "repeats": rounds, "scenes": names, "peers": chosen},
         rows,
-        summary=summarise(rows),
+        summary=summary,
+        summary_defaults=summarise_defaults(summary),
         refused=refusals(names, chosen),
         scenes=[describe(get_scene(name)) for name in names],
     )

@@ -6,11 +6,21 @@ Light to import: a command imports its work when it is run.
 from __future__ import annotations
 
 import argparse
+import json
 from pathlib import Path
 from typing import Any
 
 from ..report import lines, output_arguments, write_json
 
+BENCHES = {
+    "everyday": "game scenes at the defaults, beside pymunk at 1 and 4 steps a frame and Box2D",
+    "frames": "crowds of up to 10,000 bodies",
+    "kernels": "one overlap, beside shapely",
+    "memory": "of a crowd, a body",
+    "sleep": "a sleeping pyramid of 5,050 boxes",
+    "start": "from import to the first step",
+    "step": "one area step beside one native step",
+}
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
 
@@ -45,8 +55,12 @@ def _docs(parser: argparse.ArgumentParser) -> None:
 
 def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
-    bench = subparsers.add_parser("bench", help="speed and memory, beside shapely, pymunk's solver and Box2D")
-    bench.add_argument("what", choices=("frames", "kernels", "memory", "step", "start"))
+    text = "speed and memory, beside shapely, pymunk's solver and Box2D"
+    described = "; ".join(f"{name}: {what}" for name, what in BENCHES.items())
+    bench = subparsers.add_parser(
+        "bench", help=text, description=f"{text[0].upper()}{text[1:]}. {described}."
+    )
+    bench.add_argument("what", choices=tuple(BENCHES))
     bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
     output_arguments(bench, Path("out") / "bench")
     bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
@@ -54,6 +68,20 @@ def add_commands(subparsers: Any) -> None:
     bench.add_argument(
         "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
     )
+    bench.add_argument(
+        "--seeds", type=int, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
+    )
+    bench.add_argument(
+        "--seconds", type=float, metavar="S", help="everyday: simulated time (default 7; towers 2)"
+    )
+    bench.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="NAME=VALUE",
+        help="everyday: rigidarea at this setting (steps, iterations, penetration ...; repeatable), not its defaults",
+    )
+    _docs(bench)
     bench.set_defaults(run=_bench)
     chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
     output_arguments(chart, Path("out") / "chart")
@@ -80,7 +108,7 @@ def _write(arguments: argparse.Namespace, name: str, report: dict[str, Any]) -> 
 
     write_json(report, arguments.out / f"{name}.json")
     write_csv(arguments.out / f"{name}.csv", report["results"])
-    if report.get("summary"):
+    if isinstance(report.get("summary"), list) and report["summary"]:
         write_csv(arguments.out / f"{name}-summary.csv", report["summary"])
 
 
@@ -120,12 +148,31 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, start
+    from . import bench, draw, draw_bench, everyday, page, start
 
-    if arguments.what == "frames":
+    if arguments.what == "everyday":
+        report = everyday.everyday(
+            arguments.scene,
+            arguments.seeds or (1 if arguments.quick else None),
+            arguments.peer,
+            dict(_setting(text) for text in arguments.set),
+            arguments.seconds,
+        )
+        _write(arguments, "bench-everyday", report)
+        pictures = draw_bench.everyday_times(report, arguments.out)
+        if arguments.docs:
+            shown = {"everyday.png": pictures[0]} if pictures else {}
+            page.renew(arguments.docs, {"everyday": page.everyday(report)}, shown)
+        _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
+        if arguments.json != "-":
+            print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
+        return 0
+    if arguments.what == "sleep":
+        report = everyday.sleep(peer_names=arguments.peer)
+    elif arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
         report = bench.frames(arguments.scene, sizes, arguments.peer)
-        draw.frame_times(report, arguments.out)
+        draw_bench.frame_times(report, arguments.out)
     elif arguments.what == "kernels":
         report = bench.kernels(arguments.scene)
         draw.kernel_times(report, arguments.out)
@@ -139,6 +186,15 @@ def _bench(arguments: argparse.Namespace) -> int:
     return _tell(arguments, report, report["results"])
 
 
+def _setting(text: str) -> tuple[str, Any]:
+    """NAME=VALUE, the value as JSON has it."""
+    name, _, value = text.partition("=")
+    try:
+        return name, json.loads(value)
+    except json.JSONDecodeError:
+        raise ValueError(f"--set wants NAME=VALUE with a number, got {text!r}") from None
+
+
 def _chart(arguments: argparse.Namespace) -> int:
     from . import chart, draw, page
 
@@ -146,11 +202,21 @@ def _chart(arguments: argparse.Namespace) -> int:
     _write(arguments, "chart", report)
     draw.chart_pages(report, arguments.out)
     pictures = draw.chart_summary(report, arguments.out)
+    defaults = draw.chart_defaults(report, arguments.out)
     if arguments.docs and pictures:
         tables = {
+            "defaults": page.defaults(report),
             "ratios": page.ratios(report),
             "dominated": page.dominated(report),
             "known_well": page.known_well(report),
         }
-        page.renew(arguments.docs, tables, {"chart.png": pictures[0]})
-    return _tell(arguments, report, report["summary"] or report["results"])
+        shown = {"chart.png": pictures[0]} | ({"chart-defaults.png": defaults[0]} if defaults else {})
+        page.renew(arguments.docs, tables, shown)
+    _tell(
+        arguments,
+        report,
+        [{k: row.get(k) for k in chart.TOLD} for row in report["summary"]] or report["results"],
+    )
+    if arguments.json != "-":
+        print("\n".join(lines(report["summary_defaults"])))
+    return 0

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 COLOURS = {
     "rigidarea": "#0072B2",
-    "rigidarea-frame": "#56B4E9",
+    "rigidarea-default": "#56B4E9",
     "pymunk": "#D55E00",
     "box2d": "#009E73",
     "literal": "#CC79A7",
@@ -29,7 +29,7 @@ COLOURS = {
 }
 MARKERS = {
     "rigidarea": "o",
-    "rigidarea-frame": "P",
+    "rigidarea-default": "*",
     "rigidarea-explicit": ".",
     "rigidarea-implicit": "X",
     "compliant": "v",
@@ -45,7 +45,7 @@ PAGE = (3, 3)
 """Rows and columns of panels on a page of 1000 pixels width."""
 
 
-def _pyplot() -> Any:
+def pyplot() -> Any:
     import matplotlib
 
     matplotlib.use("Agg")
@@ -84,13 +84,13 @@ def save(figure: Figure, out: Path, name: str) -> list[Path]:
     paths = [out / f"{name}.png", out / f"{name}.svg"]
     figure.savefig(paths[0], dpi=100)
     figure.savefig(paths[1], metadata={"Date": None})
-    _pyplot().close(figure)
+    pyplot().close(figure)
     return paths
 
 
 def chart_pages(report: Row, out: Path) -> list[Path]:
     """Error against cost, one panel a scene, nine panels a page, each peer's front as a stepped line."""
-    plt = _pyplot()
+    plt = pyplot()
     rows, scenes = report["results"], report["scenes"]
     names = list(dict.fromkeys(row["peer"] for row in rows))
     per_page = PAGE[0] * PAGE[1]
@@ -106,7 +106,10 @@ def chart_pages(report: Row, out: Path) -> list[Path]:
             plt.Line2D([], [], color=colour(name), marker=marker(name), markersize=5, label=name)
             for name in names
         ]
-        figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 4))
+        handles.append(
+            plt.Line2D([], [], ls="", color="#111111", marker="o", mfc="none", ms=9, label="at the defaults")
+        )
+        figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
         figure.supxlabel("cost: computing time on one core / simulated time", fontsize=10)
         figure.supylabel("error (dimensionless; what it is stands in each panel)", fontsize=10)
         paths += save(figure, out, f"chart-{page + 1}")
@@ -124,9 +127,36 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
         ax.plot(*zip(*found), ls="", marker=marker(name), ms=3, color=colour(name), alpha=0.35, mew=0.6)
         line = front.front(found)
         ax.plot(*zip(*line), color=colour(name), marker=marker(name), ms=4.5, lw=1.6, drawstyle="steps-post")
-    ax.set(xscale="log", yscale="log")
     top = [row["error"] for row in rows if row["scene"] == scene["scene"] and row["error"]]
-    ax.set_ylim(floor / 4, 2 * min(max(top, default=1.0), 10.0))
+    most = 8 * min(max(top, default=1.0), 10.0)  # room for the words at the top
+    for row in rows:
+        if row["scene"] == scene["scene"] and row.get("default"):
+            # at the edge: failed, or further off than the panel shows
+            error = (
+                min(max(row["error"] or 0.0, floor / 3), most / 6) if row["error"] is not None else most / 6
+            )
+            mine = get_peer(row["peer"]).ours
+            ax.plot(
+                row["cost_s_per_s"],
+                error,
+                marker=marker(row["peer"]),
+                ms=10 if mine else 5,
+                color=colour(row["peer"]),
+                ls="",
+                zorder=4,
+            )
+            ax.plot(
+                row["cost_s_per_s"],
+                error,
+                marker="o",
+                ms=15 if mine else 9,
+                mfc="none",
+                mec="#111111",
+                ls="",
+                zorder=5,
+            )
+    ax.set(xscale="log", yscale="log")
+    ax.set_ylim(floor / 4, most)
     ax.axhspan(floor / 4, floor, color="#f3f3f3", zorder=0)
     ax.set_title(scene["title"], loc="left")
     ax.text(
@@ -147,7 +177,7 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
 
     A thin bar spans the cost ratios at all errors from the smallest that both reach up to a tenth.
     """
-    plt = _pyplot()
+    plt = pyplot()
     summary = report["summary"]
     if not summary:
         return []
@@ -195,54 +225,69 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
     return save(figure, out, "chart-summary")
 
 
-def _mean_log(summary: Sequence[Row], scene: str) -> float:
-    values = [row["cost_ratio_at_matched_error"] for row in summary if row["scene"] == scene]
+def chart_defaults(report: Row, out: Path) -> list[Path]:
+    """Our default alone, one line a scene: against the peer's whole front, and against the peer's own default.
+
+    Left: its cost over that with which the peer does as well. Right: cost (filled) and error (hollow) of our default
+    over those of the peer's. What fails is at the right edge.
+    """
+    plt = pyplot()
+    summary = [row for row in report["summary"] if "default_error" in row]
+    if not summary:
+        return []
+    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
+    names = list(dict.fromkeys(row["scene"] for row in summary))
+    names.sort(key=lambda name: -_mean_log(summary, name, "default_cost_ratio"))
+    peers = list(dict.fromkeys(row["peer"] for row in summary))
+    figure, axes = plt.subplots(
+        1, 2, figsize=(10, 1.9 + 0.26 * len(names)), sharey=True, layout="constrained", width_ratios=(1, 1.2)
+    )
+    labels = ("cost ratio at our default's error\nour default / peer's front", "our default / peer's default")
+    low, high = RANGE
+    for ax, label, keys in zip(
+        axes, labels, (("default_cost_ratio",), ("defaults_cost_ratio", "defaults_error_ratio")), strict=True
+    ):
+        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=label)
+        ax.axvspan(low / 1.5, 1, color="#eaf3fa", zorder=0)
+        ax.axvline(1, color="#666666", lw=1)
+        for row in summary:
+            y = names.index(row["scene"]) + 0.34 * (0.5 - peers.index(row["peer"]) / max(len(peers) - 1, 1))
+            for key in keys:
+                value = row.get(key)
+                if value is None:  # infinite, or no number: in JSON both are null
+                    value = math.inf if row["default_error"] in (None, math.inf) else math.nan
+                if math.isnan(value):
+                    continue
+                shown = min(max(value, low), high)
+                own = {"mfc": "white"} if key == "defaults_error_ratio" else {}
+                ax.plot(shown, y, marker=marker(row["peer"]), color=colour(row["peer"]), ms=5.5, ls="", **own)
+                if shown != value:
+                    edge, arrow = (high * 1.25, 5) if value > high else (low / 1.25, 4)
+                    ax.plot(edge, y, marker=arrow, color=colour(row["peer"]))
+        ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
+        ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
+    axes[0].set_yticks(range(len(names)), [titles[name] for name in names])
+    axes[0].set_ylim(-0.7, len(names) - 0.3)
+    handles = [
+        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), label=f"against {p}: cost")
+        for p in peers
+    ] + [
+        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), mfc="white", label=f"{p}: error")
+        for p in peers
+    ]
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+    return save(figure, out, "chart-defaults")
+
+
+def _mean_log(summary: Sequence[Row], scene: str, key: str = "cost_ratio_at_matched_error") -> float:
+    values = [row[key] for row in summary if row["scene"] == scene]
     logs = [math.log10(v) if v and math.isfinite(v) else 9.0 for v in values]
     return sum(logs) / len(logs)
 
 
-def frame_times(report: Row, out: Path) -> list[Path]:
-    """Median frame time (a line to the 99th percentile) over the number of bodies, one panel a scene."""
-    plt = _pyplot()
-    rows = report["results"]
-    scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    figure, axes = plt.subplots(
-        1, len(scenes), figsize=(10, 4.2), sharey=True, squeeze=False, layout="constrained"
-    )
-    for ax, scene in zip(axes.flat, scenes, strict=True):
-        groups: dict[tuple[str, int], list[Row]] = {}
-        for row in rows:
-            if row["scene"] == scene:  # steps: 0 where the library chooses them
-                groups.setdefault((row["peer"], row["settings"].get("steps", 0)), []).append(row)
-        seen: list[str] = []
-        for (peer, steps), group in groups.items():
-            x = [row["bodies"] for row in group]
-            y = [row["frame_ms_median"] for row in group]
-            label = f"{peer}, {steps} step{'s' * (steps > 1)} a frame" if steps else peer
-            style = "-" if peer in seen else "--"
-            seen.append(peer)
-            ax.plot(
-                x,
-                y,
-                style if steps else "-",
-                color=colour(peer),
-                marker=marker(peer),
-                ms=5,
-                lw=1.6,
-                label=label,
-            )
-            ax.vlines(x, y, [row["frame_ms_p99"] for row in group], color=colour(peer), lw=1)
-        ax.axhline(1e3 / 60, color="#666666", lw=1, ls=":")
-        ax.text(0.02, 1e3 / 60 * 1.1, "60 frames a second", transform=ax.get_yaxis_transform(), fontsize=7.5)
-        ax.set(xscale="log", yscale="log", xlabel="bodies", title=scene)
-    axes[0, 0].set_ylabel("frame time (ms): median, bar to 99th percentile")
-    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
-    return save(figure, out, "bench-frames")
-
-
 def kernel_times(report: Row, out: Path) -> list[Path]:
     """One overlap query beside shapely's intersection, for every pair of outlines."""
-    plt = _pyplot()
+    plt = pyplot()
     rows = report["results"]
     figure, ax = plt.subplots(figsize=(10, 1.4 + 0.42 * len(rows)), layout="constrained")
     for y, row in enumerate(reversed(rows)):

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .atlas import PASS, Axis, Map, get_map
-from .draw import _pyplot, save
+from .draw import pyplot, save
 from .records import Row
 from .scene import Array
 
@@ -74,7 +74,7 @@ def atlas_maps(report: Row, out: Path) -> list[Path]:
 
 
 def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
-    plt = _pyplot()
+    plt = pyplot()
     names = list(dict.fromkeys(row["peer"] for row in rows))
     columns = 3 if len(names) > 4 else len(names)
     lines = -(-len(names) // columns)
@@ -109,7 +109,7 @@ def _colours(rows: Sequence[Row]) -> dict[str, str]:
 
 
 def _swatches(colours: dict[str, str]) -> list[Any]:
-    plt = _pyplot()
+    plt = pyplot()
     return [plt.Rectangle((0, 0), 1, 1, fc=c, ec="#888888", label=v) for v, c in colours.items()]
 
 
@@ -159,7 +159,7 @@ def _cells(
 
 def page(report: Row, out: Path) -> list[Path]:
     """The telling maps on one page: a line a map, a column an engine, theory's boundary where it speaks."""
-    plt = _pyplot()
+    plt = pyplot()
     charts = [get_map(name) for name in PAGE if any(row["map"] == name for row in report["results"])]
     if not charts:
         return []
@@ -195,7 +195,7 @@ def page(report: Row, out: Path) -> list[Path]:
 
 def overview(report: Row, out: Path) -> list[Path]:
     """The share of points passed, a line a map, a column an engine."""
-    plt = _pyplot()
+    plt = pyplot()
     rows = report["results"]
     names = [name for name in ENGINES if any(r["peer"] == name for r in rows)]
     charts = [described for described in report["maps"] if any(r["map"] == described["map"] for r in rows)]

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from .draw import _pyplot, save
+from .draw import pyplot, save
 from .records import Row
 
 STYLES = {"rigid": ("#E69F00", "-", 2.6), "compliant": ("#56B4E9", "-", 1.8), "modal": ("#000000", "--", 1.1)}
@@ -20,7 +20,7 @@ COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#000000")
 def levels(report: Row, traces: Row, out: Path) -> list[Path]:
     """One panel a scene, whose legend says what each level costs and how far it is from the modal one; a panel of
     error against cost; and, where the report has them, a page of the convergence studies."""
-    plt = _pyplot()
+    plt = pyplot()
     panels = len(traces) + 1
     columns = min(2, panels)
     lines = math.ceil(panels / columns)
@@ -83,7 +83,7 @@ def _cost(ax: Any, traces: Row, rows: dict[tuple[str, str], Row]) -> None:
 
 def convergence(studies: Sequence[Row], out: Path) -> list[Path]:
     """One panel a study, errors over the knob with the fitted orders in the legend; dotted: the order of theory."""
-    plt = _pyplot()
+    plt = pyplot()
     names = list(dict.fromkeys(row["study"] for row in studies))
     columns = min(2, len(names))
     lines = math.ceil(len(names) / columns)

@@ -55,7 +55,7 @@ def number(value: float | None) -> str:
     if value is None or not math.isfinite(value):
         return "∞"
     return (
-        f"{value:.2g}"
+        f"{float(f'{value:.2g}'):g}"
         if value == 0 or 0.01 <= value < 1000
         else f"{value:.0e}".replace("e-0", "e-").replace("e+0", "e")
     )
@@ -72,17 +72,70 @@ def ratios(report: Row) -> str:
         for peer in peers:
             row = found.get(peer)
             if row is None:
-                cells += ["", "", ""]
+                cells += ["", "", "", ""]
                 continue
             cells += [
                 number(row["matched_error"]),
                 number(row["cost_ratio_at_matched_error"]),
                 number(row["cost_ratio_mean"]),
+                number(row["default_cost_ratio"]) if "default_error" in row else "–",
             ]
         rows.append(cells)
     columns = ["scene", "name"]
     for peer in peers:
-        columns += [f"{peer}: matched error", "cost ratio there", "mean ratio up to 10 %"]
+        columns += [
+            f"{peer}: matched error",
+            "cost ratio there",
+            "mean ratio up to 10 %",
+            "our default's ratio",
+        ]
+    return markdown(columns, rows)
+
+
+def defaults(report: Row) -> str:
+    """Our default on every scene beside each peer's: errors and costs; and a last line a peer that counts."""
+    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
+    summary = [row for row in report["summary"] if "default_error" in row]
+    peers = list(dict.fromkeys(row["peer"] for row in summary))
+    rows = []
+    for name in dict.fromkeys(row["scene"] for row in summary):
+        found = {row["peer"]: row for row in summary if row["scene"] == name}
+        first = next(iter(found.values()))
+        cells = [titles[name], number(first["default_error"]), number(first["default_cost_s_per_s"])]
+        for peer in peers:
+            row = found.get(peer, {})
+            keys = ("peer_default_error", "defaults_cost_ratio", "default_cost_ratio")
+            cells += [number(row[key]) if key in row else "–" for key in keys]
+        rows.append(cells)
+    columns = ["scene", "error at our default", "cost (s/s)"]
+    for peer in peers:
+        columns += [f"{peer}'s default: error", "our cost over its", "our default over its front"]
+    counted = [
+        f"- {row['peer']}: our whole front is no dearer than its front on {row['front_even']} of {row['scenes']} "
+        f"scenes; our default than its front on {row['default_even']} of {row['scenes_default']}, than its default on "
+        f"{row['no_dearer']}, no less exact on {row['no_worse']}, both on {row['both']}; ours fails on "
+        f"{row['default_failed']}, its own on {row['peer_default_failed']}.\n"
+        for row in report["summary_defaults"]
+    ]
+    return markdown(columns, rows) + "\n" + "".join(counted)
+
+
+def everyday(report: Row) -> str:
+    """Game scenes: frame times of all engines (ms), what still moves in the last second, and contacts a frame."""
+    keys = ("frame_ms_median", "native_1_ms", "native_4_ms", "box2d_ms", "ratio", "speed_left")
+    more = ("native_4_speed_left", "box2d_speed_left", "contacts", "native_contacts")
+    rows = [
+        [
+            row["title"] + ("" if row["judged"] else " *"),
+            str(row["bodies"]),
+            str(row["steps_per_frame"]),
+            *("–" if row[key] is None else number(row[key]) for key in (*keys, *more)),
+            "yes" if row["inside"] else "no",
+        ]
+        for row in report["results"]
+    ]
+    columns = ["scene", "bodies", "substeps", "rigidarea", "pymunk, 1 step", "pymunk, 4", "Box2D", "ratio"]
+    columns += ["fastest at the end", "pymunk's, 4", "Box2D's", "contacts", "pymunk's, 1", "all inside"]
     return markdown(columns, rows)
 
 

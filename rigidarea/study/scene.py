@@ -40,9 +40,21 @@ class Circle:
 
 @dataclass(frozen=True)
 class Polygon:
-    """A convex polygon, counter-clockwise; `points` of shape (n, 2) (length)."""
+    """A convex polygon, counter-clockwise; `points` of shape (n, 2) (length). Its corners are rounded by `radius`
+    (length), which makes it larger by that much all around.
+    """
 
     points: tuple[tuple[float, float], ...]
+    radius: float = 0.0
+
+
+@dataclass(frozen=True)
+class Segment:
+    """A line from `a` to `b` (length), `radius` thick on either side: what the floors and walls of games are."""
+
+    a: tuple[float, float]
+    b: tuple[float, float]
+    radius: float
 
 
 @dataclass(frozen=True)
@@ -57,7 +69,7 @@ class Curve:
     convex: bool = False
 
 
-Shape = Circle | Polygon | Curve
+Shape = Circle | Polygon | Segment | Curve
 
 
 @dataclass(frozen=True)
@@ -110,6 +122,18 @@ class Pivot:
 
 
 @dataclass(frozen=True)
+class Hinge:
+    """A revolute joint at the world's `point` (length) between two bodies, or one and the world (`b` empty).
+
+    What it joins does not collide with each other.
+    """
+
+    a: str
+    b: str
+    point: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class Trace:
     """States of all bodies, one row a frame, the start included.
 
@@ -148,6 +172,7 @@ class Scene:
     friction: float = 0.0
     elasticity: float = 0.0
     pivots: tuple[Pivot, ...] = ()
+    hinges: tuple[Hinge, ...] = ()
     size: float = 1.0
     pressure: float = G
     frame: float = 1 / 60

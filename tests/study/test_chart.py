@@ -10,7 +10,8 @@ import pytest
 
 from rigidarea.study import add_commands, bench, chart, draw
 from rigidarea.study.crowds import CROWDS
-from rigidarea.study.peers import get_peer, record
+from rigidarea.study.peers import get_peer, peers, record
+from rigidarea.study.scene import get_scene, scenes
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +78,75 @@ def test_only_fronts_are_timed():
     # a: as good as the best within the noise, too slow, failed, the most exact;
     # b: both below the resolution, so the slower goes; worse but cheaper; worse than standing still
     assert chart.on_front(tasks, results) == [True, True, False, False, True, True, False, True, False, True]
+
+
+def made_up(points):
+    """Rows of scenes from (scene, peer, settings, cost, error)."""
+    return [
+        {"scene": s, "peer": p, "settings": settings, "cost_s_per_s": cost, "error": error}
+        for s, p, settings, cost, error in points
+    ]
+
+
+USUAL = {"steps": 1, "iterations": 10, "slop": 1e-3}
+
+
+def test_default_beside_front_and_default():
+    """Our default is matched with the cheapest of the peer's that is as good, and with the peer's own default."""
+    rows = made_up(
+        [
+            ("rest", "rigidarea-default", {}, 2.0, 1e-3),
+            ("rest", "rigidarea", {"steps": 1}, 0.5, 1e-3),
+            ("rest", "pymunk", USUAL, 1.0, 1e-2),
+            ("rest", "pymunk", {**USUAL, "steps": 4}, 4.0, 1e-4),
+            ("rest", "pymunk", {**USUAL, "steps": 16}, 16.0, 1e-6),
+            ("stack", "rigidarea-default", {}, 1.0, 1e-7),
+            ("stack", "pymunk", USUAL, 1.0, 1e-6),
+            ("arch", "rigidarea-default", {}, 1.0, 8.0),
+            ("arch", "pymunk", USUAL, 2.0, None),
+            ("gears", "rigidarea", {"steps": 1}, 1.0, 1e-3),
+            ("gears", "pymunk", {**USUAL, "sampling": 1e-3}, 2.0, 1e-3),
+        ]
+    )
+    rest, stack, fallen, none = chart.summarise(rows)
+    assert rest["cost_ratio_at_matched_error"] == 0.5 / 4  # the front, with all of our settings
+    assert rest["default_cost_ratio"] == 2.0 / 4
+    assert (rest["defaults_cost_ratio"], rest["defaults_error_ratio"]) == (2.0, pytest.approx(0.1))
+    assert (stack["default_cost_ratio"], stack["defaults_error_ratio"]) == (
+        1.0,
+        1.0,
+    )  # both below the resolution
+    assert fallen["default_error"] == fallen["peer_default_error"] == np.inf
+    assert fallen["default_cost_ratio"] == np.inf and np.isnan(fallen["defaults_error_ratio"])
+    assert "default_error" not in none  # ours was not run
+    counted = chart.summarise_defaults([rest, stack, fallen, none])[0]
+    assert counted == {
+        **{"peer": "pymunk", "scenes": 4, "front_even": 3, "scenes_default": 3, "default_even": 2},
+        **{"default_failed": 1, "peer_default_failed": 1, "no_dearer": 2, "no_worse": 3, "both": 2},
+    }
+
+
+@pytest.mark.parametrize("quick", [True, False])
+def test_defaults_are_among_the_settings(quick):
+    """What counts as an engine's default is swept, in every scene, once."""
+    for scene in scenes().values():
+        for peer in peers().values():
+            default = peer.default(scene)
+            if default is not None:
+                assert peer.settings(scene, quick).count(dict(default)) == 1, (scene.name, peer.name)
+
+
+def test_defaults_are_timed_and_drawn(charted, tmp_path):
+    """pymunk's default in its row, timed like a front's point though no front has it, and in the pictures."""
+    _, report = charted
+    usual = [row for row in report["results"] if row["default"]]
+    assert [(row["scene"], row["peer"]) for row in usual] == [("rest", "pymunk"), ("bowl_slide", "pymunk")]
+    assert all(row["repeats"] == report["settings"]["repeats"] for row in usual)
+    assert draw.chart_defaults(report, tmp_path) == []  # ours is not among these two engines
+    rows = made_up([("rest", "rigidarea-default", {}, 2.0, 1e-3), ("rest", "pymunk", USUAL, 1.0, None)])
+    described = [chart.describe(get_scene("rest"))]
+    drawn = draw.chart_defaults({"summary": chart.summarise(rows), "scenes": described}, tmp_path)
+    assert all(path.exists() for path in drawn) and len(drawn) == 2
 
 
 def test_smaller_steps_cost_more(charted):

@@ -12,17 +12,20 @@ def report():
     """Two made-up scenes: one in which we lose, one in which nothing of the peer's is out of reach."""
     points = {
         ("rest", "rigidarea"): [(1.0, 1e-2), (10.0, 1e-3)],
+        ("rest", "rigidarea-default"): [(2.0, 1e-2)],
         ("rest", "pymunk"): [(0.1, 1e-2), (1.0, 1e-5)],
         ("gears", "rigidarea"): [(1.0, 1e-3)],
         ("gears", "pymunk"): [(10.0, 1e-2)],
     }
     rows = [
-        {"scene": s, "peer": p, "settings": {"n": i}, "error": e, "cost_s_per_s": c}
+        {"scene": s, "peer": p, "settings": {} if "default" in p else {"n": i}, "error": e, "cost_s_per_s": c}
         for (s, p), found in points.items()
         for i, (c, e) in enumerate(found)
     ]
     described = [chart.describe(get_scene(name)) for name in ("rest", "gears")]
-    return {"results": rows, "summary": chart.summarise(rows), "scenes": described}
+    summary = chart.summarise(rows)
+    counted = chart.summarise_defaults(summary)
+    return {"results": rows, "summary": summary, "summary_defaults": counted, "scenes": described}
 
 
 def test_dominated_lists_only_losses(monkeypatch):
@@ -35,8 +38,35 @@ def test_dominated_lists_only_losses(monkeypatch):
 
 def test_ratios_and_known_well():
     """Every scene has a line; a peer's best setting is told."""
-    assert "| involute gears, 20 : 30 | `gears` | 0.01 | 0.1 |" in page.ratios(report())
+    assert "| involute gears, 20 : 30 | `gears` | 0.01 | 0.1 | 0.1 | – |" in page.ratios(report())
     assert "| pymunk | `rest` | one box, persistent contact | 1e-5 | 1 | n 1 |" in page.known_well(report())
+
+
+def test_defaults():
+    """A line a scene that our default was run on, and the count."""
+    lines = page.defaults(report()).splitlines()
+    # twice our front's cost; pymunk does as well at a twentieth
+    assert lines[2] == "| box at rest | 0.01 | 2 | – | – | 20 |"
+    assert lines[4].startswith(
+        "- pymunk: our whole front is no dearer than its front on 1 of 2 scenes; our default"
+    )
+
+
+def test_everyday():
+    """A line a scene: times, the ratio, what is left of the motion."""
+    row = {
+        **{"title": "a pit", "bodies": 3, "steps_per_frame": 2, "frame_ms_median": 0.2, "native_1_ms": 0.1},
+        **{"native_4_ms": 0.4, "box2d_ms": None, "ratio": 2.0, "speed_left": 0.5, "native_4_speed_left": 1.0},
+        **{
+            "box2d_speed_left": None,
+            "contacts": 3.0,
+            "native_contacts": 4.0,
+            "inside": False,
+            "judged": True,
+        },
+    }
+    table = page.everyday({"results": [row]}).splitlines()
+    assert table[2] == "| a pit | 3 | 2 | 0.2 | 0.1 | 0.4 | – | 2 | 0.5 | 1 | – | 3 | 4 | no |"
 
 
 def test_causes_are_of_scenes():
@@ -46,7 +76,15 @@ def test_causes_are_of_scenes():
 
 @pytest.mark.parametrize(
     "value,text",
-    [(None, "∞"), (math.inf, "∞"), (0.0, "0"), (0.123, "0.12"), (1.5e-5, "2e-5"), (12345.0, "1e4")],
+    [
+        (None, "∞"),
+        (math.inf, "∞"),
+        (0.0, "0"),
+        (0.123, "0.12"),
+        (1.5e-5, "2e-5"),
+        (156.7, "160"),
+        (12345.0, "1e4"),
+    ],
 )
 def test_numbers(value, text):
     """Two digits; powers where they are shorter."""
@@ -72,7 +110,7 @@ def test_page_has_a_place_for_every_table():
     from pathlib import Path
 
     text = (Path(__file__).parents[2] / "docs" / "study.md").read_text()
-    for name in ("ratios", "dominated", "known_well", "maps"):
+    for name in ("ratios", "defaults", "dominated", "known_well", "maps", "everyday"):
         assert f"<!-- {name} -->" in text
 
 

@@ -4,7 +4,6 @@ import math
 
 import numpy as np
 
-from ...kernel.impact import damping_ratio
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge
 from ..peers import get_peer
 from ..scene import VY, Array, G, Scene, block, floor
@@ -12,6 +11,12 @@ from ..scene import VY, Array, G, Scene, block, floor
 STEPS, LAST, K = 3000, 50, 1e5
 OMEGA = math.sqrt(K)
 """ω = sqrt(k L/m) of a unit box of unit mass."""
+
+
+def damping_ratio(elasticity: float) -> float:
+    """ζ of the linear spring and dashpot that give a body back `elasticity` (> 0) of its speed after half a swing."""
+    loss = -math.log(elasticity)
+    return loss / math.hypot(math.pi, loss)
 
 
 def growth(phase: float, elasticity: float, variant: Variant) -> float:

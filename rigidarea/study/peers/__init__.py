@@ -3,9 +3,9 @@
 How they are set, so that each does what it can:
 
 - *Stepping.* pymunk's solver and rigidarea's explicit steps run from the same loop in C, one foreign call of Chipmunk's
-  own step function a step (`base.drive`), Box2D from it through its binding; `rigidarea` and the flexible submodule's
-  levels take all their steps in one call, as a user may; `rigidarea-frame` is called from Python every frame, as a game
-  does. What a step of an empty world costs is in the output of `bench frames` (`call_overhead_us`).
+  own step function a step (`base.drive`), Box2D from it through its binding; `rigidarea`, `rigidarea-default`
+  and the flexible submodule's levels take all their frames in one call, as a user may. What a step of an empty world
+  costs is in the output of `bench frames` (`call_overhead_us`).
 - *Building* is not timed, nor is the first run. Repeats are interleaved over all settings of a scene; see `timing`.
 - *pymunk*: steps a frame, iterations and the collision slop (a fraction of the body size; its default is meant for
   pixels) are swept; the bias is pymunk's.

@@ -1,17 +1,24 @@
-"""rigidarea itself, the rigid level: frames in so many steps, frames as the library cuts them, explicit steps."""
+"""rigidarea itself, the rigid level: its settings swept, its defaults, and the paper's explicit steps."""
 
 from __future__ import annotations
 
 import math
 from typing import Any
 
+import numpy as np
 import pymunk
+import shapely
 
 import rigidarea
 
-from ..scene import Body, Circle, Polygon, Scene
-from .base import Run, Settings, drive, has_curves, rigid_only
-from .chipmunk import SpaceRun, add_pivots, make_body, surface
+from ..scene import Body, Circle, Polygon, Scene, Segment
+from .base import Run, Settings, has_curves, rigid_only
+from .chipmunk import SpaceRun, add_joints, make_body, surface
+
+STEPPING = ("steps", "tolerance", "phase")
+"""Settings that say how the space is stepped."""
+BUILDING = ("stiffness", "sampling", "iterations")
+"""Settings that say how it is built; what is neither goes to `rigidarea.attach` as it is."""
 
 
 def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[pymunk.Shape]:
@@ -24,7 +31,9 @@ def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[
                 circle.outline = rigidarea.Outline.from_pymunk(circle, tolerance)  # type: ignore[attr-defined]
             shapes.append(circle)
         elif isinstance(shape, Polygon):
-            shapes.append(pymunk.Poly(made, shape.points))
+            shapes.append(pymunk.Poly(made, shape.points, radius=shape.radius))
+        elif isinstance(shape, Segment):
+            shapes.append(pymunk.Segment(made, shape.a, shape.b, shape.radius))
         else:
             outer, holes = shape.rings(1e-3 if tolerance is None else tolerance)
             shapes.append(rigidarea.Outline(outer, holes).add_to(made))
@@ -34,11 +43,14 @@ def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[
 def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pymunk.Body], Any]:
     """A space with the scene's bodies and area contact attached: (space, bodies, contact).
 
-    Settings: `stiffness` in multiples of the scene's pressure (none: the library chooses); `sampling` of
-    curves over the body size; `phase`; any other setting but `steps` goes to `rigidarea.attach`.
+    Settings: `stiffness` in multiples of the scene's pressure (none: the library chooses); `sampling` of curves over
+    the body size; `iterations` of the solver; those of `STEPPING` are for whoever steps; any other goes to
+    `rigidarea.attach`.
     """
     space = pymunk.Space()
     space.gravity = scene.gravity
+    if "iterations" in settings:
+        space.iterations = settings["iterations"]
     sampling = settings.get("sampling")
     made: dict[str, pymunk.Body] = {}
     for body in scene.bodies:
@@ -47,53 +59,79 @@ def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pym
         for shape in shapes:
             surface(shape, scene, body)
         space.add(made[body.name], *shapes)
-    add_pivots(scene, space, made)
-    more = {k: v for k, v in settings.items() if k not in ("stiffness", "sampling", "phase", "steps")}
+    add_joints(scene, space, made)
+    more = {k: v for k, v in settings.items() if k not in (*STEPPING, *BUILDING)}
     stiffness = settings.get("stiffness")
     contact = rigidarea.attach(space, None if stiffness is None else stiffness * scene.pressure, **more)
-    if "phase" in settings:
-        contact.phase = settings["phase"]
-    contact.max_steps = 10**6
     return space, list(made.values()), contact
 
 
-class StepRun(SpaceRun):
-    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
+class FrameRun(SpaceRun):
+    """Frames by `contact.step`, all in one call, in machine code: at the defaults, or with `steps` or `tolerance`."""
 
     def __init__(
-        self,
-        scene: Scene,
-        space: pymunk.Space,
-        bodies: list[pymunk.Body],
-        contact: Any,
-        steps: int | None = None,
+        self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, settings: Settings
     ) -> None:
-        super().__init__(scene, space, bodies, contact.steps(scene.frame) if steps is None else steps)
-        self.contact, self.frame, self.wanted = contact, scene.frame, steps
-
-
-class FrameRun(StepRun):
-    """Frames in so many steps each: `contact.step(1/60, frames, steps)`, all in one call, in machine code."""
+        super().__init__(scene, space, bodies, settings.get("steps", 1))
+        self.contact, self.frame = contact, scene.frame
+        self.wanted = {name: settings[name] for name in ("steps", "tolerance") if name in settings}
 
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; a contact that fails leaves states that are not finite."""
         try:
-            self.take(frames)
+            taken = self.contact.step(self.frame, frames, **self.wanted)
         except rigidarea.SimulationError:
             for body in self.bodies:
                 body.position = (math.nan, math.nan)
+            return
+        self.steps = math.ceil(taken / frames)
 
-    def take(self, frames: int) -> None:
-        """The call itself."""
-        self.contact.step(self.frame, frames, self.wanted)
+    def contacts(self) -> int:
+        """Pairs of shapes that touch."""
+        return len({(id(row["shape_a"]), id(row["shape_b"])) for row in self.contact.regions})
 
 
-class GameRun(FrameRun):
-    """Frames as a game asks for them, one by one from Python: `contact.step(1/60)`."""
+FACE_DEPTH = 0.02
+"""How deep a straight edge is pressed into an outline, over the outline's extent, for the chord that it cuts off."""
+MOST_SIDES = 64
+"""Of a hull, along which that is tried."""
 
-    def take(self, frames: int) -> None:
-        """A call a frame."""
-        drive(self.contact.step, frames, self.frame)
+
+def explicit_steps(scene: Scene, space: pymunk.Space, stiffness: float, phase: float) -> int:
+    """Explicit steps a frame that no contact of the scene takes at more than w h = `phase`.
+
+    w² = k L/m_eff for the longest chord L with which a body can lie on a straight edge, 1/m_eff = 1/m + d²/I with d
+    the chord's leverage. A chain of such bodies has no frequency above twice that (Gershgorin), and the step is
+    that chain's: a phase of 2 is where a stack, undamped, goes unstable.
+    """
+    worst = 0.0
+    for shape in space.shapes:
+        body = shape.body
+        if body is not None and body.body_type == pymunk.Body.DYNAMIC:
+            outline = getattr(shape, "outline", None) or rigidarea.Outline.from_pymunk(shape)
+            for chord, arm in _faces(outline.polygon):
+                worst = max(worst, chord * (1 / body.mass + arm**2 / body.moment))
+    frequency = 2 * math.sqrt(stiffness * worst)
+    return max(1, math.ceil(scene.frame * frequency / phase))
+
+
+def _faces(polygon: shapely.Polygon) -> list[tuple[float, float]]:
+    """(chord, its middle's distance from the origin along itself) of what lines along the hull's sides cut off."""
+    hull = shapely.orient_polygons(polygon.convex_hull)
+    ring = np.asarray(hull.exterior.coords)
+    sides = np.diff(ring, axis=0)[:: max(1, (len(ring) - 1) // MOST_SIDES)]
+    extent = max(np.ptp(ring[:, 0]), np.ptp(ring[:, 1]))
+    found = []
+    for along in sides / np.hypot(*sides.T)[:, None]:
+        outwards = np.array((along[1], -along[0]))
+        level = np.max(ring @ outwards) - FACE_DEPTH * extent
+        middle = level * outwards + np.mean(ring @ along) * along
+        line = shapely.LineString((middle - 2 * extent * along, middle + 2 * extent * along))
+        for piece in shapely.get_parts(polygon.intersection(line)):
+            if piece.length > 0:
+                where = np.asarray(piece.coords) @ along
+                found.append((float(np.ptp(where)), float(abs(where.mean()))))
+    return found
 
 
 def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
@@ -109,59 +147,68 @@ def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
 
 
 class Area:
-    """Frames in a given number of steps, contacts too stiff for the step taken implicitly (`integration`).
+    """Frames as a user may tune them: stiffness, steps a frame, iterations.
 
-    Settings: `stiffness`, `steps` a frame, `sampling`; see `area_space`.
+    Settings: `stiffness` (or `penetration`, from which the library chooses it), `steps` a frame, `iterations` of a
+    step, `sampling`; see `area_space`.
     """
 
     name = "rigidarea"
     ours = True
+
+    def default(self, scene: Scene) -> Settings | None:
+        """The library's defaults are a peer of their own."""
+        return None
 
     def refuses(self, scene: Scene) -> str:
         """What only elastic bodies answer."""
         return rigid_only(scene)
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
-        """Stiffness × steps × sampling."""
+        """Stiffness or penetration × steps × iterations × sampling."""
         stiffness = (1e6, 1e12) if quick else (1e4, 1e6, 1e8, 1e12)
+        knobs: list[dict[str, float]] = [{"stiffness": value} for value in stiffness]
+        if scene.gravity != (0.0, 0.0) and not quick:
+            knobs += [{"penetration": value} for value in (1e-3, 1e-5)]
         steps = (1, 4, 16) if quick else (1, 2, 4, 8, 16, 32, 64)
+        # one body's contacts are solved in a few sweeps; piles and trains want more, as pymunk's do
+        more = scene.tags & {"stack", "gears"} and not quick
+        iterations: list[dict[str, int]] = [{}, {"iterations": 40}] if more else [{}]
         return [
-            {"stiffness": k, "steps": n, **sampling}
-            for k in stiffness
+            {**knob, "steps": n, **sweeps, **sampling}
+            for knob in knobs
             for n in steps
+            for sweeps in iterations
             for sampling in area_samplings(scene, quick)
         ]
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by frames."""
-        return FrameRun(scene, *area_space(scene, settings), settings.get("steps"))
+        return FrameRun(scene, *area_space(scene, settings), settings)
 
 
-class AreaFrames(Area):
-    """As a user runs it: `attach(space)` and `contact.step(frame)`, stiffness and steps chosen by the library.
+class AreaDefault(Area):
+    """As a user runs it who reads one line of the README: `attach(space)` and `contact.step(1/60)`, nothing else."""
 
-    Settings: the `penetration` allowed, or `stiffness` where there is no gravity to choose it by; `phase`; `sampling`.
-    """
+    name = "rigidarea-default"
 
-    name = "rigidarea-frame"
+    def refuses(self, scene: Scene) -> str:
+        """Also that from which no stiffness can be chosen: without gravity, with nothing free that moves."""
+        if rigid_only(scene) or scene.gravity != (0.0, 0.0):
+            return rigid_only(scene)
+        try:
+            area_space(scene, {})
+        except ValueError as error:
+            return str(error)
+        return ""
+
+    def default(self, scene: Scene) -> Settings:
+        """All there is."""
+        return {}
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
-        """Penetration or stiffness × phase × sampling."""
-        values = (2e-4,) if quick else (1e-2, 1e-3, 2e-4, 1e-5)
-        knobs: list[dict[str, float]] = [{"penetration": value} for value in values]
-        if scene.gravity == (0.0, 0.0):
-            knobs = [{"stiffness": value} for value in ((1e2, 1e4) if quick else (1e2, 1e4, 1e6))]
-        phases: list[dict[str, float]] = [{}] if quick else [{}, {"phase": 2.0}]
-        return [
-            {**knob, **phase, **sampling}
-            for knob in knobs
-            for phase in phases
-            for sampling in area_samplings(scene, quick)
-        ]
-
-    def build(self, scene: Scene, settings: Settings) -> Run:
-        """An attached space, stepped frame by frame."""
-        return GameRun(scene, *area_space(scene, settings))
+        """None to choose among."""
+        return [{}]
 
 
 class AreaExplicit(Area):
@@ -184,9 +231,31 @@ class AreaExplicit(Area):
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by Chipmunk's own function."""
-        return StepRun(
-            scene, *area_space(scene, {"integration": "explicit", **settings}), settings.get("steps")
-        )
+        return explicit_run(scene, settings, {})
 
 
-PEERS = (Area(), AreaFrames(), AreaExplicit())
+PHASE = 0.5
+"""w h of explicit steps for which no phase is set."""
+
+
+class StepRun(SpaceRun):
+    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
+
+    def __init__(
+        self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, steps: int
+    ) -> None:
+        super().__init__(scene, space, bodies, steps)
+        self.contact = contact
+
+
+def explicit_run(scene: Scene, settings: Settings, more: Settings) -> StepRun:
+    """Explicit steps with `settings`; `more` goes to `rigidarea.attach`."""
+    space, bodies, contact = area_space(scene, {"integration": "explicit", **settings, **more})
+    steps = settings.get("steps")
+    if steps is None:
+        k = settings["stiffness"] * scene.pressure if "stiffness" in settings else contact.stiffness
+        steps = explicit_steps(scene, space, k, settings.get("phase", PHASE))
+    return StepRun(scene, space, bodies, contact, steps)
+
+
+PEERS = (Area(), AreaDefault(), AreaExplicit())

@@ -14,7 +14,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ..scene import ANGLE, Array, Polygon, Scene, Trace
+from ..scene import ANGLE, Array, Circle, Curve, Scene, Trace
 
 Settings = Mapping[str, Any]
 """Knobs of one run: plain numbers and strings, so that they can be written down and compared."""
@@ -48,6 +48,9 @@ class Peer(Protocol):
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """The settings to sweep, in order of growing cost where that is known."""
 
+    def default(self, scene: Scene) -> Settings | None:
+        """Those of `settings` with which its users find it; None for what nobody finds as it is."""
+
     def build(self, scene: Scene, settings: Settings) -> Run:
         """Set the scene up."""
 
@@ -80,8 +83,8 @@ def record(run: Run, scene: Scene, frames: int | None = None) -> Trace:
 
 
 def has_curves(scene: Scene) -> bool:
-    """Whether anything in the scene is more than a polygon."""
-    return any(not isinstance(shape, Polygon) for body in scene.bodies for shape in body.shapes)
+    """Whether anything in the scene is a circle or another curve."""
+    return any(isinstance(shape, Circle | Curve) for body in scene.bodies for shape in body.shapes)
 
 
 def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:

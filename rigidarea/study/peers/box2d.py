@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..decompose import convex_pieces
-from ..scene import Array, Body, Circle, Polygon, Scene
+from ..scene import Array, Body, Circle, Polygon, Scene, Segment
 from .base import Run, Settings, drive, rigid_only, samplings
 
 MOST_VERTICES = 8
@@ -42,7 +42,7 @@ class WorldRun:
         self.world.sleeping_enabled = False  # a sleeping scene would cost nothing and prove nothing
         tolerance = settings.get("sampling", 1e-3) * scene.size
         self.bodies = [self._add(pyb2d3, scene, body, tolerance) for body in scene.bodies]
-        self._pivots(scene)
+        self._joints(scene)
 
     def _add(self, b2: Any, scene: Scene, body: Body, tolerance: float) -> Any:
         make = {
@@ -68,7 +68,11 @@ class WorldRun:
             if isinstance(shape, Circle):
                 made.create_shape(definition, b2.circle(self._scaled(shape.center), self.unit * shape.radius))
             elif isinstance(shape, Polygon):
-                made.create_shape(definition, b2.polygon(self.unit * np.array(shape.points)))
+                made.create_shape(definition, self._polygon(b2, shape))
+            elif isinstance(shape, Segment):
+                ends = self._scaled(shape.a), self._scaled(shape.b)
+                thick = self.unit * shape.radius
+                made.create_shape(definition, b2.capsule(*ends, thick) if thick else b2.segment(*ends))
             elif body.kind == "static":
                 outer, holes = shape.rings(tolerance)
                 for ring in (outer, *holes):
@@ -83,9 +87,14 @@ class WorldRun:
         if body.kind == "dynamic":
             data = made.mass_data
             data.mass, data.center = body.mass, (0.0, 0.0)
-            data.rotational_inertia = body.moment * self.unit**2
+            # Box2D's bodies that do not turn have no inertia
+            data.rotational_inertia = body.moment * self.unit**2 if math.isfinite(body.moment) else 0.0
             made.mass_data = data
         return made
+
+    def _polygon(self, b2: Any, shape: Polygon) -> Any:
+        points = self.unit * np.array(shape.points)
+        return b2.polygon(points, radius=self.unit * shape.radius) if shape.radius else b2.polygon(points)
 
     def _scaled(self, point: tuple[float, float]) -> tuple[float, float]:
         return self.unit * point[0], self.unit * point[1]
@@ -97,8 +106,8 @@ class WorldRun:
         turned = ring if (area > 0) != hole else ring[::-1]
         return np.ascontiguousarray(self.unit * turned, dtype=np.float32)
 
-    def _pivots(self, scene: Scene) -> None:
-        if not scene.pivots:
+    def _joints(self, scene: Scene) -> None:
+        if not scene.pivots and not scene.hinges:
             return
         ground = self.world.create_static_body(position=(0.0, 0.0))
         index = {body.name: i for i, body in enumerate(scene.bodies)}
@@ -113,6 +122,10 @@ class WorldRun:
                 max_motor_torque=pivot.brake * self.unit**2,
                 motor_speed=0.0,
             )
+        for hinge in scene.hinges:
+            ends = self.bodies[index[hinge.a]], self.bodies[index[hinge.b]] if hinge.b else ground
+            anchors = [body.local_point(self._scaled(hinge.point)) for body in ends]
+            self.world.create_revolute_joint(*ends, local_anchor_a=anchors[0], local_anchor_b=anchors[1])
 
     def advance(self, frames: int) -> None:
         """World steps, called from a C loop."""
@@ -174,6 +187,11 @@ class Box2D:
             for stiff, length in kinds
             for sampling in samplings(scene, quick)
         ]
+
+    def default(self, scene: Scene) -> Settings:
+        """One step of four substeps a frame, contacts of 30 Hz, bodies about a metre in size."""
+        sampling = {"sampling": 1e-3} if samplings(scene, True) != [{}] else {}
+        return {"steps": 1, "substeps": 4, "stiff": False, "length": 1, **sampling}
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A world of Box2D shapes."""

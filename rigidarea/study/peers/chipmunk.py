@@ -10,7 +10,7 @@ import pymunk
 from pymunk._chipmunk_cffi import lib
 
 from ..decompose import convex_pieces
-from ..scene import Array, Body, Circle, Curve, Polygon, Scene
+from ..scene import Array, Body, Circle, Curve, Polygon, Scene, Segment
 from .base import Run, Settings, drive, rigid_only, samplings
 
 
@@ -35,7 +35,9 @@ def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymun
         if isinstance(shape, Circle):
             shapes.append(pymunk.Circle(made, shape.radius, shape.center))
         elif isinstance(shape, Polygon):
-            shapes.append(pymunk.Poly(made, shape.points))
+            shapes.append(pymunk.Poly(made, shape.points, radius=shape.radius))
+        elif isinstance(shape, Segment):
+            shapes.append(pymunk.Segment(made, shape.a, shape.b, shape.radius))
         elif shape.convex:
             shapes.append(pymunk.Poly(made, shape.rings(tolerance)[0].tolist()))
         elif body.kind == "static":
@@ -61,8 +63,13 @@ def _chain(made: pymunk.Body, ring: Array) -> list[pymunk.Segment]:
     return chain
 
 
-def add_pivots(scene: Scene, space: pymunk.Space, bodies: dict[str, pymunk.Body]) -> None:
-    """Revolute joints to the world, with a motor at rest as brake."""
+def add_joints(scene: Scene, space: pymunk.Space, bodies: dict[str, pymunk.Body]) -> None:
+    """Revolute joints; those of pivots to the world, with a motor at rest as brake."""
+    for hinge in scene.hinges:
+        other = bodies[hinge.b] if hinge.b else space.static_body
+        joint = pymunk.PivotJoint(bodies[hinge.a], other, hinge.point)
+        joint.collide_bodies = False
+        space.add(joint)
     for pivot in scene.pivots:
         made = bodies[pivot.body]
         joint = pymunk.PivotJoint(space.static_body, made, made.position)
@@ -84,6 +91,13 @@ class SpaceRun:
     def advance(self, frames: int) -> None:
         """Steps straight through Chipmunk: pymunk's bookkeeping (0.4 µs a step) is not counted either."""
         drive(lib.cpSpaceStep, frames * self.steps, self.space._space, self.h)
+
+    def contacts(self) -> int:
+        """Pairs of shapes that touch."""
+        pairs: set[frozenset[pymunk.Shape]] = set()
+        for body in self.bodies:
+            body.each_arbiter(lambda arbiter: pairs.add(frozenset(arbiter.shapes)))
+        return len(pairs)
 
     def state(self) -> Array:
         """States (n_body, 6)."""
@@ -127,6 +141,11 @@ class Chipmunk:
             for sampling in samplings(scene, quick)
         ]
 
+    def default(self, scene: Scene) -> Settings:
+        """One step a frame, ten iterations; the slop, 0.1 by default, as on bodies of 100 pixels."""
+        sampling = {"sampling": 1e-3} if samplings(scene, True) != [{}] else {}
+        return {"steps": 1, "iterations": 10, "slop": 1e-3, **sampling}
+
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A space of pymunk's own shapes."""
         space = pymunk.Space()
@@ -141,9 +160,9 @@ class Chipmunk:
             for shape in shapes:
                 surface(shape, scene, body)
             space.add(made[body.name], *shapes)
-        add_pivots(scene, space, made)
+        add_joints(scene, space, made)
         return SpaceRun(scene, space, list(made.values()), settings["steps"])
 
 
 PEER = Chipmunk()
-__all__ = ["PEER", "Chipmunk", "Curve", "SpaceRun", "add_pivots", "make_body", "surface"]
+__all__ = ["PEER", "Chipmunk", "Curve", "SpaceRun", "add_joints", "make_body", "surface"]

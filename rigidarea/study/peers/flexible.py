@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...outline import Outline
-from ..scene import ANGLE, Array, Body, Circle, Polygon, Scene, Shape, full_circle, get_scene
+from ..scene import ANGLE, Array, Body, Circle, Polygon, Scene, Segment, Shape, full_circle, get_scene
 from .base import Run, Settings, has_curves
 
 MARGIN = 0.05
@@ -26,6 +26,8 @@ def shape_rings(shape: Shape, tolerance: float) -> list[Array]:
         return [full_circle(shape.radius, tolerance) + np.array(shape.center)]
     if isinstance(shape, Polygon):
         return [np.array(shape.points, dtype=np.float64)]
+    if isinstance(shape, Segment):
+        raise ValueError("expected a shape with an outline of its own, got a Segment")
     outer, holes = shape.rings(tolerance)
     return [_turned(outer, 1.0), *(_turned(hole, -1.0) for hole in holes)]
 
@@ -183,6 +185,10 @@ class Flexible:
             for rho in rhos
             for more in finer
         ]
+
+    def default(self, scene: Scene) -> None:
+        """A submodule that is set up by hand."""
+        return None
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A simulation at this level."""

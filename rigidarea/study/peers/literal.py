@@ -17,7 +17,7 @@ import shapely
 from ...kernel.jit import njit
 from ...outline import Outline
 from ..scene import Array, Scene
-from .area import AreaExplicit, StepRun, area_space
+from .area import AreaExplicit, explicit_run
 from .base import Run, Settings
 
 EXPONENT = 0.5
@@ -69,10 +69,8 @@ class Literal(AreaExplicit):
         """An attached space whose contacts have to pass the gate."""
         more = {k: v for k, v in settings.items() if k != "spacing"}
         spacing = settings.get("spacing", math.inf) * scene.size
-        space, bodies, contact = area_space(
-            scene, {"integration": "explicit", **more, "direction": "nodal", "exponent": EXPONENT}
-        )
-        for shape in space.shapes:
+        made = explicit_run(scene, more, {"direction": "nodal", "exponent": EXPONENT})
+        for shape in made.space.shapes:
             outline = Outline.from_pymunk(shape)
             if math.isfinite(spacing):
                 outline = Outline.from_shapely(shapely.segmentize(outline.polygon, spacing))
@@ -81,9 +79,9 @@ class Literal(AreaExplicit):
             shape.nodes = np.concatenate(rings)  # type: ignore[attr-defined]
             shape.edges = np.concatenate([np.hstack((r, np.roll(r, -1, 0))) for r in rings])  # type: ignore[attr-defined]
             shape.collision_type = 1
-            contact.refresh(shape)
-        space.on_collision(1, 1, pre_solve=gate)
-        return StepRun(scene, space, bodies, contact, settings.get("steps"))
+            made.contact.refresh(shape)
+        made.space.on_collision(1, 1, pre_solve=gate)
+        return made
 
 
 PEER = Literal()

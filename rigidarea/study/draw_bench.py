@@ -1,0 +1,84 @@
+"""The pictures of `bench frames` and `bench everyday`."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .draw import colour, marker, pyplot, save
+from .records import Row
+
+
+def frame_times(report: Row, out: Path) -> list[Path]:
+    """Median frame time (a line to the 99th percentile) over the number of bodies, one panel a scene."""
+    plt = pyplot()
+    rows = report["results"]
+    scenes = list(dict.fromkeys(row["scene"] for row in rows))
+    figure, axes = plt.subplots(
+        1, len(scenes), figsize=(10, 4.2), sharey=True, squeeze=False, layout="constrained"
+    )
+    for ax, scene in zip(axes.flat, scenes, strict=True):
+        groups: dict[tuple[str, int], list[Row]] = {}
+        for row in rows:
+            if row["scene"] == scene:  # steps: 0 where the library chooses them
+                groups.setdefault((row["peer"], row["settings"].get("steps", 0)), []).append(row)
+        seen: list[str] = []
+        for (peer, steps), group in groups.items():
+            x = [row["bodies"] for row in group]
+            y = [row["frame_ms_median"] for row in group]
+            label = f"{peer}, {steps} step{'s' * (steps > 1)} a frame" if steps else peer
+            style = "-" if peer in seen else "--"
+            seen.append(peer)
+            ax.plot(
+                x,
+                y,
+                style if steps else "-",
+                color=colour(peer),
+                marker=marker(peer),
+                ms=5,
+                lw=1.6,
+                label=label,
+            )
+            ax.vlines(x, y, [row["frame_ms_p99"] for row in group], color=colour(peer), lw=1)
+        ax.axhline(1e3 / 60, color="#666666", lw=1, ls=":")
+        ax.text(0.02, 1e3 / 60 * 1.1, "60 frames a second", transform=ax.get_yaxis_transform(), fontsize=7.5)
+        ax.set(xscale="log", yscale="log", xlabel="bodies", title=scene)
+    axes[0, 0].set_ylabel("frame time (ms): median, bar to 99th percentile")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return save(figure, out, "bench-frames")
+
+
+def everyday_times(report: Row, out: Path) -> list[Path]:
+    """Median frame of every game scene over that of pymunk's one step, a line a scene."""
+    plt = pyplot()
+    rows = list(reversed([row for row in report["results"] if row["native_1_ms"]]))
+    if not rows:
+        return []
+    figure, ax = plt.subplots(figsize=(10, 1.6 + 0.34 * len(rows)), layout="constrained")
+    kinds = (
+        ("frame_ms_median", "rigidarea-default", "rigidarea, the default"),
+        ("native_1_ms", "pymunk", "pymunk, one step a frame"),
+        ("native_4_ms", "pymunk", "pymunk, four"),
+        ("box2d_ms", "box2d", "Box2D v3, four substeps"),
+    )
+    for key, peer, label in kinds:
+        found = [(row[key] / row["native_1_ms"], y) for y, row in enumerate(rows) if row[key]]
+        hollow = {"mfc": "white"} if key == "native_4_ms" else {}
+        ax.plot(*zip(*found), ls="", marker=marker(peer), color=colour(peer), ms=8, label=label, **hollow)
+    for y, row in enumerate(rows):
+        ax.text(
+            1.01,
+            y,
+            f"{row['native_1_ms']:.3g} ms",
+            transform=ax.get_yaxis_transform(),
+            va="center",
+            fontsize=8,
+        )
+    names = [f"{row['title']}{'' if row['judged'] else ' *'}" for row in rows]
+    ax.set_yticks(range(len(rows)), names)
+    ax.set(xscale="log", xlabel="frame time over that of pymunk's one step, which stands on the right")
+    ax.xaxis.set_major_formatter("{x:g}")
+    ax.axvline(1, color="#666666", lw=1)
+    note = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "center"}
+    ax.annotate("* shown, not in the summary", (0, 0), (-8, -30), fontsize=8, **note)
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return save(figure, out, "bench-everyday")
