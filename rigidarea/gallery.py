@@ -153,7 +153,7 @@ def decompose(space: pymunk.Space) -> int:
         if not isinstance(outline, Outline) or outline.two_sided:
             continue
         if outline not in known:
-            rings = [np.asarray(ring) for ring in outline.rings]
+            rings = [np.asarray(ring) for ring in outline.polygon_rings]
             known[outline] = (
                 rings[:1] if outline.convex else convex_pieces((rings[0], tuple(rings[1:])), most=12)
             )

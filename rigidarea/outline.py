@@ -1,50 +1,58 @@
-"""What a body's boundary is: rings with holes, sampled by a chord tolerance, with exact mass properties.
+"""What a body's boundary is: rings of straight edges and circular arcs, holes, exact mass properties.
 
 Conventions: lengths in the unit of the space; points are `(n, 2)` arrays in body coordinates (pymunk's
 local coordinates); the outer ring runs counter-clockwise and holes clockwise, so the solid is always on the
 left of an edge; no ring repeats its first point at the end.
 
-Curves become chords. `tolerance` is everywhere the same length: the largest sagitta of a chord. Arcs are
+Circles and rounded corners are kept as arcs (`Outline.arcs`, see `arcs.py`), and contact, mass and moment are
+those of the arcs. Other curves (involutes) become chords, and so do arcs where somebody asks for points:
+`sample(tolerance)`. `tolerance` is everywhere the same length: the largest sagitta of a chord. Arcs are
 sampled so that the **area is kept exactly**: the vertices lie a little outside the arc and the chords'
 middles a little inside (2/3 and 1/3 of the sagitta on a full circle), because a force proportional to area
-feels area, not vertices. The inertia of a disc is then right to fourth order in the chord's angle. Without
-a tolerance a curve gets `DEFAULT_TOLERANCE` times half the smaller extent of its shape (for a disc: its
-radius).
+feels area, not vertices. The inertia of a disc is then right to fourth order in the chord's angle.
+`DEFAULT_TOLERANCE` times half the smaller extent of a shape is the tolerance where none is given.
 """
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any
 
 import numpy as np
 import pymunk
 import shapely
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Points = NDArray[np.float64]
+from . import arcs as curves
+from .arcs import Points, arc_points, circle_points
 
 DEFAULT_TOLERANCE = 5e-5
-"""Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc gets 316 points. An eighth
-of the penetration that `attach` allows by default, so that a rolling disc hardly feels its facets. Contacts cost what
-the contact is, not the outline."""
+"""Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
+eighth of the penetration that `attach` allows by default, so that what rolls on a sampled curve hardly feels its
+facets. Contacts cost what the contact is, not the outline."""
 
 SEGMENT_THICKNESS = 2.0
 """Depth of the solid behind a segment of radius 0 over the segment's length (dimensionless). See
 `Outline.from_pymunk`."""
-
-MIN_CHORDS = 3
-"""Fewest chords of an arc with fixed ends: from 3 on, keeping the area moves no vertex further than the
-sagitta."""
 
 MAX_STAND_IN_VERTICES = 8
 """Most vertices of a polygonal stand-in: Chipmunk's GJK walks them all."""
 
 _EPS = float(np.finfo(np.float64).eps)
 _LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
+
+__all__ = [
+    "DEFAULT_TOLERANCE",
+    "SEGMENT_THICKNESS",
+    "Outline",
+    "Points",
+    "arc_points",
+    "circle_points",
+    "positive",
+]
 
 
 class Outline:
@@ -61,7 +69,12 @@ class Outline:
     """
 
     rings: tuple[Points, ...]
-    """Read-only float64 arrays (n, 2): [0] the outer ring, counter-clockwise; the rest holes, clockwise."""
+    """Read-only float64 arrays (n, 2): [0] the outer ring, counter-clockwise; the rest holes, clockwise. Where there
+    are `arcs` these are the ends of edges, not a polygon: whoever wants one takes `sample(tolerance)`."""
+    arcs: tuple[Points, ...]
+    """Empty for a polygon. Else, a ring, a read-only (n, 3) array beside its points: centre x, y and signed radius
+    (length) of the arc from point i to point i + 1; radius > 0 counter-clockwise, < 0 clockwise, 0 a straight edge. No
+    arc sweeps more than half a turn."""
     area: float
     """Area of the solid (length²), holes taken off."""
     centroid: tuple[float, float]
@@ -79,36 +92,92 @@ class Outline:
         self._set(rings)
 
     @classmethod
-    def from_curve(cls, rings: Iterable[Points], resample: Callable[..., Outline] | None = None) -> Outline:
-        """From sampled curves known to make an outline (unchecked), and the function that samples them.
+    def from_curve(
+        cls,
+        rings: Iterable[Points],
+        resample: Callable[..., Outline] | None = None,
+        arcs: Iterable[Points] = (),
+    ) -> Outline:
+        """From sampled curves, or rings with arcs, known to make an outline (unchecked).
 
-        `resample(tolerance=...)` makes the outline anew; a functools.partial of a module's function, so
-        that it can be pickled. See `sample`.
+        `resample(tolerance=...)` makes a sampled outline anew; a functools.partial of a module's function, so
+        that it can be pickled. See `sample`. arcs: as the attribute, for all rings or none.
         """
         self = cls.__new__(cls)
-        self._set([np.array(ring, dtype=np.float64) for ring in rings], resample)
+        self._set(
+            [np.array(ring, dtype=np.float64) for ring in rings],
+            resample,
+            [np.array(ring, dtype=np.float64) for ring in arcs],
+        )
         return self
+
+    @classmethod
+    def circle(cls, radius: float, center: tuple[float, float] = (0.0, 0.0)) -> Outline:
+        """A disc: its boundary is the circle itself (lengths).
+
+        Raises ValueError unless radius is positive and center finite.
+        """
+        radius = positive(radius, "radius")
+        x, y = (float(v) for v in center)
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ValueError(f"center must be finite (x, y), got {center!r}")
+        ring, arcs = curves.circle_ring((x, y), radius)
+        return cls.from_curve([ring], arcs=[arcs])
+
+    @classmethod
+    def from_bulges(cls, ring: ArrayLike, holes: Iterable[ArrayLike] = ()) -> Outline:
+        """From rings of points and bulges, as CAD exchanges them: arrays (n, 3) of x, y, bulge.
+
+        The edge from point i to the next is an arc that turns by 4 atan(bulge), to the left if bulge > 0; 0 is a
+        straight edge, 1 a half circle to the right of its chord. Two points are enough for a ring with an arc.
+        Raises ValueError as the constructor does; crossings are looked for on the boundary sampled to
+        `DEFAULT_TOLERANCE`.
+        """
+        found = [_bulged(ring, "ring")] + [_bulged(hole, f"holes[{i}]") for i, hole in enumerate(holes)]
+        outline = cls.from_curve([points for points, _ in found], arcs=[arcs for _, arcs in found])
+        _check_valid([_ring(ring, "ring") for ring in outline.polygon_rings])
+        return outline
 
     def with_curve(self, resample: Callable[..., Outline]) -> Outline:
         """The same outline, knowing how to `sample` itself anew."""
         return Outline.from_curve(self.rings, resample)
 
-    def _set(self, rings: list[Points], resample: Callable[..., Outline] | None = None) -> None:
-        lower, upper = np.minimum.reduce(rings[0]), np.maximum.reduce(rings[0])
+    def _set(
+        self,
+        rings: list[Points],
+        resample: Callable[..., Outline] | None = None,
+        arcs: Sequence[Points] = (),
+    ) -> None:
+        if not any(ring[:, 2].any() for ring in arcs):
+            arcs = ()
+        outer = curves.extremes(rings[0], arcs[0]) if arcs else rings[0]
+        lower, upper = np.minimum.reduce(outer), np.maximum.reduce(outer)
         middle = (
             lower + upper
         ) / 2  # sums are taken relative to it: far from the origin they lose all digits
+        if arcs and len(rings) == 1 and curves.is_circle(arcs[0]):
+            middle = arcs[0][0, :2]
         total, first = 0.0, np.zeros(2)
-        oriented = []
+        oriented, bent = [], []
         for i, ring in enumerate(rings):
-            area, moment = _area_and_first_moment(ring - middle)
+            arc = _about(arcs[i], middle) if arcs else None
+            area, moment, _ = _measures(ring - middle, arc)
             if (area > 0) == (i > 0):
-                ring, area, moment = np.ascontiguousarray(ring[::-1]), -area, -moment
-            ring.flags.writeable = False
+                area, moment = -area, -moment
+                if arcs:
+                    ring, arc = curves.reversed_ring(ring, arcs[i])
+                    bent.append(arc)
+                else:
+                    ring = np.ascontiguousarray(ring[::-1])
+            elif arcs:
+                bent.append(arcs[i])
             oriented.append(ring)
             total += area
             first += moment
+        for array in (*oriented, *bent):
+            array.flags.writeable = False
         self.rings = tuple(oriented)
+        self.arcs = tuple(bent)
         self.area = float(total)
         self.centroid = tuple((middle + first / total).tolist())
         self.bounds = (*lower.tolist(), *upper.tolist())
@@ -142,9 +211,9 @@ class Outline:
         """The solid that a pymunk shape stands for, in its body's coordinates.
 
         An outline put on the shape (`shape.outline`, see `add_to`) is returned as it is. Otherwise: a
-        Circle is sampled to `tolerance` (sagitta, length); a Poly is its convex hull, as in pymunk, its
-        corners rounded by `radius`; a Segment with a radius is a capsule. Equal shapes get the same Outline
-        object.
+        Circle is a circle; a Poly is its convex hull, as in pymunk, its corners rounded by `radius`; a Segment
+        with a radius is a capsule; their arcs are arcs, or with a `tolerance` (sagitta, length) sampled to it.
+        Equal shapes get the same Outline object.
 
         **A Segment of radius 0** has no inside, yet most floors are one, so it becomes the face of a solid
         behind it: a rectangle on the segment, `thickness` deep (length; default `SEGMENT_THICKNESS` times
@@ -188,7 +257,7 @@ class Outline:
         """Moment of inertia (mass·length²) of the solid about the body's origin, the outline shifted by
         `offset` (length).
 
-        Like `pymunk.moment_for_poly`, for concave outlines and holes too. Exact for the polygon.
+        Like `pymunk.moment_for_poly`, for concave outlines, arcs and holes too. Exact.
         Raises ValueError unless mass is finite and not negative.
         """
         if not (math.isfinite(mass) and mass >= 0):
@@ -199,14 +268,29 @@ class Outline:
     @cached_property
     def _gyration(self) -> float:
         """Squared radius of gyration about the centroid (length²)."""
-        return sum(_polar_moment(ring - self.centroid) for ring in self.rings) / self.area
+        rings = self._with_arcs()
+        about = [(ring - self.centroid, _about(arc, self.centroid)) for ring, arc in rings]
+        return sum(_measures(ring, arc)[2] for ring, arc in about) / self.area
+
+    def _with_arcs(self) -> list[tuple[Points, Points | None]]:
+        return list(zip(self.rings, self.arcs or (None,) * len(self.rings)))
 
     @cached_property
     def convex(self) -> bool:
-        """True for one ring without a reflex corner; collinear points are allowed."""
+        """True for one ring without a reflex corner or hollow arc; collinear points are allowed."""
         if len(self.rings) > 1:
             return False
         ring = self.rings[0]
+        if self.arcs:
+            starts, ends = curves.tangents(ring, self.arcs[0])
+            behind = np.roll(ends, 1, axis=0)
+            turn = behind[:, 0] * starts[:, 1] - behind[:, 1] * starts[:, 0]
+            # tangents are known to the rounding of a coordinate over the shortest radius or edge
+            least = np.abs(self.arcs[0][:, 2])[self.arcs[0][:, 2] != 0].min()
+            least = min(least, np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).min())
+            return bool(
+                (self.arcs[0][:, 2] >= 0).all() and np.all(turn >= -8 * _EPS * np.abs(ring).max() / least)
+            )
         ahead = np.roll(ring, -1, axis=0) - ring
         behind = np.roll(ahead, 1, axis=0)
         turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
@@ -215,9 +299,18 @@ class Outline:
         return bool(np.all(turn >= -noise))
 
     @cached_property
+    def polygon_rings(self) -> tuple[Points, ...]:
+        """The rings as polygons: arcs sampled to `DEFAULT_TOLERANCE` times half the smaller extent."""
+        if not self.arcs:
+            return self.rings
+        xmin, ymin, xmax, ymax = self.bounds
+        return self.sample(DEFAULT_TOLERANCE * min(xmax - xmin, ymax - ymin) / 2).rings
+
+    @cached_property
     def polygon(self) -> shapely.Polygon:
-        """The same region as a shapely Polygon."""
-        return shapely.Polygon(self.rings[0], self.rings[1:])
+        """The same region as a shapely Polygon, of `polygon_rings`."""
+        outer, *holes = self.polygon_rings
+        return shapely.Polygon(outer, holes)
 
     @property
     def two_sided(self) -> bool:
@@ -227,13 +320,16 @@ class Outline:
     # --- other outlines from it ---
 
     def sample(self, tolerance: float) -> Outline:
-        """The same boundary sampled anew, no chord's sagitta above `tolerance` (length).
+        """The same boundary as polygons, no chord's sagitta above `tolerance` (length), areas kept.
 
-        Shapes that know their curve (`rigidarea.shapes`, circles and rounded shapes of pymunk) are made
-        again from it; an outline that came as points is all there is to know, and is returned itself.
+        Arcs become chords, and shapes that know their curve (`rigidarea.shapes`) are made again from it; an
+        outline that came as points is all there is to know, and is returned itself.
         Raises ValueError unless tolerance is positive.
         """
         positive(tolerance, "tolerance")
+        if self.arcs:
+            rings = [curves.sampled(ring, arc, tolerance) for ring, arc in zip(self.rings, self.arcs)]
+            return Outline.from_curve(rings, partial(_sample, self))
         return self if self._resample is None else self._resample(tolerance=tolerance)
 
     def translated(self, dx: float, dy: float) -> Outline:
@@ -251,7 +347,8 @@ class Outline:
         turn = np.array([[c, s], [-s, c]])
         moved = [ring @ turn + (dx, dy) for ring in self.rings]  # by an angle of 0 the product is exact
         again = None if self._resample is None else partial(_resample_moved, self._resample, angle, dx, dy)
-        outline = Outline.from_curve(moved, again)
+        bent = [np.column_stack((arc[:, :2] @ turn + (dx, dy), arc[:, 2])) for arc in self.arcs]
+        outline = Outline.from_curve(moved, again, bent)
         if self.mirror is not None:
             _face_each_other(outline, Outline.from_curve([r @ turn + (dx, dy) for r in self.mirror.rings]))
         return outline
@@ -264,8 +361,8 @@ class Outline:
 
         The stand-in only tells the broad phase where to look; contact is computed with the exact outline,
         which hangs on it as `shape.outline` and survives copying and pickling. The stand-in is the
-        outline's convex hull where that has no more than 8 vertices, else the tighter of its bounding
-        circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). Hence pymunk's
+        circle itself for a disc, its convex hull where that has no more than 8 vertices, else the tighter of
+        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). Hence pymunk's
         own queries and drawing see the stand-in: `point_query`, `segment_query`, `shapes_collide` and
         `debug_draw` report a slot, a hole or the gap between two teeth as solid. It has no mass: give the
         body its mass and moment (`moment`, or `body`).
@@ -299,11 +396,17 @@ class Outline:
         if self.mirror is not None:
             b, a = self.rings[0][:2].tolist()
             return pymunk.Segment, (a, b, 0)
-        hull = shapely.get_coordinates(shapely.convex_hull(self.polygon))[:-1]
+        if self.arcs and len(self.rings) == 1 and curves.is_circle(self.arcs[0]):
+            x, y, radius = self.arcs[0][0].tolist()
+            return pymunk.Circle, (radius, (x, y))
+        outer = curves.around(self.rings[0], self.arcs[0]) if self.arcs else self.rings[0]
+        hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(outer)))[:-1]
         if len(hull) <= MAX_STAND_IN_VERTICES:
             return pymunk.Poly, (hull.tolist(),)
         octagon = _bounding_octagon(hull)
-        center = shapely.get_coordinates(shapely.minimum_bounding_circle(self.polygon).centroid)[0]
+        center = shapely.get_coordinates(shapely.minimum_bounding_circle(shapely.MultiPoint(hull)).centroid)[
+            0
+        ]
         radius = float(np.hypot(*(hull - center).T).max())
         if _area_and_first_moment(octagon - center)[0] > 0.9 * math.pi * radius**2:
             return pymunk.Circle, (radius, center.tolist())
@@ -333,50 +436,14 @@ class Outline:
         return self
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _restore, (self.rings, self._resample, None if self.mirror is None else self.mirror.rings)
+        mirror = None if self.mirror is None else self.mirror.rings
+        return _restore, (self.rings, self._resample, mirror, self.arcs)
 
     def __repr__(self) -> str:
         points = " + ".join(str(len(ring)) for ring in self.rings)
-        return f"<Outline of {points} points, area {self.area:.6g}, bounds {self.bounds}>"
-
-
-def arc_points(
-    center: tuple[float, float], radius: float, start: float, sweep: float, tolerance: float
-) -> Points:
-    """Points (n, 2) along a circular arc, both ends included and exactly on it, the sector's area kept
-    exactly.
-
-    start, sweep: radians; sweep > 0 runs counter-clockwise. tolerance: largest sagitta (length).
-    With m chords of angle θ and inner vertices at radius ρ, the fan has the sector's area R²φ/2 when
-    (m−2)/2·sin θ·ρ² + R·sin θ·ρ − R²φ/2 = 0.
-    """
-    chords = _chords(radius, abs(sweep), tolerance)
-    step = abs(sweep) / chords
-    quadratic, linear, constant = (chords - 2) / 2, 1.0, -abs(sweep) / (2 * math.sin(step))
-    rho = radius * 2 * -constant / (linear + math.sqrt(linear * linear - 4 * quadratic * constant))
-    angle = start + sweep * np.arange(chords + 1) / chords
-    radii = np.full(chords + 1, rho)
-    radii[0] = radii[-1] = radius
-    return np.asarray(center) + radii[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
-
-
-def circle_points(center: tuple[float, float], radius: float, tolerance: float) -> Points:
-    """Vertices (n, 2), counter-clockwise, of the regular polygon with the circle's area; n a multiple of 4,
-    n >= 8.
-
-    tolerance: largest sagitta (length). The first edge stands across the x axis, so that a disc set down
-        unturned lies on a face.
-    """
-    n = 4 * max(2, math.ceil(_chords(radius, 2 * math.pi, tolerance) / 4))
-    rho = radius * math.sqrt((2 * math.pi / n) / math.sin(2 * math.pi / n))
-    angle = 2 * math.pi * (np.arange(n) + 0.5) / n
-    return np.asarray(center) + rho * np.column_stack((np.cos(angle), np.sin(angle)))
-
-
-def _chords(radius: float, sweep: float, tolerance: float) -> int:
-    """How many chords keep the sagitta R(1 − cos θ/2) below the tolerance, none wider than a quarter turn."""
-    half = math.acos(max(1 - tolerance / radius, math.cos(math.pi / 4)))
-    return max(MIN_CHORDS, math.ceil(sweep / (2 * half) * (1 - 1e-12)))
+        arcs = sum(int(np.count_nonzero(arc[:, 2])) for arc in self.arcs)
+        bent = f", {arcs} arcs" if arcs else ""
+        return f"<Outline of {points} points{bent}, area {self.area:.6g}, bounds {self.bounds}>"
 
 
 def positive(value: float, name: str) -> float:
@@ -425,6 +492,23 @@ def _ring(points: ArrayLike, name: str) -> Points:
     return ring
 
 
+def _bulged(ring: ArrayLike, name: str) -> tuple[Points, Points]:
+    """(points (n, 2), arcs (n, 3)) of a ring of x, y, bulge; ValueError naming what is wrong with it."""
+    try:
+        rows = np.array(ring, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:
+        raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")
+    if not np.isfinite(rows).all() or np.abs(rows).max() > _LARGEST:
+        raise ValueError(f"{name} must be finite and below {_LARGEST:g}")
+    if (rows[:, :2] == np.roll(rows[:, :2], -1, axis=0)).all(axis=1).any():
+        raise ValueError(f"{name} must not repeat a point, nor its first at the end")
+    if len(rows) == 2 and rows[:, 2].sum() == 0:
+        raise ValueError(f"{name} must enclose an area, got two edges on each other")
+    return curves.bulging(rows[:, :2], rows[:, 2])
+
+
 def _check_valid(rings: list[Points]) -> None:
     """ValueError naming the fault and the place, unless the rings bound a simple region (GEOS judges)."""
     whole = shapely.Polygon(rings[0], rings[1:])
@@ -461,18 +545,30 @@ def _place(polygon: shapely.Polygon) -> str:
 
 
 def _area_and_first_moment(ring: Points) -> tuple[float, Points]:
-    """Signed area and ∫ r dA (2,) by Green's theorem (the paper's Eq. 4 and 7)."""
+    """Signed area and ∫ r dA (2,) of a polygon by Green's theorem (the paper's Eq. 4 and 7)."""
     following = np.concatenate((ring[1:], ring[:1]))
     cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
     return float(cross.sum()) / 2, cross @ (ring + following) / 6
 
 
-def _polar_moment(ring: Points) -> float:
-    """∫ |r|² dA, signed like the area."""
+def _measures(ring: Points, arcs: Points | None) -> tuple[float, Points, float]:
+    """Signed area, ∫ r dA (2,) and ∫ |r|² dA of a ring: of its chords, and of what lies between them and arcs."""
+    area, first = _area_and_first_moment(ring)
     following = np.concatenate((ring[1:], ring[:1]))
     cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
     square = (ring * ring + ring * following + following * following).sum(axis=1)
-    return float((cross * square).sum()) / 12
+    polar = float((cross * square).sum()) / 12
+    if arcs is None:
+        return area, first, polar
+    areas, moments, polars = curves.segments(ring, arcs)
+    middle = (ring + following) / 2
+    polar += float((polars + 2 * (middle * moments).sum(axis=1) + (middle**2).sum(axis=1) * areas).sum())
+    return area + float(areas.sum()), first + (moments + areas[:, None] * middle).sum(axis=0), polar
+
+
+def _about(arcs: Points | None, center: ArrayLike) -> Points | None:
+    """The arcs relative to a centre (2,)."""
+    return None if arcs is None else arcs - np.array((*np.asarray(center), 0.0))
 
 
 # --- pymunk's shapes ---
@@ -487,20 +583,22 @@ def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance
     if radius == 0 and len(vertices) > 2:
         return Outline.from_curve([_ring(points, "vertices")])  # a hull is simple, but may be flat
     positive(radius, "radius of a pymunk shape")
-    if tolerance is None:
-        tolerance = DEFAULT_TOLERANCE * (float(np.ptp(points, axis=0).min()) / 2 + radius)
-    again = partial(_rounded, vertices, radius)
+    if tolerance is not None:
+        return _rounded(vertices, radius, None).sample(tolerance)
     if len(points) == 1:
-        return Outline.from_curve([circle_points(vertices[0], radius, tolerance)], again)
+        return Outline.circle(radius, vertices[0])
     edge = np.roll(points, -1, axis=0) - points
-    heading = np.arctan2(edge[:, 1], edge[:, 0])
-    arcs = []
-    for i in range(len(points)):
-        sweep = (heading[i] - heading[i - 1] + 1e-6) % (2 * math.pi) - 1e-6  # 0 … π, for all rounding
-        start = heading[i - 1] - math.pi / 2
-        arc = arc_points(vertices[i], radius, start, max(sweep, 1e-6), tolerance)
-        arcs.append(arc if sweep > 1e-6 else arc[:1])
-    return Outline.from_curve([np.concatenate(arcs)], again)
+    normal = np.column_stack((edge[:, 1], -edge[:, 0])) / np.hypot(*edge.T)[:, None]
+    ring, arcs = [], []
+    for i, center in enumerate(points):
+        before, after = normal[i - 1], normal[i]
+        turn = math.atan2(before[0] * after[1] - before[1] * after[0], float(before @ after))
+        if abs(turn) > 1e-6:  # else the corner is none: an arc of no length is worth no edge
+            ring.append(center + radius * before)
+            arcs.append((*center, radius))
+        ring.append(center + radius * after)
+        arcs.append((0.0, 0.0, 0.0))
+    return Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)])
 
 
 @lru_cache(maxsize=4096)
@@ -553,10 +651,17 @@ def _resample_moved(
     return resample(tolerance=tolerance)._moved(angle, dx, dy)
 
 
+def _sample(outline: Outline, *, tolerance: float) -> Outline:
+    return outline.sample(tolerance)
+
+
 def _restore(
-    rings: tuple[Points, ...], resample: Callable[..., Outline] | None, mirror: tuple[Points, ...] | None
+    rings: tuple[Points, ...],
+    resample: Callable[..., Outline] | None,
+    mirror: tuple[Points, ...] | None,
+    arcs: tuple[Points, ...] = (),
 ) -> Outline:
-    outline = Outline.from_curve(rings, resample)
+    outline = Outline.from_curve(rings, resample, arcs)
     if mirror is not None:
         _face_each_other(outline, Outline.from_curve(mirror))
     return outline

@@ -8,11 +8,12 @@ from functools import lru_cache
 
 import numpy as np
 
+from .arcs import sampled
 from .kernel.direction import chord_direction
 from .kernel.overlap import Work, enlarged, new_work
 from .kernel.place import Pose, overlap_of_outlines, push_out
 from .kernel.pool import Pool, pack
-from .outline import Outline
+from .outline import DEFAULT_TOLERANCE, Outline
 
 #: One row a region, as `overlap` returns them.
 OVERLAP = np.dtype(
@@ -21,7 +22,7 @@ OVERLAP = np.dtype(
         ("centroid", "f8", 2),  # (length)
         ("direction", "f8", 2),  # unit, from A to B: the way the force pushes B
         ("chord", "f8"),  # (length); 0 where the boundaries do not cross
-        ("polygon", "O"),  # (n, 2) counter-clockwise outer boundary of the region (length)
+        ("polygon", "O"),  # (n, 2) counter-clockwise outer boundary of the region, arcs sampled (length)
     ]
 )
 
@@ -73,5 +74,9 @@ def overlap(
         row["centroid"] = (np.array([loop["x"], loop["y"]]) + middle) @ turn + (a.x, a.y)
         row["direction"] = np.array(direction) @ turn
         row["chord"] = chord
-        row["polygon"] = (work.polygon[loop["start"] : loop["stop"]] + middle) @ turn + (a.x, a.y)
+        span = slice(loop["start"], loop["stop"])
+        corners = work.polygon[span]
+        if loop["arcs"]:
+            corners = sampled(corners, work.bows[span], DEFAULT_TOLERANCE * math.sqrt(loop["area"]))
+        row["polygon"] = (corners + middle) @ turn + (a.x, a.y)
     return out

@@ -40,8 +40,8 @@ from .kernel.tables import (
 
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
-    *("points", "following", "ring_of", "rings", "boxes", "heads"),
-    *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "loops"),
+    *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
+    *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *("bodies", "shapes", "pairs", "regions", "rows", "near", "apart", "sorted", "keys", "values"),
     *("counters", "slots", "body_keys", "body_rows", "joints"),
 ]
@@ -152,6 +152,7 @@ def load_pool(s: Any) -> Pool:
         array_at(s.ring_of_at, (s.ring_of_n,), np.int32),
         array_at(s.rings_at, (s.rings_n, 2), np.int32),
         array_at(s.boxes_at, (s.boxes_n, 4), np.float64),
+        array_at(s.arcs_at, (s.arcs_n, 4), np.float64),
         array_at(s.heads_at, (s.heads_n,), HEAD),
     )
 
@@ -169,6 +170,7 @@ def load_work(s: Any) -> Work:
         array_at(s.hit_at, (s.hit_n,), np.uint8),
         array_at(s.polygon_at, (s.polygon_n, 2), np.float64),
         array_at(s.label_at, (s.label_n,), np.uint8),
+        array_at(s.bows_at, (s.bows_n, 3), np.float64),
         array_at(s.loops_at, (s.loops_n,), LOOP),
     )
 
@@ -210,6 +212,7 @@ class Store:
             np.zeros(64, np.int32),
             np.zeros(64, np.int32),
             np.zeros((16, 2), np.int32),
+            np.zeros((64, 4)),
             np.zeros((64, 4)),
             np.zeros(16, HEAD),
         )
@@ -308,7 +311,7 @@ class Store:
         fill = self._fill
         room = {}
         for name, array in self.pool._asdict().items():
-            key = "points" if name in ("following", "ring_of") else name
+            key = "points" if name in ("following", "ring_of", "arcs") else name
             need = fill[key] + len(getattr(one, name))
             if need > len(array):
                 bigger = np.zeros((max(need, 2 * len(array)), *array.shape[1:]), array.dtype)
@@ -318,6 +321,7 @@ class Store:
         self.pool = pool = Pool(**room)
         p, r, b, h = fill["points"], fill["rings"], fill["boxes"], fill["heads"]
         pool.points[p : p + len(one.points)] = one.points
+        pool.arcs[p : p + len(one.points)] = one.arcs
         pool.following[p : p + len(one.points)] = one.following + p
         pool.ring_of[p : p + len(one.points)] = one.ring_of + r
         pool.rings[r : r + len(one.rings)] = one.rings + p

@@ -167,7 +167,7 @@ def test_disc_has_the_circles_area_and_its_inertia_to_fourth_order():
 
 
 def test_sampling_goes_as_the_root_of_the_tolerance_and_can_be_repeated():
-    disc = Outline.from_pymunk(pymunk.Circle(None, 2.0, (1, 0)))
+    disc = Outline.from_pymunk(pymunk.Circle(None, 2.0, (1, 0)), 1e-4)
     fine = disc.rotated(0.3).translated(5, 6).sample(1e-6)
     assert len(fine.rings[0]) == pytest.approx(10 * len(disc.rings[0]), rel=0.05)
     assert fine.centroid == pytest.approx((5 + math.cos(0.3), 6 + math.sin(0.3)), abs=1e-12)

@@ -129,5 +129,5 @@ def placed(points: Points, body: pymunk.Body) -> Points:
 
 def placed_polygon(outline: Outline, body: pymunk.Body) -> shapely.Polygon:
     """The outline in the world."""
-    outer, *holes = (placed(ring, body) for ring in outline.rings)
+    outer, *holes = (placed(ring, body) for ring in outline.polygon_rings)
     return shapely.Polygon(outer, holes)

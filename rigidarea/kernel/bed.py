@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from .arc import on_arc
 from .jit import njit
 from .meet import pose_of
 from .place import overlap_of_outlines
@@ -13,39 +14,74 @@ from .pool import Pool
 from .tables import LAW_AREA, SUBSTEP, Law, Tables
 from .work import Work
 
+#: Nodes and weights of Gauss's rule for `bed_energy` between two cuts: exact to rounding there.
+NODES, WEIGHTS = np.polynomial.legendre.leggauss(24)
+
 
 @njit
-def bed_energy(polygon: np.ndarray, start: int, stop: int, nx: float, ny: float) -> float:
-    """Half the integral of thickness^2 across the polygon, thickness measured along n (length^3).
+def bed_energy(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) -> float:
+    """Half the integral of thickness^2 across a loop of `work`, thickness measured along n (length^3).
 
     k times this is what a bed of springs of pressure k per length stores when two outlines press their overlap out
     of it along n: the potential of F = k A wherever that has one (against one straight edge, k A times the depth of
-    the centroid). The thickness is piecewise linear between the vertices' places across n.
+    the centroid). Between the vertices' places across n the thickness is linear, or, of arcs, linear and a few roots
+    that begin or end there; with s = middle + half sin(pi u / 2) these too are smooth in u.
     """
     n = stop - start
     s = np.empty(n)
     y = np.empty(n)
+    cuts = np.empty(3 * n)
+    m = n
+    j = stop - 1
     for i in range(n):
-        s[i] = -ny * polygon[start + i, 0] + nx * polygon[start + i, 1]
-        y[i] = nx * polygon[start + i, 0] + ny * polygon[start + i, 1]
-    cuts = np.sort(s)
+        s[i] = -ny * work.polygon[start + i, 0] + nx * work.polygon[start + i, 1]
+        y[i] = nx * work.polygon[start + i, 0] + ny * work.polygon[start + i, 1]
+        cuts[i] = s[i]
+        if arcs:  # where an arc turns round
+            r = work.bows[j, 2]
+            p = work.polygon[j]
+            q = work.polygon[start + i]
+            for reach in (-r, r):
+                x0 = work.bows[j, 0] - reach * ny
+                y0 = work.bows[j, 1] + reach * nx
+                if r != 0.0 and on_arc(p[0], p[1], q[0], q[1], r, x0, y0):
+                    cuts[m] = -ny * x0 + nx * y0
+                    m += 1
+            j = start + i
+    cuts = np.sort(cuts[:m])
     total = 0.0
-    for c in range(n - 1):
-        low = cuts[c]
-        high = cuts[c + 1]
-        if high <= low:
+    for c in range(m - 1):
+        half = 0.5 * (cuts[c + 1] - cuts[c])
+        middle = 0.5 * (cuts[c + 1] + cuts[c])
+        if half <= 0.0:
             continue
-        g0 = 0.0
-        g1 = 0.0
-        j = n - 1
-        for i in range(n):
-            if s[i] != s[j] and min(s[i], s[j]) <= low and max(s[i], s[j]) >= high:
-                slope = (y[i] - y[j]) / (s[i] - s[j])
-                sign = 1.0 if s[i] > s[j] else -1.0
-                g0 += sign * (y[j] + slope * (low - s[j]))
-                g1 += sign * (y[j] + slope * (high - s[j]))
-            j = i
-        total += (high - low) * (g0 * g0 + g0 * g1 + g1 * g1) / 6.0
+        for u in range(len(NODES)):
+            at = middle + half * math.sin(0.5 * math.pi * NODES[u])
+            weight = half * 0.5 * math.pi * math.cos(0.5 * math.pi * NODES[u]) * WEIGHTS[u]
+            g = 0.0
+            j = n - 1
+            for i in range(n):
+                r = work.bows[start + j, 2] if arcs else 0.0
+                if r == 0.0:
+                    if s[i] != s[j] and min(s[i], s[j]) <= at < max(s[i], s[j]):
+                        height = y[j] + (y[i] - y[j]) / (s[i] - s[j]) * (at - s[j])
+                        g += height if s[i] > s[j] else -height
+                else:
+                    cx = work.bows[start + j, 0]
+                    cy = work.bows[start + j, 1]
+                    off = at - (-ny * cx + nx * cy)
+                    if abs(off) < abs(r):
+                        root = math.sqrt((abs(r) - off) * (abs(r) + off))
+                        p = work.polygon[start + j]
+                        q = work.polygon[start + i]
+                        for side in (1.0, -1.0):  # the upper half is walked to the right if counter-clockwise
+                            height = nx * cx + ny * cy + side * root
+                            if on_arc(
+                                p[0], p[1], q[0], q[1], r, nx * height - ny * at, ny * height + nx * at
+                            ):
+                                g += height if side * r > 0.0 else -height
+                j = i
+            total += 0.5 * weight * g * g
     return total
 
 
@@ -90,6 +126,7 @@ def stored(pool: Pool, tables: Tables, work: Work, law: Law) -> float:
                 else:
                     nx = a.c * region.nx + a.s * region.ny
                     ny = a.c * region.ny - a.s * region.nx
-                    total += region.stiffness * bed_energy(work.polygon, loop.start, loop.stop, nx, ny)
+                    energy = bed_energy(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
+                    total += region.stiffness * energy
             r = region.next
     return total

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from .arc import on_arc
 from .jit import kernel
 from .pool import LEAF, Pool
 from .work import Relative, Work, placed
@@ -40,6 +41,89 @@ def _leaves2(
             by = qa[next_a[i], 1]
             best = min(best, _to_edge2(cx, cy, ax, ay, bx, by), _to_edge2(ax, ay, cx, cy, dx, dy))
             best = min(best, _to_edge2(dx, dy, ax, ay, bx, by), _to_edge2(bx, by, cx, cy, dx, dy))
+    return best
+
+
+@kernel
+def _to_arc2(
+    x: float, y: float, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
+) -> float:
+    """Squared distance of a point from an arc."""
+    dx = x - cx
+    dy = y - cy
+    d = math.sqrt(dx * dx + dy * dy)
+    if d == 0.0:
+        return r * r
+    f = abs(r) / d
+    if on_arc(px, py, qx, qy, r, cx + f * dx, cy + f * dy):
+        return (d - abs(r)) ** 2
+    return min((x - px) ** 2 + (y - py) ** 2, (x - qx) ** 2 + (y - qy) ** 2)
+
+
+@kernel
+def _edge_to_arc2(
+    ax: float, ay: float, bx: float, by: float,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+) -> float:  # fmt: skip
+    """Squared distance of an edge from an arc that does not cross it."""
+    best = min(_to_edge2(px, py, ax, ay, bx, by), _to_edge2(qx, qy, ax, ay, bx, by))
+    best = min(best, _to_arc2(ax, ay, px, py, qx, qy, cx, cy, r), _to_arc2(bx, by, px, py, qx, qy, cx, cy, r))
+    ux = bx - ax
+    uy = by - ay
+    t = (ux * (cx - ax) + uy * (cy - ay)) / (ux * ux + uy * uy)
+    if 0.0 < t < 1.0:  # where they face each other
+        best = min(best, _to_arc2(ax + t * ux, ay + t * uy, px, py, qx, qy, cx, cy, r))
+    return best
+
+
+@kernel
+def _arc_to_arc2(
+    ax: float, ay: float, bx: float, by: float, ex: float, ey: float, r: float,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, u: float,
+) -> float:  # fmt: skip
+    """Squared distance of two arcs that do not cross."""
+    best = min(_to_arc2(px, py, ax, ay, bx, by, ex, ey, r), _to_arc2(qx, qy, ax, ay, bx, by, ex, ey, r))
+    best = min(best, _to_arc2(ax, ay, px, py, qx, qy, cx, cy, u), _to_arc2(bx, by, px, py, qx, qy, cx, cy, u))
+    dx = cx - ex
+    dy = cy - ey
+    d = math.sqrt(dx * dx + dy * dy)
+    if d > 0.0:
+        for f in (abs(r) / d, -abs(r) / d):  # where they face each other, on the line of centres
+            x = ex + f * dx
+            y = ey + f * dy
+            if on_arc(ax, ay, bx, by, r, x, y):
+                best = min(best, _to_arc2(x, y, px, py, qx, qy, cx, cy, u))
+    return best
+
+
+@kernel
+def _curved_leaves2(
+    pa: Pool, a0: int, a1: int, pb: Pool, b0: int, b1: int, rel: Relative, best: float
+) -> float:
+    """`_leaves2` where edges may be arcs."""
+    for j in range(b0, b1):
+        px, py = placed(pb.points, j, rel)
+        qx, qy = placed(pb.points, pb.following[j], rel)
+        cx, cy = placed(pb.arcs, j, rel)
+        u = pb.arcs[j, 2]
+        for i in range(a0, a1):
+            k = pa.following[i]
+            ax = pa.points[i, 0]
+            ay = pa.points[i, 1]
+            bx = pa.points[k, 0]
+            by = pa.points[k, 1]
+            ex = pa.arcs[i, 0]
+            ey = pa.arcs[i, 1]
+            r = pa.arcs[i, 2]
+            if r == 0.0 and u == 0.0:
+                best = min(best, _to_edge2(px, py, ax, ay, bx, by), _to_edge2(ax, ay, px, py, qx, qy))
+                best = min(best, _to_edge2(qx, qy, ax, ay, bx, by), _to_edge2(bx, by, px, py, qx, qy))
+            elif r == 0.0:
+                best = min(best, _edge_to_arc2(ax, ay, bx, by, px, py, qx, qy, cx, cy, u))
+            elif u == 0.0:
+                best = min(best, _edge_to_arc2(px, py, qx, qy, ax, ay, bx, by, ex, ey, r))
+            else:
+                best = min(best, _arc_to_arc2(ax, ay, bx, by, ex, ey, r, px, py, qx, qy, cx, cy, u))
     return best
 
 
@@ -78,11 +162,23 @@ def clearance(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, most: float, 
         if leaf_a and leaf_b:
             a0 = (na - ha.leaves) * LEAF
             b0 = (nb - hb.leaves) * LEAF
-            best = _leaves2(
-                pa.points, pa.following, ha.point + a0, ha.point + min(a0 + LEAF, ha.count),
-                pb.points, pb.following, hb.point + b0, hb.point + min(b0 + LEAF, hb.count),
-                rel, best,
-            )  # fmt: skip
+            a1 = ha.point + min(a0 + LEAF, ha.count)
+            b1 = hb.point + min(b0 + LEAF, hb.count)
+            if ha.arcs or hb.arcs:
+                best = _curved_leaves2(pa, ha.point + a0, a1, pb, hb.point + b0, b1, rel, best)
+            else:
+                best = _leaves2(
+                    pa.points,
+                    pa.following,
+                    ha.point + a0,
+                    a1,
+                    pb.points,
+                    pb.following,
+                    hb.point + b0,
+                    b1,
+                    rel,
+                    best,
+                )
             continue
         # go down in the larger box, its nearer half first
         size_a = pa.boxes[ha.box + na, 2] + pa.boxes[ha.box + na, 3]

@@ -10,13 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from .curved import cross_curved_leaves, mend
 from .jit import kernel
 from .pool import LEAF, Pool
 from .predicates import order_exact, side
-from .work import A_EDGE, Relative, Work, placed
-
-#: The scratch is too small: enlarge it (`work.enlarged`) and call again.
-OVERFLOW = -1
+from .work import A_EDGE, OVERFLOW, Relative, Work, placed
 
 
 @kernel(inline="always")
@@ -122,11 +120,15 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
         if leaf_a and leaf_b:
             a0 = (na - ha.leaves) * LEAF
             b0 = (nb - hb.leaves) * LEAF
-            n = _cross_leaves(
-                pa.points, pa.following, ha.point + a0, ha.point + min(a0 + LEAF, ha.count),
-                pb.points, pb.following, hb.point + b0, hb.point + min(b0 + LEAF, hb.count),
-                rel, work.cross, work.param, work.spot, n,
-            )  # fmt: skip
+            a1 = ha.point + min(a0 + LEAF, ha.count)
+            b1 = hb.point + min(b0 + LEAF, hb.count)
+            if ha.arcs or hb.arcs:
+                n = cross_curved_leaves(pa, ha.point + a0, a1, pb, hb.point + b0, b1, rel, work, n)
+            else:
+                n = _cross_leaves(
+                    pa.points, pa.following, ha.point + a0, a1, pb.points, pb.following, hb.point + b0, b1,
+                    rel, work.cross, work.param, work.spot, n,
+                )  # fmt: skip
             if n < 0:
                 return n
             continue
@@ -216,10 +218,13 @@ def _before(
 def link(
     q: np.ndarray, following: np.ndarray, ring_of: np.ndarray, other: np.ndarray, other_following: np.ndarray,
     rel: Relative, n: int, cross: np.ndarray, param: np.ndarray, spot: np.ndarray, order: np.ndarray, along: int,
+    near: float,
 ) -> bool:  # fmt: skip
     """order[2 + along, k]: the crossing after k along its ring of A (0) or B (1). False if they do not alternate.
 
-    ~k where the ring's first point is passed on the way.
+    ~k where the ring's first point is passed on the way. `near` is 0 for polygons, whose order is exact. Else there are
+    arcs, and two crossings nearer to each other than that (length) may have been ordered wrongly: they are put so that
+    all alternate.
     """
     for i in range(n):  # insertion sort: n is small, and crossings come nearly in order
         edge = cross[i, along]
@@ -227,13 +232,16 @@ def link(
         while j > 0:
             m = order[along, j - 1]
             e = cross[m, along]
-            if e < edge or (
-                e == edge
-                and not _before(
-                    q, other, other_following, rel, edge, following[edge], i, m, cross, param, spot, along
-                )
-            ):
+            if e < edge:
                 break
+            if e == edge:
+                if near > 0.0:
+                    if param[i, along] >= param[m, along]:
+                        break
+                elif not _before(
+                    q, other, other_following, rel, edge, following[edge], i, m, cross, param, spot, along
+                ):
+                    break
             order[along, j] = m
             j -= 1
         order[along, j] = i
@@ -244,6 +252,8 @@ def link(
         last = low
         while last + 1 < n and ring_of[cross[order[along, last + 1], along]] == ring:
             last += 1
+        if near > 0.0:
+            mend(order[along, low : last + 1], cross, spot, near)
         for high in range(low, last + 1):
             k = order[along, high]
             m = order[along, high + 1 if high < last else low]

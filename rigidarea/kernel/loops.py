@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from .arc import across, on_arc, top
 from .crossings import crossings, link
 from .jit import kernel
 from .pool import LEAF, Pool
 from .predicates import side
-from .work import A_EDGE, B_EDGE, Relative, Work, measure, placed
+from .work import A_EDGE, B_EDGE, TANGLED, Relative, Work, measure, noise_of, placed, put
 
-#: The crossings do not alternate: an outline crosses itself within rounding. Shift it a little and call again.
-TANGLED = -2
+#: Crossings nearer than this to each other, over the radii of the outlines, may be in the wrong order where there are
+#: arcs: two curves that nearly touch cross at places known to the root of a rounding.
+NEAR = 1e-7
 
 
 @kernel
@@ -43,6 +45,34 @@ def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> t
 
 
 @kernel
+def _curved_arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> tuple[int, int]:
+    """`_arc` for outlines with arcs: edges and arcs with their middles."""
+    m = work.order[2 + along, k]
+    wraps = m < 0
+    if wraps:
+        m = ~m
+    edge = work.cross[k, along]
+    last = work.cross[m, along]
+    px = work.spot[k, 0]
+    py = work.spot[k, 1]
+    more = edge != last or wraps
+    while True:
+        if more:
+            qx, qy = placed(pool.points, pool.following[edge], rel)
+        else:
+            qx = work.spot[m, 0]
+            qy = work.spot[m, 1]
+        cx, cy = placed(pool.arcs, edge, rel)
+        v = put(work, v, along, px, py, qx, qy, cx, cy, pool.arcs[edge, 2])
+        if not more:
+            return m, v
+        edge = pool.following[edge]
+        px = qx
+        py = qy
+        more = edge != last
+
+
+@kernel
 def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool, work: Work) -> bool:
     """Whether the point (x, y) of A's frame lies inside outline i: crossings of the ray to +x, by the hierarchy.
 
@@ -55,6 +85,7 @@ def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool
     ty = 0.0 if point_of_b else rel.ty
     place = Relative(c, s, tx, ty)
     pad = 8.0 * 2.0**-52 * (h.radius + abs(x) + abs(y) + abs(tx) + abs(ty))
+    arcs = h.arcs > 0
     work.stack[0, 0] = 1
     depth = 1
     inside = False
@@ -88,6 +119,13 @@ def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool
                 vp = vy >= y
             if up != vp and (side(ux, uy, vx, vy, x, y, point_of_b) > 0.0) == vp:
                 inside = not inside
+            if (
+                arcs and p.arcs[e, 2] != 0.0
+            ):  # what lies between chord and arc is inside where the rest is not
+                cx, cy = placed(p.arcs, e, place)
+                r = p.arcs[e, 2]
+                if across(x, y, cx, cy, r) and (side(ux, uy, vx, vy, x, y, point_of_b) < 0.0) == (r > 0.0):
+                    inside = not inside
     return inside
 
 
@@ -95,6 +133,7 @@ def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool
 def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
     """Whether (x, y) lies inside loop n (even-odd)."""
     inside = False
+    arcs = work.loops[n].arcs > 0
     start = work.loops[n].start
     stop = work.loops[n].stop
     ux = work.polygon[stop - 1, 0]
@@ -104,6 +143,12 @@ def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
         vy = work.polygon[i, 1]
         if (uy > y) != (vy > y) and x < ux + (y - uy) * (vx - ux) / (vy - uy):
             inside = not inside
+        r = work.bows[i - 1 if i > start else stop - 1, 2] if arcs else 0.0
+        if r != 0.0:
+            cx = work.bows[i - 1 if i > start else stop - 1, 0]
+            cy = work.bows[i - 1 if i > start else stop - 1, 1]
+            if across(x, y, cx, cy, r) and on_arc(ux, uy, vx, vy, r, x, y):
+                inside = not inside
         ux = vx
         uy = vy
     return inside
@@ -197,41 +242,81 @@ def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a.lever, b.lever = b.lever, a.lever
     a.straight, b.straight = b.straight, a.straight
     a.region, b.region = b.region, a.region
+    a.arcs, b.arcs = b.arcs, a.arcs
+
+
+@kernel
+def _ring_inside(
+    pool: Pool,
+    begin: int,
+    end: int,
+    place: Relative,
+    other: Pool,
+    o: int,
+    rel: Relative,
+    point_of_b: bool,
+    work: Work,
+) -> bool:
+    """Whether a ring that does not cross outline `o` lies inside it: two of three of its points do.
+
+    One is enough for polygons, where `side` is exact. Among arcs one may touch, and be anywhere to rounding.
+    """
+    votes = 0
+    x, y = placed(pool.points, begin, place)
+    votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
+    qx, qy = placed(pool.points, pool.following[begin], place)
+    r = pool.arcs[begin, 2]
+    if r != 0.0:
+        cx, cy = placed(pool.arcs, begin, place)
+        x, y = top(x, y, qx, qy, cx, cy, r)
+    else:
+        x = 0.5 * (x + qx)
+        y = 0.5 * (y + qy)
+    votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
+    if votes == 1:
+        x, y = placed(pool.points, begin + (end - begin) // 2, place)
+        votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
+    return votes >= 2
 
 
 @kernel
 def _whole_rings(
-    pool: Pool, i: int, other: Pool, o: int, rel: Relative, along: int, work: Work, n: int, v: int
-) -> tuple[int, int]:
-    """Loops of the rings of outline i without a crossing that lie inside the other outline."""
+    pool: Pool, i: int, place: Relative, other: Pool, o: int, rel: Relative, along: int, work: Work, n: int, v: int,
+    noise: float,
+) -> tuple[int, int]:  # fmt: skip
+    """Loops of the rings of outline i, placed, without a crossing that lie inside the other outline."""
     h = pool.heads[i]
     g = other.heads[o]
+    arcs = h.arcs > 0 or g.arcs > 0
     first = 0 if along == A_EDGE else work.hit.size // 2
     for r in range(h.rings):
         if work.hit[first + r]:
             continue
         begin = pool.rings[h.ring + r, 0]
         end = pool.rings[h.ring + r, 1]
-        if along == A_EDGE:
-            x, y = pool.points[begin, 0], pool.points[begin, 1]
-            near = np.hypot(x - rel.tx, y - rel.ty)
-        else:
-            x, y = placed(pool.points, begin, rel)
-            near = np.hypot(x, y)
+        x, y = placed(pool.points, begin, place)
+        near = np.hypot(x - rel.tx, y - rel.ty) if along == A_EDGE else np.hypot(x, y)
         if near > g.radius * (1.0 + 1e-12):
             continue
-        if not _inside(other, o, rel, x, y, along == B_EDGE, work):
+        if arcs:
+            inside = _ring_inside(pool, begin, end, place, other, o, rel, along == B_EDGE, work)
+        else:
+            inside = _inside(other, o, rel, x, y, along == B_EDGE, work)
+        if not inside:
             continue
         start = v
         for k in range(begin, end):
-            if along == A_EDGE:
-                work.polygon[v, 0] = pool.points[k, 0]
-                work.polygon[v, 1] = pool.points[k, 1]
+            px, py = placed(pool.points, k, place)
+            if arcs:
+                qx, qy = placed(pool.points, pool.following[k], place)
+                cx, cy = placed(pool.arcs, k, place)
+                v = put(work, v, along, px, py, qx, qy, cx, cy, pool.arcs[k, 2])
             else:
-                work.polygon[v, 0], work.polygon[v, 1] = placed(pool.points, k, rel)
-            work.label[v] = along
-            v += 1
-        n = measure(work.polygon, work.label, work.loops, n, start, v)
+                work.polygon[v, 0] = px
+                work.polygon[v, 1] = py
+                work.label[v] = along
+                v += 1
+        n = measure(work, n, start, v, arcs, noise)
     return n, v
 
 
@@ -240,6 +325,10 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
     """Any two outlines: crossings, loops, whole rings, holes."""
     ha = pa.heads[ia]
     hb = pb.heads[ib]
+    arcs = ha.arcs > 0 or hb.arcs > 0
+    near = NEAR * (ha.radius + hb.radius) if arcs else 0.0
+    noise = noise_of(ha.radius, hb.radius, rel)
+    own = Relative(1.0, 0.0, 0.0, 0.0)
     half = work.hit.size // 2
     work.hit[: ha.rings] = 0
     work.hit[half : half + hb.rings] = 0
@@ -251,10 +340,10 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
     if k > 0:
         if not link(
             pa.points, pa.following, pa.ring_of, pb.points, pb.following, rel, k,
-            work.cross, work.param, work.spot, work.order, 0,
+            work.cross, work.param, work.spot, work.order, 0, near,
         ) or not link(
             pb.points, pb.following, pb.ring_of, pa.points, pa.following, rel, k,
-            work.cross, work.param, work.spot, work.order, 1,
+            work.cross, work.param, work.spot, work.order, 1, near,
         ):  # fmt: skip
             return TANGLED
         for i in range(k):
@@ -268,11 +357,15 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
             i = first
             while True:
                 work.done[i] = 1
-                i, v = _arc(pa, rel, work, i, A_EDGE, v)
-                i, v = _arc(pb, rel, work, i, B_EDGE, v)
+                if arcs:
+                    i, v = _curved_arc(pa, own, work, i, A_EDGE, v)
+                    i, v = _curved_arc(pb, rel, work, i, B_EDGE, v)
+                else:
+                    i, v = _arc(pa, rel, work, i, A_EDGE, v)
+                    i, v = _arc(pb, rel, work, i, B_EDGE, v)
                 if i == first:
                     break
-            n = measure(work.polygon, work.label, work.loops, n, start, v)
-    n, v = _whole_rings(pa, ia, pb, ib, rel, 0, work, n, v)
-    n, v = _whole_rings(pb, ib, pa, ia, rel, 1, work, n, v)
+            n = measure(work, n, start, v, arcs, noise)
+    n, v = _whole_rings(pa, ia, own, pb, ib, rel, 0, work, n, v, noise)
+    n, v = _whole_rings(pb, ib, rel, pa, ia, rel, 1, work, n, v, noise)
     return _gather(work, n)

@@ -1,7 +1,8 @@
 """Overlap of two placed outlines: its connected regions, each with area, centroid and chord.
 
-Two algorithms, one result. Small convex pairs (boxes, most game polygons) are clipped edge by edge (Sutherland &
-Hodgman, Commun ACM 17, 1974). Everything else, with holes, concave, thousands of edges, goes the general way:
+Three algorithms, one result. Small convex pairs of polygons (boxes, most game polygons) are clipped edge by edge
+(Sutherland & Hodgman, Commun ACM 17, 1974). A disc with a disc is a lens, with any convex outline one walk round that
+(`disc.py`). Everything else, with holes, concave, thousands of edges, arcs, goes the general way:
 
 1. *Crossings.* Both hierarchies are walked together; where two leaves meet, edge pairs are tested with the exact
    predicate of `predicates.side`. A crossing is where A's boundary enters B (+1) or leaves it (-1); where A leaves
@@ -17,8 +18,10 @@ Hodgman, Commun ACM 17, 1974). Everything else, with holes, concave, thousands o
 3. *Rings without a crossing* lie wholly inside the other outline or wholly outside: one point decides.
 4. *Signs.* A loop with positive area is a region, one with negative area is a hole of the region around it.
 
-Degenerate cases need no code: the predicate shifts B by an infinitesimal (see `predicates`), after which there are
-none. What the shift leaves behind, loops of no area, is dropped.
+Degenerate cases of polygons need no code: the predicate shifts B by an infinitesimal (see `predicates`), after which
+there are none. What the shift leaves behind, loops of no area, is dropped. Of arcs, whose crossings no double holds,
+`arc.py` and `curved.mend` say what is decided how; what remains undecided (two circles that are one) is TANGLED, and
+`place.overlap_of_outlines` asks again with B shifted by 1e-13.
 
 Differences from the paper: Alg. 1 asks for a node of each body inside the other and for two crossings; here a region
 is there when its area is positive, however many crossings it has, and whatever nodes (design 2.1). Area and centroid
@@ -31,11 +34,24 @@ Kernel arguments: a `Pool` and the number of an outline in it for A and for B, a
 from __future__ import annotations
 
 from .clip import clip
-from .crossings import OVERFLOW
+from .disc import disc_convex, disc_disc
 from .jit import kernel
-from .loops import TANGLED, general
+from .loops import general
 from .pool import Pool
-from .work import A_EDGE, B_EDGE, LOOP, Relative, Work, enlarged, fits, new_work, relative
+from .work import (
+    A_EDGE,
+    B_EDGE,
+    LOOP,
+    OVERFLOW,
+    TANGLED,
+    Relative,
+    Work,
+    enlarged,
+    fits,
+    new_work,
+    noise_of,
+    relative,
+)
 
 #: At most this many edge pairs for the clipping of convex outlines; above, the hierarchy is faster.
 CLIP_PAIRS = 64
@@ -64,17 +80,18 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
     """
     ha = pa.heads[ia]
     hb = pb.heads[ib]
-    if ha.convex and hb.convex and ha.count * hb.count <= CLIP_PAIRS:
-        return clip(
-            pa.points,
-            ha.point,
-            ha.count,
-            pb.points,
-            hb.point,
-            hb.count,
-            rel,
-            work.polygon,
-            work.label,
-            work.loops,
-        )
+    if ha.convex and hb.convex:
+        if ha.disc and hb.disc:
+            return disc_disc(ha.radius, hb.radius, rel, work)
+        if ha.disc:
+            return disc_convex(
+                0.0, 0.0, ha.radius, pb, ib, rel, B_EDGE, work, noise_of(ha.radius, hb.radius, rel)
+            )
+        if hb.disc:
+            own = Relative(1.0, 0.0, 0.0, 0.0)
+            noise = noise_of(ha.radius, hb.radius, rel)
+            return disc_convex(rel.tx, rel.ty, hb.radius, pa, ia, own, A_EDGE, work, noise)
+        if ha.arcs + hb.arcs == 0 and ha.count * hb.count <= CLIP_PAIRS:
+            noise = noise_of(ha.radius, hb.radius, rel)
+            return clip(pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel, work, noise)
     return general(pa, ia, pb, ib, rel, work)

@@ -7,8 +7,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from .arc import on_arc
 from .jit import kernel
-from .overlap import OVERFLOW, TANGLED, Relative, Work, overlap_kernel, relative
+from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
 
 
@@ -34,7 +35,8 @@ def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
 def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
     """(number of regions, in `work`; B relative to A) of two placed outlines.
 
-    A tangle is undone by shifts of 1e-13 of the size: a tangle is rounding.
+    A tangle is undone by shifts of 1e-13 of the size and more: a tangle is rounding. If none of eight does, there is no
+    contact this time.
     """
     rel = seen_from(pool.heads[ia], a, pool.heads[ib], b)
     n = overlap_kernel(pool, ia, pool, ib, rel, work)
@@ -45,47 +47,97 @@ def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Wo
             n = overlap_kernel(pool, ia, pool, ib, shifted, work)
             if n != TANGLED:
                 break
-        n = max(n, OVERFLOW)
+        if n == TANGLED:
+            n = 0
     return n, rel
 
 
 @kernel
-def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
-    """Direction A to B of the shortest way apart over the edge normals of both outer rings, in A's frame.
+def _support(pool: Pool, i: int, mx: float, my: float) -> float:
+    """How far the outer ring of outline i reaches along the unit direction m, in its own frame (length)."""
+    head = pool.heads[i]
+    reach = -np.inf
+    for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
+        x = pool.points[e, 0]
+        y = pool.points[e, 1]
+        reach = max(reach, mx * x + my * y)
+        r = pool.arcs[e, 2]
+        if r > 0.0:
+            k = pool.following[e]
+            cx = pool.arcs[e, 0]
+            cy = pool.arcs[e, 1]
+            if on_arc(x, y, pool.points[k, 0], pool.points[k, 1], r, cx + r * mx, cy + r * my):
+                reach = max(reach, mx * cx + my * cy + r)
+    return reach
 
-    Exact for convex outlines (separating axes); for concave ones a sensible guess. Only for regions that are born
-    without a direction: one outline inside the other, or two bars crossed.
+
+@kernel
+def _way(pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float) -> float:
+    """How far B must go along m, a unit direction in A's frame, to be clear of A's convex hull (length)."""
+    back = _support(pool, ib, -(rel.c * mx + rel.s * my), rel.s * mx - rel.c * my)
+    return _support(pool, ia, mx, my) + back - (mx * rel.tx + my * rel.ty)
+
+
+@kernel
+def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
+    """Direction A to B of the shortest way apart, in A's frame, of the normals of both outer rings' straight edges and
+    the lines from the arcs' centres through each other and through points.
+
+    Exact for convex outlines (at the shortest way an edge, or an arc and a point, or two arcs face each other); for
+    concave ones a sensible guess. Only for regions that are born without a direction: one outline inside the other, or
+    two bars crossed.
     """
     best = np.inf
     best_x = 0.0
     best_y = 1.0
-    ha = pool.heads[ia]
-    hb = pool.heads[ib]
-    a0, a1 = pool.rings[ha.ring, 0], pool.rings[ha.ring, 1]
-    b0, b1 = pool.rings[hb.ring, 0], pool.rings[hb.ring, 1]
     for of_a in (True, False):
-        e0, e1, v0, v1 = (a0, a1, b0, b1) if of_a else (b0, b1, a0, a1)
-        # both in the frame of the edges' outline
-        c, s = (rel.c, rel.s) if of_a else (rel.c, -rel.s)
-        tx = rel.tx if of_a else -(rel.c * rel.tx + rel.s * rel.ty)
-        ty = rel.ty if of_a else -(rel.c * rel.ty - rel.s * rel.tx)
-        for e in range(e0, e1):
+        edges = ia if of_a else ib
+        ends = ib if of_a else ia
+        head = pool.heads[edges]
+        other = pool.heads[ends]
+        # points beyond number 64 are those of a curve, whose edges have said as much
+        points = other.count if other.count <= 64 else 0
+        for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
             k = pool.following[e]
-            dx = pool.points[k, 0] - pool.points[e, 0]
-            dy = pool.points[k, 1] - pool.points[e, 1]
-            length = math.sqrt(dx * dx + dy * dy)
-            mx = dy / length
-            my = -dx / length
-            mx_v = c * mx + s * my  # the normal in the vertices' frame
-            my_v = -s * mx + c * my
-            deepest = -np.inf
-            edge = mx * (pool.points[e, 0] - tx) + my * (pool.points[e, 1] - ty)
-            for v in range(v0, v1):
-                deepest = max(deepest, edge - (mx_v * pool.points[v, 0] + my_v * pool.points[v, 1]))
-            if 0.0 < deepest < best:
-                best = deepest
-                if of_a:
-                    best_x, best_y = mx, my
-                else:  # B's outward normal points from B to A
-                    best_x, best_y = -(rel.c * mx - rel.s * my), -(rel.s * mx + rel.c * my)
+            r = pool.arcs[e, 2]
+            for j in range(1 if r == 0.0 else points + other.count):
+                if r == 0.0:
+                    mx = pool.points[k, 1] - pool.points[e, 1]
+                    my = pool.points[e, 0] - pool.points[k, 0]
+                    if not of_a:  # B's outward normal points from B to A
+                        mx, my = -(rel.c * mx - rel.s * my), -(rel.s * mx + rel.c * my)
+                else:
+                    f = other.point + (j if j < points else j - points)
+                    if j >= points and pool.arcs[f, 2] == 0.0:
+                        continue
+                    far = pool.points if j < points else pool.arcs
+                    own_x = pool.arcs[e, 0]
+                    own_y = pool.arcs[e, 1]
+                    far_x = far[f, 0]
+                    far_y = far[f, 1]
+                    if of_a:
+                        far_x, far_y = (
+                            rel.c * far_x - rel.s * far_y + rel.tx,
+                            rel.s * far_x + rel.c * far_y + rel.ty,
+                        )
+                    else:
+                        own_x, own_y = (
+                            rel.c * own_x - rel.s * own_y + rel.tx,
+                            rel.s * own_x + rel.c * own_y + rel.ty,
+                        )
+                    mx = far_x - own_x
+                    my = far_y - own_y
+                length = math.sqrt(mx * mx + my * my)
+                if length == 0.0:
+                    continue
+                mx /= length
+                my /= length
+                for way in (1.0, -1.0):
+                    if r == 0.0 and way < 0.0:
+                        continue
+                    depth = _way(pool, ia, ib, rel, way * mx, way * my)
+                    if 0.0 < depth < best:
+                        best = depth
+                        best_x = way * mx
+                        best_y = way * my
     return best_x, best_y

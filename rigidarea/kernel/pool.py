@@ -1,8 +1,8 @@
 """The gate: outlines cast once into the arrays that the kernels read, with a static hierarchy of boxes.
 
 Kernels never validate: what is in a `Pool` is contiguous float64 / int32, counter-clockwise rings with clockwise
-holes, no repeated points, coordinates relative to the middle of the outline's bounding box (so that an outline a
-million lengths from its body's origin keeps its digits).
+holes, no repeated points, no arc of more than half a turn, coordinates relative to the middle of the outline's bounding
+box (so that an outline a million lengths from its body's origin keeps its digits), of a disc relative to its centre.
 
 The hierarchy is implicit: `LEAF` consecutive edges share a leaf, the leaves are the last 2^d nodes of a binary
 heap (node 1 the root, children 2n and 2n + 1). Consecutive edges of a ring are neighbours in space too, which makes
@@ -32,8 +32,10 @@ HEAD = record(
         ("rings", "i4"),
         ("box", "i4"),  # node n of the hierarchy is boxes[box + n]
         ("leaves", "i4"),  # a power of two
-        ("convex", "i4"),  # and small enough to be clipped
-        ("round", "i4"),  # its edges are the samples of a curve
+        ("convex", "i4"),  # and of MOST_WALKED edges at the most
+        ("arcs", "i4"),  # number of edges that are arcs
+        ("disc", "i4"),  # its one ring is a circle, about (0, 0)
+        ("round", "i4"),  # its edges are arcs, or the samples of a curve
         ("x", "f8"),  # middle of the bounding box, body frame (length)
         ("y", "f8"),
         ("radius", "f8"),  # about that middle (length)
@@ -52,6 +54,9 @@ class Pool(NamedTuple):
     ring_of: np.ndarray  # (P,) int32
     rings: np.ndarray  # (R, 2) int32: first point, one past the last
     boxes: np.ndarray  # (N, 4) float64: middle x, y, half width, half height
+    # (P, 4) float64: centre and signed radius of the arc to the following point, and how far it may be from its chord;
+    # zeros: a straight edge
+    arcs: np.ndarray
     heads: np.ndarray  # (O,) HEAD
 
 
@@ -61,13 +66,17 @@ class HasRings(Protocol):
     @property
     def rings(self) -> tuple[np.ndarray, ...]: ...
     @property
+    def arcs(self) -> tuple[np.ndarray, ...]: ...
+    @property
     def area(self) -> float: ...
     @property
     def centroid(self) -> tuple[float, float]: ...
+    @property
+    def bounds(self) -> tuple[float, float, float, float]: ...
 
 
-#: Outlines of more points are not clipped, convex or not.
-MOST_CLIPPED = 21
+#: Convex outlines of more edges are not walked round: by then the hierarchy is faster.
+MOST_WALKED = 96
 #: Sampled closer than this fraction of the extent to an arc, an edge is taken for a part of it.
 ROUND = 1e-3
 #: Depth at which `face` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
@@ -75,7 +84,13 @@ FACE_DEPTH = 0.02
 
 
 @njit
-def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
+def _on_arc(p: np.ndarray, q: np.ndarray, r: float, x: float, y: float) -> bool:
+    """Whether a point of its circle lies on the arc p -> q."""
+    return ((q[0] - p[0]) * (y - p[1]) - (q[1] - p[1]) * (x - p[0])) * r < 0.0
+
+
+@njit
+def _boxes(points: np.ndarray, following: np.ndarray, arcs: np.ndarray) -> tuple[np.ndarray, int]:
     """The hierarchy over the edges (point, following point): boxes (2 leaves, 4), leaves."""
     n = len(points)
     leaves = 1
@@ -90,6 +105,15 @@ def _boxes(points: np.ndarray, following: np.ndarray) -> tuple[np.ndarray, int]:
             for d in range(2):
                 edge[node, d] = min(edge[node, d], points[p, d])
                 edge[node, 2 + d] = max(edge[node, 2 + d], points[p, d])
+        r = arcs[i, 2]
+        if r != 0.0:
+            for d in range(2):
+                for sign in (-1.0, 1.0):
+                    x = arcs[i, 0] + (sign * abs(r) if d == 0 else 0.0)
+                    y = arcs[i, 1] + (sign * abs(r) if d == 1 else 0.0)
+                    if _on_arc(points[i], points[following[i]], r, x, y):
+                        edge[node, d] = min(edge[node, d], arcs[i, d] + sign * abs(r))
+                        edge[node, 2 + d] = max(edge[node, 2 + d], arcs[i, d] + sign * abs(r))
     for node in range(leaves - 1, 0, -1):
         for d in range(2):
             edge[node, d] = min(edge[2 * node, d], edge[2 * node + 1, d])
@@ -191,31 +215,73 @@ def _round(points: np.ndarray, following: np.ndarray) -> bool:
 
 
 @njit
-def _clippable(points: np.ndarray) -> bool:
-    """Whether every point lies left of every edge's line: a convex outline cut along its edges stays itself.
+def _convex(points: np.ndarray, arcs: np.ndarray) -> bool:
+    """Whether a ring is convex, so that clipping it by its own edges or walking round it is safe.
 
-    (An edge of rounding length may look the wrong way in an outline that is convex but for rounding.)
+    Every point lies left of every straight edge's line, and at every point the tangent turns left. (To rounding: an
+    edge of rounding length may look the wrong way in an outline that is convex but for rounding.)
     """
     n = len(points)
-    least = -1e-13 * np.abs(points).max()
+    size = np.abs(points).max()
     for i in range(n):
         j = (i + 1) % n
         ex = points[j, 0] - points[i, 0]
         ey = points[j, 1] - points[i, 1]
         length = math.hypot(ex, ey)
+        if arcs[i, 2] < 0.0:
+            return False
         for k in range(n):
-            if ex * (points[k, 1] - points[i, 1]) - ey * (points[k, 0] - points[i, 0]) < least * length:
+            out = ex * (points[k, 1] - points[i, 1]) - ey * (points[k, 0] - points[i, 0])
+            if out < -1e-13 * size * length:
+                return False
+        if arcs[i, 2] > 0.0 or arcs[j, 2] > 0.0:
+            ax = -(points[j, 1] - arcs[i, 1]) if arcs[i, 2] > 0.0 else ex
+            ay = points[j, 0] - arcs[i, 0] if arcs[i, 2] > 0.0 else ey
+            k = (j + 1) % n
+            bx = -(points[j, 1] - arcs[j, 1]) if arcs[j, 2] > 0.0 else points[k, 0] - points[j, 0]
+            by = points[j, 0] - arcs[j, 0] if arcs[j, 2] > 0.0 else points[k, 1] - points[j, 1]
+            if ax * by - ay * bx < -1e-13 * size * (math.hypot(ax, ay) + math.hypot(bx, by)):
                 return False
     return True
 
 
 @njit
+def _chords(points: np.ndarray, arcs: np.ndarray) -> np.ndarray:
+    """A ring with each of its arcs as 32 chords: what `_face` and `_round` need of it."""
+    n = len(points)
+    out = np.empty((32 * n, 2))
+    m = 0
+    for i in range(n):
+        out[m] = points[i]
+        m += 1
+        r = arcs[i, 2]
+        if r == 0.0:
+            continue
+        j = (i + 1) % n
+        ax = points[i, 0] - arcs[i, 0]
+        ay = points[i, 1] - arcs[i, 1]
+        bx = points[j, 0] - arcs[i, 0]
+        by = points[j, 1] - arcs[i, 1]
+        step = math.atan2(abs(ax * by - ay * bx), ax * bx + ay * by) / 32.0
+        if r < 0.0:
+            step = -step
+        for k in range(1, 32):
+            c = math.cos(k * step)
+            s = math.sin(k * step)
+            out[m, 0] = arcs[i, 0] + c * ax - s * ay
+            out[m, 1] = arcs[i, 1] + s * ax + c * ay
+            m += 1
+    return out[:m]
+
+
+@njit
 def _prepare(
-    points: np.ndarray, starts: np.ndarray, x: float, y: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, bool, float, float, float]]:
+    points: np.ndarray, arcs: np.ndarray, starts: np.ndarray, x: float, y: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, int, bool, bool, float, float, float]]:
     """Everything of one outline but its rings: following, ring_of, boxes, and the numbers of its head.
 
-    From its points about the middle of its box, where its rings start in them, and its centroid (x, y).
+    From its points and arcs about the middle of its box, where its rings start in them, and its centroid (x, y). The
+    arcs' last column is filled in.
     """
     n = len(points)
     following = np.arange(1, n + 1).astype(np.int32)
@@ -223,44 +289,84 @@ def _prepare(
     for r in range(len(starts) - 1):
         following[starts[r + 1] - 1] = starts[r]
         ring_of[starts[r] : starts[r + 1]] = r
-    boxes, leaves = _boxes(points, following)
-    face, arm = _face(points[: starts[1]], x, y)
-    convex = len(starts) == 2 and n <= MOST_CLIPPED and _clippable(points)
+    bent = 0
+    disc = len(starts) == 2 and arcs[0, 2] > 0.0
     radius = 0.0
     for i in range(n):
         radius = max(radius, math.hypot(points[i, 0], points[i, 1]))
-    return following, ring_of, boxes, (leaves, convex, _round(points, following), radius, face, arm)
+        r = arcs[i, 2]
+        disc = disc and arcs[i, 0] == 0.0 and arcs[i, 1] == 0.0 and r == arcs[0, 2]
+        if r == 0.0:
+            continue
+        bent += 1
+        p = points[i]
+        q = points[following[i]]
+        far = math.hypot(arcs[i, 0], arcs[i, 1])
+        reach = far + abs(r)
+        if far > 0.0 and _on_arc(p, q, r, arcs[i, 0] * reach / far, arcs[i, 1] * reach / far):
+            radius = max(radius, reach)
+        half = 0.5 * math.hypot(q[0] - p[0], q[1] - p[1])
+        bow = (
+            abs(r)
+            if half >= abs(r)
+            else half * half / (abs(r) + math.sqrt((abs(r) - half) * (abs(r) + half)))
+        )
+        arcs[i, 3] = bow + 16.0 * 2.0**-52 * (reach + half)
+    if disc:
+        radius = arcs[0, 2]
+    boxes, leaves = _boxes(points, following, arcs)
+    outer = points[: starts[1]]
+    convex = len(starts) == 2 and n <= MOST_WALKED and _convex(points, arcs)
+    if bent > 0:
+        outer = _chords(outer, arcs[: starts[1]])
+        after = np.arange(1, len(outer) + 1).astype(np.int32)
+        after[-1] = 0
+        curved = _round(outer, after)
+    else:
+        curved = _round(points, following)
+    face, arm = _face(outer, x, y)
+    return following, ring_of, boxes, (leaves, convex, bent, disc, curved, radius, face, arm)
 
 
 def pack(outlines: Sequence[HasRings]) -> Pool:
     """Cast outlines into one pool. Rings are taken as `Outline` makes them (checked there)."""
     heads = np.zeros(len(outlines), HEAD)
-    columns: list[list[np.ndarray]] = [[], [], [], [], []]
+    columns: list[list[np.ndarray]] = [[], [], [], [], [], []]
     n_points = n_rings = n_boxes = 0
     for head, outline in zip(heads, outlines):
-        outer = outline.rings[0]
-        low, high = outer.min(axis=0), outer.max(axis=0)
-        middle = 0.5 * (low + high)
+        if outline.arcs:
+            xmin, ymin, xmax, ymax = outline.bounds
+            middle = 0.5 * np.array((xmin + xmax, ymin + ymax))
+            if len(outline.arcs) == 1 and (outline.arcs[0] == outline.arcs[0][0]).all():
+                middle = outline.arcs[0][0, :2]
+        else:
+            outer = outline.rings[0]
+            middle = 0.5 * (outer.min(axis=0) + outer.max(axis=0))
         head["x"], head["y"] = middle
         head["area"] = outline.area
         starts = np.zeros(len(outline.rings) + 1, np.int64)
         np.cumsum([len(ring) for ring in outline.rings], out=starts[1:])
         rings = outline.rings[0] if len(starts) == 2 else np.concatenate(outline.rings)
         points = np.ascontiguousarray(rings - middle, dtype=np.float64)
+        arcs = np.zeros((len(points), 4))
+        if outline.arcs:
+            arcs[:, :3] = np.concatenate(outline.arcs)
+            arcs[:, :2] -= np.where(arcs[:, 2:3] == 0, 0.0, middle)
         x, y = outline.centroid
-        following, ring_of, boxes, numbers = _prepare(points, starts, x - middle[0], y - middle[1])
-        for name, number in zip(("leaves", "convex", "round", "radius", "face", "face_arm"), numbers):
+        following, ring_of, boxes, numbers = _prepare(points, arcs, starts, x - middle[0], y - middle[1])
+        names = ("leaves", "convex", "arcs", "disc", "round", "radius", "face", "face_arm")
+        for name, number in zip(names, numbers):
             head[name] = number
         head["point"], head["ring"], head["box"] = n_points, n_rings, n_boxes
         head["count"], head["rings"] = len(points), len(starts) - 1
         ends = np.stack([starts[:-1], starts[1:]], axis=1).astype(np.int32)
         for column, array in zip(
-            columns, (points, following + n_points, ring_of + n_rings, ends + n_points, boxes)
+            columns, (points, following + n_points, ring_of + n_rings, ends + n_points, boxes, arcs)
         ):
             column.append(array)
         n_points += len(points)
         n_rings += len(starts) - 1
         n_boxes += len(boxes)
-    dtypes = (np.float64, np.int32, np.int32, np.int32, np.float64)
+    dtypes = (np.float64, np.int32, np.int32, np.int32, np.float64, np.float64)
     arrays = [np.concatenate(column).astype(dtype, copy=False) for column, dtype in zip(columns, dtypes)]
-    return Pool(arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], heads)
+    return Pool(arrays[0], arrays[1], arrays[2], arrays[3], arrays[4], arrays[5], heads)

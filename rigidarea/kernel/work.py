@@ -7,11 +7,16 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .arc import FLAT, flat_segment, top
 from .jit import kernel
 from .memory import record
 
 #: Regions thinner than this, relative to their own perimeter, are rounding (area / perimeter^2).
 NO_AREA = 1e-16
+#: Instead of a number of crossings or regions. The scratch is too small: enlarge it (`enlarged`) and call again.
+OVERFLOW = -1
+#: The crossings do not alternate: an outline crosses itself within rounding. Shift it a little and call again.
+TANGLED = -2
 #: Which outline an edge of a region lies on.
 A_EDGE, B_EDGE = 0, 1
 
@@ -25,11 +30,11 @@ LOOP = record(
         ("chord_x", "f8"),  # sum of (end - start) over the arcs of A, A's frame (length)
         ("chord_y", "f8"),
         ("lever", "f8"),  # sum of (|end|^2 - |start|^2) / 2 over the arcs of A, about the centroid (length^2)
-        (
-            "straight",
-            "f8",
-        ),  # longest straight stretch of both boundaries: the shorter of A's and B's longest edges (length)
+        # longest straight stretch of both boundaries: the shorter of A's and B's longest, points on it not counted;
+        # 0 where one of the two is nothing but arcs (length)
+        ("straight", "f8"),
         ("region", "i4"),  # of a hole: the loop it is a hole of; of a region: itself
+        ("arcs", "i4"),  # 1: its edges may be arcs, `Work.bows` says which; 0: all are straight
     ],
 )
 
@@ -55,6 +60,9 @@ class Work(NamedTuple):
     hit: np.ndarray  # (R,) uint8: rings with a crossing
     polygon: np.ndarray  # (V, 2) float64: all loops, vertex by vertex, A's frame
     label: np.ndarray  # (V,) uint8: which outline the edge to the next vertex lies on (A_EDGE, B_EDGE)
+    # (V, 3) float64: centre and signed radius of the arc to the next vertex, radius 0: a straight edge (A's frame). The
+    # polygon has the ends and the middle of every arc. Not written where loops have no arcs.
+    bows: np.ndarray
     loops: np.ndarray  # (L,) LOOP
 
 
@@ -68,15 +76,16 @@ def new_work(points: int = 256, crossings: int = 32, rings: int = 16) -> Work:
         np.empty((4, crossings), np.int32),
         np.empty(crossings, np.uint8),
         np.empty(2 * rings, np.uint8),
-        np.empty((points + 2 * crossings, 2)),
-        np.empty(points + 2 * crossings, np.uint8),
+        np.empty((2 * points + 4 * crossings, 2)),
+        np.empty(2 * points + 4 * crossings, np.uint8),
+        np.empty((2 * points + 4 * crossings, 3)),
         np.empty(crossings + rings, LOOP),
     )
 
 
 def fits(work: Work, points: int, rings: int) -> bool:
     """Whether `work` can hold any query on outlines of `points` points and `rings` rings together."""
-    return len(work.polygon) >= points + 2 * len(work.cross) and len(work.hit) >= 2 * rings
+    return len(work.polygon) >= 2 * points + 4 * len(work.cross) and len(work.hit) >= 2 * rings
 
 
 def enlarged(work: Work, points: int, rings: int) -> Work:
@@ -110,9 +119,49 @@ def placed(q: np.ndarray, i: int, rel: Relative) -> tuple[float, float]:
     return rel.c * x - rel.s * y + rel.tx, rel.s * x + rel.c * y + rel.ty
 
 
+@kernel(inline="always")
+def noise_of(radius_a: float, radius_b: float, rel: Relative) -> float:
+    """What a placed coordinate may be wrong by (length): eight roundings of the largest."""
+    return 8.0 * 2.0**-52 * (radius_a + radius_b + abs(rel.tx) + abs(rel.ty))
+
+
 @kernel
-def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: int, stop: int) -> int:
-    """Area, centroid and chord of the polygon p[start:stop] as loop n; the number of loops there are then."""
+def put(
+    work: Work, v: int, label: int, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
+) -> int:
+    """Append the edge p -> q (q left out) of a loop with arcs, an arc's middle too; the number of vertices then."""
+    polygon = work.polygon
+    bows = work.bows
+    if px == qx and py == qy:
+        return v
+    polygon[v, 0] = px
+    polygon[v, 1] = py
+    work.label[v] = label
+    bows[v, 2] = r
+    if r != 0.0:
+        bows[v, 0] = cx
+        bows[v, 1] = cy
+        v += 1
+        polygon[v, 0], polygon[v, 1] = top(px, py, qx, qy, cx, cy, r)
+        work.label[v] = label
+        bows[v, 0] = cx
+        bows[v, 1] = cy
+        bows[v, 2] = r
+    return v + 1
+
+
+@kernel
+def measure(work: Work, n: int, start: int, stop: int, arcs: bool, noise: float) -> int:
+    """Area, centroid, chord and straight stretch of the polygon start:stop as loop n; the number of loops then.
+
+    arcs: whether its edges may be arcs, by `work.bows`. noise: see `noise_of`; edges that turn by no more at a vertex
+    are one straight stretch.
+    """
+    if stop - start < 2:
+        return n
+    p = work.polygon
+    label = work.label
+    bows = work.bows
     ox = p[start, 0]
     oy = p[start, 1]
     doubled = 0.0
@@ -121,12 +170,25 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
     chord_x = 0.0
     chord_y = 0.0
     lever = 0.0
-    flat_a = 0.0
+    flat_a = 0.0  # squared lengths of the longest stretches
     flat_b = 0.0
     perimeter = 0.0
     ux = p[stop - 1, 0] - ox
     uy = p[stop - 1, 1] - oy
-    on_a = label[stop - 1] == A_EDGE
+    own = label[stop - 1]
+    r = bows[stop - 1, 2] if arcs else 0.0
+    # the stretch that is being walked: where it began, its last edge, whether the loop's start lies in it
+    run_x = ux
+    run_y = uy
+    run_dx = 0.0
+    run_dy = 0.0
+    run_of = 2  # nobody's
+    leading = True
+    first_x = ux
+    first_y = uy
+    first_dx = 0.0
+    first_dy = 0.0
+    first_of = 2
     for i in range(start, stop):
         vx = p[i, 0] - ox
         vy = p[i, 1] - oy
@@ -136,20 +198,71 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
         sy += (uy + vy) * cross
         dx = vx - ux
         dy = vy - uy
-        perimeter += abs(dx) + abs(dy)
-        if on_a:
+        steps = abs(dx) + abs(dy)
+        perimeter += steps
+        if own == A_EDGE:
             chord_x += dx
             chord_y += dy
             lever += 0.5 * (vx * vx + vy * vy - ux * ux - uy * uy)
-            flat_a = max(flat_a, dx * dx + dy * dy)
-        else:
-            flat_b = max(flat_b, dx * dx + dy * dy)
-        on_a = label[i] == A_EDGE
+        if r == 0.0 and steps > noise:
+            if not (
+                own == run_of
+                and abs(run_dx * dy - run_dy * dx) <= noise * (abs(run_dx) + abs(run_dy) + steps)
+                and run_dx * dx + run_dy * dy > 0.0
+            ):
+                leading = i == start
+                run_x = ux
+                run_y = uy
+                run_of = own
+            run_dx = dx
+            run_dy = dy
+            reach = (vx - run_x) ** 2 + (vy - run_y) ** 2
+            if own == A_EDGE:
+                flat_a = max(flat_a, reach)
+            else:
+                flat_b = max(flat_b, reach)
+            if leading:
+                first_x = vx
+                first_y = vy
+                first_of = own
+                if i == start:
+                    first_dx = dx
+                    first_dy = dy
+        elif r != 0.0:
+            run_of = 2
+            leading = False
+            chord2 = dx * dx + dy * dy
+            if chord2 > 0.0:
+                radius = abs(r)
+                chord = math.sqrt(chord2)
+                x = min(1.0, 0.5 * chord / radius)
+                x2 = x * x
+                if x2 < FLAT:
+                    area, moment = flat_segment(x, x2)
+                else:
+                    c = math.sqrt((1.0 - x) * (1.0 + x))
+                    area = math.asin(x) - x * c
+                    moment = (2.0 / 3.0) * x2 * x - area * c
+                area *= r * radius
+                moment *= 6.0 * radius * radius * radius / chord
+                doubled += 2.0 * area
+                sx += 3.0 * area * (ux + vx) + moment * dy
+                sy += 3.0 * area * (uy + vy) - moment * dx
+        own = label[i]
+        r = bows[i, 2] if arcs else 0.0
         ux = vx
         uy = vy
     if abs(doubled) <= 2.0 * NO_AREA * perimeter * perimeter:
         return n
-    loop = loops[n]
+    if not leading and run_of == first_of and run_of != 2:  # does the last stretch go on in the first?
+        room = noise * (abs(run_dx) + abs(run_dy) + abs(first_dx) + abs(first_dy))
+        if abs(run_dx * first_dy - run_dy * first_dx) <= room and run_dx * first_dx + run_dy * first_dy > 0.0:
+            reach = (first_x - run_x) ** 2 + (first_y - run_y) ** 2
+            if run_of == A_EDGE:
+                flat_a = max(flat_a, reach)
+            else:
+                flat_b = max(flat_b, reach)
+    loop = work.loops[n]
     loop.start = start
     loop.stop = stop
     loop.area = 0.5 * doubled
@@ -162,4 +275,5 @@ def measure(p: np.ndarray, label: np.ndarray, loops: np.ndarray, n: int, start: 
     loop.lever = lever - sx * chord_x - sy * chord_y
     loop.straight = math.sqrt(min(flat_a, flat_b))
     loop.region = n
+    loop.arcs = 1 if arcs else 0
     return n + 1

@@ -3,21 +3,17 @@
 from __future__ import annotations
 
 import math
-from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..outline import DEFAULT_TOLERANCE, Outline, arc_points, circle_points, positive
+from ..arcs import circle_ring
+from ..outline import Outline, positive
 
 
 def circle(radius: float, *, tolerance: float | None = None) -> Outline:
-    """A disc of `radius` (length): a regular polygon of the disc's area.
-
-    tolerance: length; default a thousandth of the radius (72 points). ValueError unless both are positive.
-    """
-    radius, tolerance = positive(radius, "radius"), _tolerance(tolerance, radius)
-    return Outline.from_curve([circle_points((0, 0), radius, tolerance)], partial(circle, radius))
+    """A disc of `radius` (length); with a `tolerance` (length) sampled to it. ValueError unless they are positive."""
+    return _sampled(Outline.circle(radius), tolerance)
 
 
 def box(width: float, height: float) -> Outline:
@@ -29,26 +25,24 @@ def box(width: float, height: float) -> Outline:
 def ring(inner: float, outer: float, *, tolerance: float | None = None) -> Outline:
     """An annulus, or the journal of a bearing: radii `inner` < `outer` (length), the hole being a hole.
 
-    tolerance: length; default a thousandth of the inner radius. A pin with little play in the hole wants
-    less than a tenth of the play. ValueError unless 0 < inner < outer.
+    tolerance: length; if given, the circles are sampled to it. ValueError unless 0 < inner < outer.
     """
     inner, outer = positive(inner, "inner"), positive(outer, "outer")
     if inner >= outer:
         raise ValueError(f"inner must be smaller than outer, got inner={inner!r}, outer={outer!r}")
-    tolerance = _tolerance(tolerance, inner)
-    rings = [circle_points((0, 0), radius, tolerance) for radius in (outer, inner)]
-    return Outline.from_curve(rings, partial(ring, inner, outer))
+    points, arcs = zip(*(circle_ring((0.0, 0.0), radius) for radius in (outer, inner)))
+    return _sampled(Outline.from_curve(points, arcs=arcs), tolerance)
 
 
 def capsule(length: float, radius: float, *, tolerance: float | None = None) -> Outline:
     """A stadium along x: two half discs of `radius`, their centres `length` apart.
 
-    tolerance: length; default a thousandth of the radius. ValueError unless all are positive.
+    tolerance: length; if given, the arcs are sampled to it. ValueError unless all are positive.
     """
     half, radius = positive(length, "length") / 2, positive(radius, "radius")
-    tolerance = _tolerance(tolerance, radius)
-    right = arc_points((half, 0), radius, -math.pi / 2, math.pi, tolerance)
-    return Outline.from_curve([np.concatenate((right, -right))], partial(capsule, length, radius))
+    points = np.array([(half, -radius), (half, radius), (-half, radius), (-half, -radius)])
+    arcs = np.array([(half, 0.0, radius), (0.0, 0.0, 0.0), (-half, 0.0, radius), (0.0, 0.0, 0.0)])
+    return _sampled(Outline.from_curve([points], arcs=[arcs]), tolerance)
 
 
 def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None = None) -> Outline:
@@ -56,13 +50,11 @@ def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None
     its two edges.
 
     points: (n, 2), either sense; a point between collinear edges stays a point.
-    tolerance: length; default a thousandth of half the polygon's smaller extent.
+    tolerance: length; if given, the arcs are sampled to it.
     ValueError for points that make no outline, and where two roundings need more than the edge between them.
     """
-    sharp, radius = Outline(points), positive(radius, "radius")
-    xmin, ymin, xmax, ymax = sharp.bounds
-    tolerance = _tolerance(tolerance, min(xmax - xmin, ymax - ymin) / 2)
-    corner = sharp.rings[0]
+    radius = positive(radius, "radius")
+    corner = Outline(points).rings[0]
     ahead = np.roll(corner, -1, axis=0) - corner
     length = np.hypot(*ahead.T)
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
@@ -76,19 +68,33 @@ def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None
             f"radius must leave every edge: edge {i} of length {length[i]:.6g} needs "
             f"{length[i] - spare[i]:.6g} for its two corners at radius {radius:.6g}"
         )
-    pieces = []
+    ring: list[np.ndarray] = []
+    arcs = []
     for i in range(len(corner)):
         if cut[i] <= 1e-9 * length.max():
-            pieces.append(corner[i : i + 1])
+            ring.append(corner[i])
+            arcs.append((0.0, 0.0, 0.0))
             continue
         side = math.copysign(1, turn[i])
-        before = heading[i - 1]
-        tangent = corner[i] - cut[i] * np.array((math.cos(before), math.sin(before)))
-        center = tangent + side * radius * np.array((-math.sin(before), math.cos(before)))
-        arc = arc_points(tuple(center), radius, before - side * math.pi / 2, turn[i], tolerance)
-        pieces.append(arc[1:] if spare[i - 1] <= noise else arc)  # where no edge is left, arc meets arc
-    return Outline(np.concatenate(pieces)).with_curve(partial(rounded_polygon, corner, radius))
+        along, leaving = ahead[i - 1] / length[i - 1], ahead[i] / length[i]
+        tangent = corner[i] - cut[i] * along
+        center = tangent + side * radius * np.array((-along[1], along[0]))
+        if spare[i - 1] <= noise and arcs and arcs[-1] == (0.0, 0.0, 0.0):  # no edge is left: arc meets arc
+            ring.pop()
+            arcs.pop()
+        ring += [tangent, corner[i] + cut[i] * leaving]
+        arcs += [(*center.tolist(), side * radius), (0.0, 0.0, 0.0)]
+    if spare[-1] <= noise and cut[0] > 0 and arcs[-1] == (0.0, 0.0, 0.0):
+        ring.pop()
+        arcs.pop()
+    _check_valid(ring, arcs)
+    return _sampled(Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)]), tolerance)
 
 
-def _tolerance(tolerance: float | None, size: float) -> float:
-    return DEFAULT_TOLERANCE * size if tolerance is None else positive(tolerance, "tolerance")
+def _check_valid(ring: list[np.ndarray], arcs: list[tuple[float, float, float]]) -> None:
+    """ValueError if the arcs cut into each other, as those of a narrow neck can."""
+    Outline(Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)]).polygon_rings[0])
+
+
+def _sampled(outline: Outline, tolerance: float | None) -> Outline:
+    return outline if tolerance is None else outline.sample(tolerance)

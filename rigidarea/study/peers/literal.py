@@ -75,7 +75,7 @@ class Literal(AreaExplicit):
             if math.isfinite(spacing):
                 outline = Outline.from_shapely(shapely.segmentize(outline.polygon, spacing))
             shape.outline = outline  # type: ignore[attr-defined]
-            rings = [np.asarray(ring) for ring in outline.rings]
+            rings = [np.asarray(ring) for ring in outline.polygon_rings]
             shape.nodes = np.concatenate(rings)  # type: ignore[attr-defined]
             shape.edges = np.concatenate([np.hstack((r, np.roll(r, -1, 0))) for r in rings])  # type: ignore[attr-defined]
             shape.collision_type = 1

@@ -1,0 +1,232 @@
+"""Circular arcs in the overlap kernels: what lies between arc and chord, and where arcs meet edges and arcs.
+
+An arc p -> q has a centre c and a signed radius r: r > 0 runs counter-clockwise, r < 0 clockwise; it sweeps half a
+turn at the most (`rigidarea/arcs.py`), so its points are those of the circle to the right of p -> q for r > 0, to the
+left for r < 0, and half a chord and a radius say all of its measures.
+
+*Which crossings there are* is decided by signs at the ends of the edges alone: on which side of a line an end lies
+(exact, `predicates.side`), inside or outside which circle (a plain sign, of the same bits for both edges that share
+the end). An edge whose ends differ crosses once; one whose ends are alike crosses twice or not at all, both together.
+So the crossings of a whole ring with a line or circle always come in pairs, however the roots are rounded, and a root
+is never compared with an end. Where ends are alike, "twice" is asked of the one point of the arc that lies furthest
+across: if rounding gets that wrong, the arc dips across by no more than rounding, and so does the area that is lost.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .jit import kernel
+from .predicates import side
+
+#: Bits of what `line_arc` and `arc_arc` return.
+FIRST, SECOND = 1, 2
+#: The circles are one to rounding: where they cross is undecided. (Above all others, which are 0 to 3.)
+COINCIDE = 4
+#: So near in centre and radius, over the radii: 20 times the rounding of either.
+SAME_CIRCLE = 1e-14
+#: (half chord / radius)^2 below which the series is used: there the closed form would lose two digits.
+FLAT = 0.02
+
+# Both series follow from dF/dx = 2 x^2 (1 - x^2)^(-1/2) and dM/dx = x F (1 - x^2)^(-1/2); eight terms reach rounding at
+# FLAT.
+_HALVES = [math.comb(2 * k, k) / 4.0**k for k in range(8)]  # of (1 - x^2)^(-1/2)
+_F = [2.0 * b / (2 * k + 3) for k, b in enumerate(_HALVES)]
+_M = [sum(_F[i] * _HALVES[k - i] for i in range(k + 1)) / (2 * k + 5) for k in range(8)]
+_F0, _F1, _F2, _F3, _F4, _F5, _F6, _F7 = _F
+_M0, _M1, _M2, _M3, _M4, _M5, _M6, _M7 = _M
+
+
+@kernel(inline="always")
+def flat_segment(x: float, x2: float) -> tuple[float, float]:
+    """`segment` of a flat one: x = half chord / radius, x2 its square, below FLAT."""
+    f = _F4 + x2 * (_F5 + x2 * (_F6 + x2 * _F7))
+    f = _F0 + x2 * (_F1 + x2 * (_F2 + x2 * (_F3 + x2 * f)))
+    m = _M4 + x2 * (_M5 + x2 * (_M6 + x2 * _M7))
+    m = _M0 + x2 * (_M1 + x2 * (_M2 + x2 * (_M3 + x2 * m)))
+    x3 = x2 * x
+    return x3 * f, x3 * x2 * m
+
+
+@kernel(inline="always")
+def segment(half: float, apothem: float, radius: float) -> tuple[float, float]:
+    """(area, first moment about the chord, away from the centre) between a chord and its arc (length^2, length^3).
+
+    half: of the chord; apothem: the chord's distance from the centre, negative where the arc is more than half a turn.
+    """
+    x = half / radius
+    x2 = x * x
+    r2 = radius * radius
+    if x2 < FLAT and apothem > 0.0:
+        area, moment = flat_segment(x, x2)
+    else:
+        c = apothem / radius
+        area = math.atan2(half, apothem) - x * c
+        moment = (2.0 / 3.0) * x2 * x - area * c
+    return r2 * area, r2 * radius * moment
+
+
+@kernel(inline="always")
+def across(x: float, y: float, cx: float, cy: float, r: float) -> bool:
+    """Whether a point lies inside a circle."""
+    dx = x - cx
+    dy = y - cy
+    return dx * dx + dy * dy < r * r
+
+
+@kernel(inline="always")
+def on_arc(px: float, py: float, qx: float, qy: float, r: float, x: float, y: float) -> bool:
+    """Whether a point of the circle lies on its arc p -> q."""
+    return ((qx - px) * (y - py) - (qy - py) * (x - px)) * r < 0.0
+
+
+@kernel(inline="always")
+def top(px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float) -> tuple[float, float]:
+    """The middle of the arc p -> q. (Any point of it will do for its measures: halves add up.)"""
+    gx = 0.5 * (px + qx) - cx
+    gy = 0.5 * (py + qy) - cy
+    g2 = gx * gx + gy * gy
+    if g2 <= 0.5 * r * r:  # a wide arc: across its chord
+        gx = qy - py
+        gy = px - qx
+        f = r / math.sqrt(gx * gx + gy * gy)
+    else:
+        f = abs(r) / math.sqrt(g2)
+    return cx + f * gx, cy + f * gy
+
+
+@kernel(inline="always")
+def turned(px: float, py: float, cx: float, cy: float, r: float, x: float, y: float) -> float:
+    """How far along the arc from p a point lies: grows from 0 to 2 over half a turn, as the angle does.
+
+    Points that rounding has put before p, or beyond the half turn, stay there.
+    """
+    ax = px - cx
+    ay = py - cy
+    bx = x - cx
+    by = y - cy
+    dot = ax * bx + ay * by
+    cross = ax * by - ay * bx
+    if r < 0.0:
+        cross = -cross
+    if dot >= 0.0:
+        return cross / (abs(cross) + dot)
+    if cross >= 0.0:
+        return 1.0 - dot / (cross - dot)
+    return 2.0 - cross / (-cross - dot) if cross > dot else -1.0
+
+
+@kernel
+def line_arc(
+    ax: float, ay: float, bx: float, by: float,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float, arc_of_b: bool,
+) -> tuple[int, float, float, float, float]:  # fmt: skip
+    """Crossings of the edge a -> b with the arc p -> q: (bits, x1, y1, x2, y2).
+
+    FIRST: the edge enters the arc's circle at (x1, y1); SECOND: it leaves it at (x2, y2).
+    """
+    ux = bx - ax
+    uy = by - ay
+    wx = cx - ax
+    wy = cy - ay
+    length2 = ux * ux + uy * uy
+    turn = ux * wy - uy * wx
+    missed = turn * turn >= r * r * length2
+    p_left = side(ax, ay, bx, by, px, py, arc_of_b) > 0.0
+    q_left = side(ax, ay, bx, by, qx, qy, arc_of_b) > 0.0
+    a_in = across(ax, ay, cx, cy, r)
+    b_in = across(bx, by, cx, cy, r)
+    if (missed and (p_left == q_left or a_in == b_in)) or (a_in and b_in):
+        return 0, 0.0, 0.0, 0.0, 0.0
+    length = math.sqrt(length2)
+    ex = ux / length
+    ey = uy / length
+    distance = turn / length  # of the centre, to the left
+    if a_in == b_in:  # both outside
+        along = ex * wx + ey * wy
+        if along <= 0.0 or along >= length:
+            return 0, 0.0, 0.0, 0.0, 0.0
+        bits = FIRST | SECOND
+    else:
+        bits = FIRST if b_in else SECOND
+    if p_left != q_left:
+        bits &= FIRST if (r > 0.0) == p_left else SECOND
+    else:
+        reach = abs(r) if p_left else -abs(r)
+        if not on_arc(px, py, qx, qy, r, cx + reach * ey, cy - reach * ex):
+            return 0, 0.0, 0.0, 0.0, 0.0
+    half = math.sqrt(max(0.0, (abs(r) - abs(distance)) * (abs(r) + abs(distance))))
+    fx = cx + distance * ey
+    fy = cy - distance * ex
+    return bits, fx - half * ex, fy - half * ey, fx + half * ex, fy + half * ey
+
+
+@kernel
+def circle_circle(
+    ax: float, ay: float, a: float, bx: float, by: float, b: float
+) -> tuple[float, float, float, float, float, float]:
+    """Where the circles of radius a about (ax, ay) and b about (bx, by) meet: (dx, dy, x1, y1, x2, y2).
+
+    (dx, dy) is the unit direction from a's centre to b's. Circle a, counter-clockwise, enters b at (x1, y1), to the
+    right of it, and leaves it at (x2, y2). Where they do not meet: the point nearest to meeting, twice.
+    """
+    dx = bx - ax
+    dy = by - ay
+    d = math.sqrt(dx * dx + dy * dy)
+    if d == 0.0:
+        return 1.0, 0.0, ax, ay, ax, ay
+    dx /= d
+    dy /= d
+    heron = ((a + b) - d) * (d - (a - b)) * (d + (a - b)) * (d + (a + b))
+    half = math.sqrt(max(0.0, heron)) / (2.0 * d)
+    if a <= b:  # from the smaller circle, whose rounding is less
+        foot = min(a, max(-a, 0.5 * (d - (b - a) * (a + b) / d)))
+        fx = ax + foot * dx
+        fy = ay + foot * dy
+    else:
+        foot = min(b, max(-b, 0.5 * (d - (a - b) * (a + b) / d)))
+        fx = bx - foot * dx
+        fy = by - foot * dy
+    return dx, dy, fx + half * dy, fy - half * dx, fx - half * dy, fy + half * dx
+
+
+@kernel
+def arc_arc(
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+    sx: float, sy: float, tx: float, ty: float, gx: float, gy: float, u: float,
+) -> tuple[int, float, float, float, float]:  # fmt: skip
+    """Crossings of the arc p -> q (c, r) with the arc s -> t (g, u): (bits, x1, y1, x2, y2), or COINCIDE.
+
+    FIRST: the first circle, counter-clockwise, enters the second; SECOND: it leaves it.
+    """
+    a = abs(r)
+    b = abs(u)
+    dx = gx - cx
+    dy = gy - cy
+    d2 = dx * dx + dy * dy
+    apart = d2 >= (a + b) * (a + b) or d2 <= (a - b) * (a - b)
+    p_in = across(px, py, gx, gy, b)
+    q_in = across(qx, qy, gx, gy, b)
+    s_in = across(sx, sy, cx, cy, a)
+    t_in = across(tx, ty, cx, cy, a)
+    if apart and (p_in == q_in or s_in == t_in):
+        if d2 < (SAME_CIRCLE * (a + b)) ** 2 and abs(a - b) < SAME_CIRCLE * (a + b):
+            return COINCIDE, 0.0, 0.0, 0.0, 0.0
+        return 0, 0.0, 0.0, 0.0, 0.0
+    if d2 < (SAME_CIRCLE * (a + b)) ** 2:
+        return COINCIDE, 0.0, 0.0, 0.0, 0.0
+    dx, dy, x1, y1, x2, y2 = circle_circle(cx, cy, a, gx, gy, b)
+    if p_in != q_in:
+        bits = SECOND if p_in == (r > 0.0) else FIRST
+    else:
+        reach = -a if p_in else a
+        if not on_arc(px, py, qx, qy, r, cx + reach * dx, cy + reach * dy):
+            return 0, 0.0, 0.0, 0.0, 0.0
+        bits = FIRST | SECOND
+    if s_in != t_in:
+        bits &= FIRST if s_in == (u > 0.0) else SECOND
+    else:
+        reach = b if s_in else -b
+        if not on_arc(sx, sy, tx, ty, u, gx + reach * dx, gy + reach * dy):
+            return 0, 0.0, 0.0, 0.0, 0.0
+    return bits, x1, y1, x2, y2

@@ -1,0 +1,139 @@
+"""Crossings of boundaries with arcs: what `crossings.py` asks for where an edge may be curved."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .arc import COINCIDE, FIRST, SECOND, arc_arc, line_arc, turned
+from .jit import kernel
+from .pool import Pool
+from .predicates import side
+from .work import OVERFLOW, TANGLED, Relative, Work, placed
+
+
+@kernel(inline="always")
+def _along(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, r: float, x: float, y: float
+) -> float:
+    """Where on the edge or arc a -> b a point lies: grows along it."""
+    if r != 0.0:
+        return turned(ax, ay, cx, cy, r, x, y)
+    ux = bx - ax
+    uy = by - ay
+    return ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)
+
+
+@kernel
+def cross_curved_leaves(
+    pa: Pool, a0: int, a1: int, pb: Pool, b0: int, b1: int, rel: Relative, work: Work, n: int
+) -> int:
+    """Append the crossings of edges a0..a1 of A with edges b0..b1 of B; their number, or OVERFLOW, or TANGLED."""
+    for j in range(b0, b1):
+        cx, cy = placed(pb.points, j, rel)
+        dx, dy = placed(pb.points, pb.following[j], rel)
+        gx, gy = placed(pb.arcs, j, rel)
+        u = pb.arcs[j, 2]
+        bow = pb.arcs[j, 3]
+        low_x = min(cx, dx) - bow
+        high_x = max(cx, dx) + bow
+        low_y = min(cy, dy) - bow
+        high_y = max(cy, dy) + bow
+        for i in range(a0, a1):
+            k = pa.following[i]
+            ax = pa.points[i, 0]
+            ay = pa.points[i, 1]
+            bx = pa.points[k, 0]
+            by = pa.points[k, 1]
+            bow = pa.arcs[i, 3]
+            if (
+                max(ax, bx) + bow < low_x
+                or min(ax, bx) - bow > high_x
+                or max(ay, by) + bow < low_y
+                or min(ay, by) - bow > high_y
+            ):
+                continue
+            fx = pa.arcs[i, 0]
+            fy = pa.arcs[i, 1]
+            r = pa.arcs[i, 2]
+            enters = 1  # of the crossing at (x1, y1)
+            if r == 0.0 and u == 0.0:
+                bits, x1, y1 = _line_line(ax, ay, bx, by, cx, cy, dx, dy)
+                if bits & SECOND:
+                    bits = FIRST
+                    enters = -1
+                x2 = x1
+                y2 = y1
+            elif r == 0.0:
+                bits, x1, y1, x2, y2 = line_arc(ax, ay, bx, by, cx, cy, dx, dy, gx, gy, u, True)
+                enters = 1 if u > 0.0 else -1
+            elif u == 0.0:
+                bits, x1, y1, x2, y2 = line_arc(cx, cy, dx, dy, ax, ay, bx, by, fx, fy, r, False)
+                enters = -1 if r > 0.0 else 1  # B enters A: A leaves B
+            else:
+                bits, x1, y1, x2, y2 = arc_arc(ax, ay, bx, by, fx, fy, r, cx, cy, dx, dy, gx, gy, u)
+                if bits == COINCIDE:
+                    return TANGLED
+                enters = 1 if (r > 0.0) == (u > 0.0) else -1
+            for bit in (FIRST, SECOND):
+                if bits & bit:
+                    if n == len(work.cross):
+                        return OVERFLOW
+                    x = x1 if bit == FIRST else x2
+                    y = y1 if bit == FIRST else y2
+                    work.cross[n, 0] = i
+                    work.cross[n, 1] = j
+                    work.cross[n, 2] = enters if bit == FIRST else -enters
+                    work.param[n, 0] = _along(ax, ay, bx, by, fx, fy, r, x, y)
+                    work.param[n, 1] = _along(cx, cy, dx, dy, gx, gy, u, x, y)
+                    work.spot[n, 0] = x
+                    work.spot[n, 1] = y
+                    n += 1
+    return n
+
+
+@kernel
+def _line_line(
+    ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
+) -> tuple[int, float, float]:
+    """(FIRST where a -> b of A enters B through c -> d, SECOND where it leaves, 0 for no crossing; the point)."""
+    sc = side(ax, ay, bx, by, cx, cy, True)
+    sd = side(ax, ay, bx, by, dx, dy, True)
+    if (sc > 0.0) == (sd > 0.0):
+        return 0, 0.0, 0.0
+    sa = side(cx, cy, dx, dy, ax, ay, False)
+    sb = side(cx, cy, dx, dy, bx, by, False)
+    if (sa > 0.0) == (sb > 0.0):
+        return 0, 0.0, 0.0
+    ux = bx - ax
+    uy = by - ay
+    vx = dx - cx
+    vy = dy - cy
+    bits = FIRST if sb > 0.0 else SECOND
+    if vx * vx + vy * vy < ux * ux + uy * uy:  # on the shorter edge: less room for rounding
+        t = sc / (sc - sd)
+        return bits, cx + t * vx, cy + t * vy
+    t = sa / (sa - sb)
+    return bits, ax + t * ux, ay + t * uy
+
+
+@kernel
+def mend(order: np.ndarray, cross: np.ndarray, spot: np.ndarray, near: float) -> None:
+    """Exchange neighbours of a ring's crossings, nearer than `near`, where that makes entering and leaving alternate.
+
+    Two crossings that rounding cannot tell apart (a corner that pokes through by less) have only one order that a
+    boundary can have.
+    """
+    n = len(order)
+    for h in range(n - 1):
+        if cross[order[h], 2] != cross[order[h + 1], 2]:
+            continue
+        for g in (h + 1, h - 1):
+            if g < 0 or g + 1 >= n:
+                continue
+            k = order[g]
+            m = order[g + 1]
+            apart = abs(spot[k, 0] - spot[m, 0]) + abs(spot[k, 1] - spot[m, 1])
+            if cross[k, 2] != cross[m, 2] and apart <= near:
+                order[g] = m
+                order[g + 1] = k
+                break

@@ -1,0 +1,296 @@
+"""Overlap of a disc with a disc, and of a disc with any convex outline, edges and arcs.
+
+A disc's boundary has no corner and no start, so nothing of it can lie on a corner of the other: every decision is
+whether an end of an edge lies inside the circle, a plain sign that both edges at that end share. One walk round the
+other outline finds where it enters the disc and leaves it, in order; between a leaving and the next entering the disc's
+own arc closes the region, because both are convex. The region is one.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .arc import SAME_CIRCLE, across, circle_circle, on_arc, segment
+from .jit import kernel
+from .pool import Pool
+from .work import A_EDGE, B_EDGE, TANGLED, Relative, Work, measure, placed, put
+
+#: Two crossings nearer than this, over the radius: the boundaries only touch. (An edge cuts off a chord of nothing or
+#: of 1e-8 of the radius: less comes from a corner that lies on the circle to rounding.)
+TOUCH = 1e-12
+#: A depth below this, over the radii, is computed from the exact difference of squares.
+SHALLOW = 1e-3
+
+
+@kernel(inline="always")
+def _square(a: float) -> tuple[float, float]:
+    """a^2 = high + low, exactly (Dekker)."""
+    high = a * a
+    t = 134217729.0 * a
+    a1 = t - (t - a)
+    a2 = a - a1
+    return high, a2 * a2 - ((high - a1 * a1) - 2.0 * a1 * a2)
+
+
+@kernel
+def _shallow(ra: float, rb: float, x: float, y: float, d: float) -> float:
+    """ra + rb - |(x, y)|, d being |(x, y)| rounded, without its rounding: (s^2 - x^2 - y^2) / (s + d)."""
+    s = ra + rb
+    rest = (ra - (s - (s - ra))) + (rb - (s - ra))  # what s lacks of ra + rb
+    s2, s2_low = _square(s)
+    x2, x2_low = _square(x)
+    y2, y2_low = _square(y)
+    # the three squares cancel: the largest two first
+    if x2 < y2:
+        x2, y2 = y2, x2
+    t = s2 - x2
+    t_low = (s2 - (t + (s2 - t - x2) + x2)) + (s2 - t - x2)  # of s2 - x2
+    return ((t - y2) + (t_low + s2_low - x2_low - y2_low) + 2.0 * s * rest) / (s + d)
+
+
+@kernel
+def whole_disc(work: Work, label: int, cx: float, cy: float, r: float) -> int:
+    """The region that is all of a disc."""
+    v = put(work, 0, label, cx + r, cy, cx - r, cy, cx, cy, r)
+    v = put(work, v, label, cx - r, cy, cx + r, cy, cx, cy, r)
+    loop = work.loops[0]
+    loop.start = 0
+    loop.stop = v
+    loop.area = math.pi * r * r
+    loop.x = cx
+    loop.y = cy
+    loop.chord_x = 0.0
+    loop.chord_y = 0.0
+    loop.lever = 0.0
+    loop.straight = 0.0
+    loop.region = 0
+    loop.arcs = 1
+    return 1
+
+
+@kernel
+def disc_disc(ra: float, rb: float, rel: Relative, work: Work) -> int:
+    """Two discs: a lens, or the smaller one.
+
+    With d the distance of the centres and depth = ra + rb - d, the chord's half length is Heron's
+    sqrt(depth (d - ra + rb)(d + ra - rb)(d + ra + rb)) / 2d, and each side of it a segment: nothing cancels but the
+    depth itself.
+    """
+    dx = rel.tx
+    dy = rel.ty
+    d = math.sqrt(dx * dx + dy * dy)
+    depth = ra + rb - d
+    if abs(depth) < SHALLOW * (ra + rb):
+        depth = _shallow(ra, rb, dx, dy, d)
+    if depth <= 0.0:
+        return 0
+    if d <= abs(ra - rb):
+        if ra <= rb:
+            return whole_disc(work, A_EDGE, 0.0, 0.0, ra)
+        return whole_disc(work, B_EDGE, dx, dy, rb)
+    dx /= d
+    dy /= d
+    half = 0.5 * math.sqrt(depth * (d - (ra - rb)) * (d + (ra - rb)) * (d + ra + rb)) / d
+    bulge_a = 0.5 * depth * (2.0 * rb - depth) / d  # of A's arc beyond the chord
+    bulge_b = 0.5 * depth * (2.0 * ra - depth) / d
+    foot = ra - bulge_a
+    area_a, moment_a = segment(half, foot, ra)
+    area_b, moment_b = segment(half, rb - bulge_b, rb)
+    fx = foot * dx
+    fy = foot * dy
+    hx = half * -dy
+    hy = half * dx
+    polygon = work.polygon
+    polygon[0, 0] = fx - hx
+    polygon[0, 1] = fy - hy
+    polygon[1, 0] = ra * dx
+    polygon[1, 1] = ra * dy
+    polygon[2, 0] = fx + hx
+    polygon[2, 1] = fy + hy
+    polygon[3, 0] = (ra - depth) * dx
+    polygon[3, 1] = (ra - depth) * dy
+    for v in range(4):
+        of_a = v < 2
+        work.label[v] = A_EDGE if of_a else B_EDGE
+        work.bows[v, 0] = 0.0 if of_a else rel.tx
+        work.bows[v, 1] = 0.0 if of_a else rel.ty
+        work.bows[v, 2] = ra if of_a else rb
+    area = area_a + area_b
+    x = foot + (moment_a - moment_b) / area
+    loop = work.loops[0]
+    loop.start = 0
+    loop.stop = 4
+    loop.area = area
+    loop.x = x * dx
+    loop.y = x * dy
+    loop.chord_x = 2.0 * hx
+    loop.chord_y = 2.0 * hy
+    loop.lever = 0.0
+    loop.straight = 0.0
+    loop.region = 0
+    loop.arcs = 1
+    return 1
+
+
+@kernel
+def _close(
+    work: Work, v: int, label: int, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
+) -> int:
+    """Append the disc's arc p -> q, counter-clockwise, however far."""
+    ax = px - cx
+    ay = py - cy
+    bx = qx - cx
+    by = qy - cy
+    gap = (bx - ax) ** 2 + (by - ay) ** 2
+    if ax * by - ay * bx >= 0.0 or gap < (TOUCH * r) ** 2:
+        return put(work, v, label, px, py, qx, qy, cx, cy, r)
+    # more than half a turn: halved opposite the middle of the chord
+    mx = -(ax + bx)
+    my = -(ay + by)
+    if mx * mx + my * my < r * r:
+        mx = by - ay
+        my = ax - bx
+    f = r / math.sqrt(mx * mx + my * my)
+    mx = cx + f * mx
+    my = cy + f * my
+    v = put(work, v, label, px, py, mx, my, cx, cy, r)
+    return put(work, v, label, mx, my, qx, qy, cx, cy, r)
+
+
+@kernel
+def _cut_by_arc(
+    px: float, py: float, qx: float, qy: float, ax: float, ay: float, a: float, p_in: bool, q_in: bool,
+    cx: float, cy: float, r: float,
+) -> tuple[bool, bool, float, float, float, float]:  # fmt: skip
+    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit)."""
+    d2 = (cx - ax) ** 2 + (cy - ay) ** 2
+    if p_in == q_in and (d2 >= (a + r) * (a + r) or d2 <= (a - r) * (a - r)):
+        return False, False, 0.0, 0.0, 0.0, 0.0
+    dx, dy, x1, y1, x2, y2 = circle_circle(ax, ay, a, cx, cy, r)
+    if p_in == q_in:
+        reach = -a if p_in else a
+        if not on_arc(px, py, qx, qy, a, ax + reach * dx, ay + reach * dy):
+            return False, False, 0.0, 0.0, 0.0, 0.0
+        return True, True, x1, y1, x2, y2
+    return q_in, p_in, x1, y1, x2, y2
+
+
+@kernel
+def disc_convex(
+    cx: float, cy: float, r: float, pool: Pool, i: int, place: Relative, label: int, work: Work, noise: float
+) -> int:
+    """A disc at (cx, cy) with convex outline i, placed (by the identity if it is A), whose label is `label`."""
+    head = pool.heads[i]
+    mine = B_EDGE if label == A_EDGE else A_EDGE
+    begin = head.point
+    end = begin + head.count
+    px, py = placed(pool.points, begin, place)
+    p_in = across(px, py, cx, cy, r)
+    v = 0
+    crossed = 0
+    open_ = False  # left, and not entered since, at (out_x, out_y)
+    out_x = out_y = in_x = in_y = 0.0
+    for e in range(begin, end):
+        qx, qy = placed(pool.points, pool.following[e], place)
+        q_in = across(qx, qy, cx, cy, r)
+        a = pool.arcs[e, 2]
+        enters = False
+        leaves = False
+        x1 = y1 = x2 = y2 = 0.0
+        ax = ay = 0.0
+        if a == 0.0:
+            if not (p_in and q_in):
+                ux = qx - px
+                uy = qy - py
+                wx = cx - px
+                wy = cy - py
+                turn = ux * wy - uy * wx
+                length2 = ux * ux + uy * uy
+                hit = turn * turn < r * r * length2
+                if not hit and turn < 0.0:
+                    return 0  # the whole disc lies beyond this edge
+                if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
+                    length = math.sqrt(length2)
+                    ux /= length
+                    uy /= length
+                    distance = turn / length
+                    half = math.sqrt(max(0.0, (r - abs(distance)) * (r + abs(distance))))
+                    fx = cx + distance * uy
+                    fy = cy - distance * ux
+                    enters = not p_in
+                    leaves = not q_in
+                    x1 = fx - half * ux
+                    y1 = fy - half * uy
+                    x2 = fx + half * ux
+                    y2 = fy + half * uy
+        else:
+            ax, ay = placed(pool.arcs, e, place)
+            d2 = (cx - ax) ** 2 + (cy - ay) ** 2
+            if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
+                return TANGLED
+            enters, leaves, x1, y1, x2, y2 = _cut_by_arc(px, py, qx, qy, ax, ay, a, p_in, q_in, cx, cy, r)
+        # what of p -> q lies inside the disc, and the disc's arc before it
+        if p_in:
+            if leaves:
+                v = put(work, v, label, px, py, x2, y2, ax, ay, a)
+                out_x = x2
+                out_y = y2
+                open_ = True
+            else:
+                v = put(work, v, label, px, py, qx, qy, ax, ay, a)
+        if enters:
+            if open_:
+                v = _close(work, v, mine, out_x, out_y, x1, y1, cx, cy, r)
+                open_ = False
+            else:
+                in_x = x1
+                in_y = y1
+            crossed += 1
+            if q_in or p_in:
+                v = put(work, v, label, x1, y1, qx, qy, ax, ay, a)
+            else:
+                v = put(work, v, label, x1, y1, x2, y2, ax, ay, a)
+                out_x = x2
+                out_y = y2
+                open_ = True
+        px = qx
+        py = qy
+        p_in = q_in
+    touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
+    if crossed == 0 or touched:
+        return _nested(cx, cy, r, pool, i, place, label, mine, work, noise)
+    if open_:
+        v = _close(work, v, mine, out_x, out_y, in_x, in_y, cx, cy, r)
+    if measure(work, 0, 0, v, True, noise) == 0 or work.loops[0].area < 0.0:  # negative: rounding
+        return 0
+    return 1
+
+
+@kernel
+def _nested(
+    cx: float, cy: float, r: float, pool: Pool, i: int, place: Relative, label: int, mine: int, work: Work,
+    noise: float,
+) -> int:  # fmt: skip
+    """`disc_convex` where the boundaries do not cross: one inside the other, or apart."""
+    head = pool.heads[i]
+    begin = head.point
+    end = begin + head.count
+    farthest = 0.0
+    inside = True  # the disc's centre, of the polygon of the chords, or of what an arc adds to it
+    v = 0
+    for e in range(begin, end):
+        px, py = placed(pool.points, e, place)
+        qx, qy = placed(pool.points, pool.following[e], place)
+        ax, ay = placed(pool.arcs, e, place)
+        a = pool.arcs[e, 2]
+        v = put(work, v, label, px, py, qx, qy, ax, ay, a)
+        farthest = max(farthest, (px - cx) ** 2 + (py - cy) ** 2)
+        if (qx - px) * (cy - py) - (qy - py) * (cx - px) < 0.0 and not (
+            a > 0.0 and across(cx, cy, ax, ay, a)
+        ):
+            inside = False
+    for k in range(v):
+        farthest = max(farthest, (work.polygon[k, 0] - cx) ** 2 + (work.polygon[k, 1] - cy) ** 2)
+    if farthest <= r * r * (1.0 + 1e-9):  # a corner may touch the circle
+        return measure(work, 0, 0, v, True, noise)
+    return whole_disc(work, mine, cx, cy, r) if inside else 0
