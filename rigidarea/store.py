@@ -35,6 +35,7 @@ from .kernel.tables import (
     Law,
     Tables,
     end_pair,
+    new_pair,
     rehash,
 )
 
@@ -44,6 +45,7 @@ _ARRAYS = [
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *("bodies", "shapes", "pairs", "regions", "rows", "near", "apart", "sorted", "keys", "values"),
     *("counters", "slots", "body_keys", "body_rows", "joints"),
+    *("kept_bodies", "kept_pairs", "kept_regions", "kept_counters"),
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
@@ -72,6 +74,8 @@ JOINT = record(
         ("count", "i4"),
         ("x", "f8"),  # impulse summed over the frame
         ("y", "f8"),
+        ("start_x", "f8"),  # what it started from
+        ("start_y", "f8"),
     ]
 )
 #: Kinds of joints.
@@ -86,6 +90,8 @@ STATE = record(
         ("stiffness_given", "i8"),
         ("explicit", "i8"),  # 1: one symplectic Euler step a frame, Chipmunk's own positions and joints
         ("substeps", "i8"),  # of a frame
+        ("tolerance", "f8"),  # error of place allowed in a frame, over a body's smallest extent; 0: none asked
+        ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
         ("held", "i8"),  # the step in which a position function of ours was last called
@@ -111,10 +117,22 @@ STATE = record(
         ("joint_cursor", "i8"),
         ("substeps_before", "i8"),
         ("stop", "i8"),  # 1: something waits in Python
+        ("seen_at", "u8"),  # room for every body's place
         ("scratch_at", "u8"),  # room for what nobody reads
         ("kinds_at", "u8"),  # joints' classes, where they keep their impulse, and how many numbers that is
     ],
 )
+
+
+@kernel(inline="always")
+def load_kept(s: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Room for what a frame that may have to be run again starts from: bodies, pairs, regions, counters."""
+    return (
+        array_at(s.kept_bodies_at, (s.kept_bodies_n,), BODY),
+        array_at(s.kept_pairs_at, (s.kept_pairs_n,), PAIR),
+        array_at(s.kept_regions_at, (s.kept_regions_n,), REGION),
+        array_at(s.kept_counters_at, (s.kept_counters_n,), np.int64),
+    )
 
 
 @kernel
@@ -235,23 +253,36 @@ class Store:
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
         self.joints = np.zeros(8, JOINT)
+        self._kept: dict[str, np.ndarray] = {}
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._free: list[int] = []  # rows of shapes that are gone
         self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
         self._free_bodies: list[int] = []
         self._most = (0, 0)  # points and rings of the largest outline
+        self.keep()
         self.grow_pairs(64)
         self.grow_regions(64)
+        end_pair(self.tables, new_pair(self.tables, 0, 1))  # compiled now, not in a frame
+        rehash(self.tables)
+        self.sync()
+
+    def keep(self) -> None:
+        """Room for a copy of what a frame changes."""
+        tables = self.tables
+        arrays = {"bodies": tables.bodies, "pairs": tables.pairs, "regions": tables.regions}
+        self._kept = {f"kept_{name}": np.zeros_like(array) for name, array in arrays.items()}
+        self._kept["kept_counters"] = np.zeros_like(tables.counters)
         self.sync()
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        mine = {name: getattr(self, name) for name in ("slots", "body_keys", "body_rows", "joints")}
+        own = ("slots", "body_keys", "body_rows", "joints")
+        mine = {name: getattr(self, name) for name in own} | self._kept
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
         state = self.state[0]
-        for name in _ARRAYS:
-            state[f"{name}_at"] = arrays[name].ctypes.data
-            state[f"{name}_n"] = len(arrays[name])
+        for name, array in arrays.items():
+            state[f"{name}_at"] = array.ctypes.data
+            state[f"{name}_n"] = len(array)
 
     def grow_pairs(self, least: int = 0) -> None:
         """Twice the pairs (at least `least`), the new ones free."""

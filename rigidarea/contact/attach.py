@@ -64,6 +64,7 @@ class AreaContact:
         state["held"] = state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
         self._scratch = np.zeros(8)
+        self._answer(record.MORE_KEPT)
         self._kinds = np.array(kinds_of_joints(), np.int64)
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
@@ -82,6 +83,7 @@ class AreaContact:
         if self._memory:
             recall(self._store, space, self._memory)
             self._memory = {}
+        self.energy()  # compiled now, not when it is asked for
 
     def _hide(self, space: pymunk.Space) -> None:
         """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
@@ -232,10 +234,16 @@ class AreaContact:
 
     # --- stepping ---
 
-    def step(self, dt: float, frames: int = 1, steps: int | None = None) -> None:
+    def step(
+        self, dt: float, frames: int = 1, steps: int | None = None, tolerance: float | None = None
+    ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
         steps: substeps of each frame (default SUBSTEPS). More are more accurate; any number is stable.
+        tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
+            its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
+
+        Returns the substeps of the last frame.
         Raises ValueError for arguments out of range, SimulationError (naming body and frame) where a body's state
         stops being finite; all bodies are then as they were before that frame.
         """
@@ -244,12 +252,18 @@ class AreaContact:
         space = self.space
         if space._locked:
             raise RuntimeError("step() within a step: call it after the step")
+        if steps is not None and tolerance is not None:
+            raise ValueError(f"expected steps or tolerance, got both: {steps!r} and {tolerance!r}")
+        if tolerance is not None:
+            positive(tolerance, "tolerance")
         if steps is not None:
-            self._state["substeps"] = _count(steps, "steps")
+            _count(steps, "steps")
+        self._state["substeps"] = steps or SUBSTEPS
+        self._state["tolerance"] = tolerance or 0.0
         try:
             if frames == 1:
                 space.step(dt)
-                return
+                return int(self._state["taken"])
             done = 0
             while done < frames:
                 if space._handlers.keys() - {(None, None)} or self._step_alone(dt):
@@ -258,7 +272,8 @@ class AreaContact:
                 else:
                     done += self._run(dt, frames - done)
         finally:
-            self._state["substeps"] = SUBSTEPS
+            self._state["substeps"], self._state["tolerance"] = SUBSTEPS, 0.0
+        return int(self._state["taken"])
 
     def _step_alone(self, dt: float) -> bool:
         """Whether pymunk has something to do around each step."""
@@ -311,6 +326,10 @@ class AreaContact:
             store.grow_work()
         elif request == record.MORE_JOINTS:
             store.grow_joints(len(self.space.constraints) + 1)
+        elif request == record.MORE_KEPT:
+            store.keep()
+            self._seen = np.zeros((len(store.tables.bodies), 3))
+            self._state["seen_at"] = self._seen.ctypes.data
         elif request == record.BROKEN:
             space = self.space
             address = int(store.tables.bodies[int(self._state["broken"])]["address"])

@@ -15,6 +15,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
+from ..kernel.constants import MOST_SUBSTEPS
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at
 from ..kernel.meet import DONE, GROW_WORK
@@ -32,11 +33,22 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
-from ..kernel.tables import BODIES, DRIFTS, LED, ROWS, SUBSTEP, Tables
-from ..store import load_law, load_pool, load_tables, load_work, row_of_body
-from .joints import APPLY, APPLY_CACHED, PRE_STEP, add_impulse, joints_of, run, scale_impulse
+from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, ROWS, SUBSTEP, Tables, rehash
+from ..store import load_kept, load_law, load_pool, load_tables, load_work, row_of_body
+from .joints import (
+    APPLY,
+    APPLY_CACHED,
+    PRE_STEP,
+    add_impulse,
+    joints_of,
+    keep_impulse,
+    restore_impulse,
+    run,
+    scale_impulse,
+)
 from .record import (
     BROKEN,
+    MORE_KEPT,
     MORE_PAIRS,
     MORE_REGIONS,
     MORE_WORK,
@@ -237,9 +249,8 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
-def _frame(s: Any, space: int, dt: float) -> bool:
-    """All substeps of a frame."""
-    n = s.substeps
+def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
+    """A frame in n substeps. Whether there was memory for it."""
     h = dt / n
     _start(s, space, load_tables(s), dt, h)
     for i in range(n):
@@ -269,11 +280,103 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 if joint.taken:
                     add_impulse(joint)
         finish(tables, load_law(s), s.frame, h, i == n - 1)
+    drift(load_tables(s), s.frame, 0.5 * h)
+    return True
+
+
+@kernel
+def _keep(s: Any) -> bool:
+    """Take down what a frame starts from. Whether there is room for it."""
+    bodies, pairs, regions, counters = load_kept(s)
     tables = load_tables(s)
+    if len(bodies) != len(tables.bodies) or len(pairs) != len(tables.pairs) or len(regions) != len(tables.regions):
+        if not ask(s, MORE_KEPT):
+            return False
+        bodies, pairs, regions, counters = load_kept(s)
+        tables = load_tables(s)
+    bodies[:] = tables.bodies
+    pairs[:] = tables.pairs
+    regions[:] = tables.regions
+    counters[:] = tables.counters
+    for joint in joints_of(s):
+        if joint.taken:
+            keep_impulse(joint)
+    return True
+
+
+@kernel
+def _again(s: Any) -> bool:
+    """Back to what was kept; False: the tables have grown since, and cannot go back into it."""
+    bodies, pairs, regions, counters = load_kept(s)
+    tables = load_tables(s)
+    if len(bodies) != len(tables.bodies) or len(pairs) != len(tables.pairs) or len(regions) != len(tables.regions):
+        return False
+    tables.bodies[:] = bodies
+    tables.pairs[:] = pairs
+    tables.regions[:] = regions
+    tables.counters[:] = counters
+    tables.counters[ANEW] = 1
+    rehash(tables)
+    for joint in joints_of(s):
+        if joint.taken:
+            restore_impulse(joint)
+    return True
+
+
+@kernel
+def _difference(s: Any) -> float:
+    """How far the places of this run and of the one before (noted in `seen`) are apart, over the smallest extents."""
+    tables = load_tables(s)
+    most = 0.0
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == s.frame and body.kind == DRIFTS and body.extent > 0.0:
+            seen = floats(s.seen_at + 24 * i, 3)
+            dx = body.x - seen[0]
+            dy = body.y - seen[1]
+            most = max(most, (dx * dx + dy * dy) ** 0.5 / body.extent + abs(body.angle - seen[2]))
+    return most
+
+
+@kernel
+def _see(s: Any) -> None:
+    """Note where this run has taken the bodies."""
+    tables = load_tables(s)
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        seen = floats(s.seen_at + 24 * i, 3)
+        seen[0] = body.x
+        seen[1] = body.y
+        seen[2] = body.angle
+
+
+@kernel
+def _frame(s: Any, space: int, dt: float) -> bool:
+    """All substeps of a frame: so many, or as many as the tolerance needs.
+
+    The error of n substeps falls as 1/n^2 while nothing new happens, so that two runs, of n and 2n, differ by three
+    times the error of the finer one (Richardson). Where something does happen it falls as 1/n, and the difference
+    is the error itself: that is what is compared.
+    """
+    n = s.substeps
+    if s.tolerance > 0.0:
+        if not _keep(s) or not _substeps(s, space, dt, n):
+            return False
+        while n < MOST_SUBSTEPS:
+            _see(s)
+            if not _again(s):  # the tables have grown: from here on with what there is
+                break
+            n *= 2
+            if not _substeps(s, space, dt, n):
+                return False
+            if _difference(s) <= s.tolerance:
+                break
+    elif not _substeps(s, space, dt, n):
+        return False
     if s.stiffness_given == 0:
-        adapt_stiffness(tables, dt)
-    drift(tables, s.frame, 0.5 * h)
+        adapt_stiffness(load_tables(s), dt)
     s.substeps_before = n
+    s.taken = n
     return True
 
 

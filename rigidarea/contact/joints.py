@@ -164,6 +164,26 @@ def scale_impulse(joint: Any, factor: float) -> None:
 
 
 @kernel
+def keep_impulse(joint: Any) -> None:
+    """Take down what the joint starts from."""
+    if joint.count > 0:
+        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        joint.start_x = impulse[0]
+        joint.start_y = impulse[joint.count - 1]
+
+
+@kernel
+def restore_impulse(joint: Any) -> None:
+    """The joint as it started."""
+    joint.x = 0.0
+    joint.y = 0.0
+    if joint.count > 0:
+        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        impulse[joint.count - 1] = joint.start_y
+        impulse[0] = joint.start_x
+
+
+@kernel
 def add_impulse(joint: Any) -> None:
     """Sum up what it has done in a substep."""
     if joint.count > 0:

@@ -33,7 +33,7 @@ from ..store import STATE, load_tables, row_of_body
 from .joints import take_joints
 
 #: What machine code asks Python for.
-NOTHING, REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, BROKEN = range(7)
+NOTHING, REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN = range(8)
 
 user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))

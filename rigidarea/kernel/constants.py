@@ -6,15 +6,19 @@ What the user chooses (stiffness or penetration, law, sweeps, substeps) is not h
 #: Substeps of a frame, unless asked otherwise. Two: what the first one met the second one already answers, and the
 #: sweeps, not the substeps, are what piles need (docs/architecture.md has the measurement).
 SUBSTEPS = 2
-#: (w h)^2 up to which a step h follows a contact of frequency w explicitly. Symplectic Euler is stable up to 4 alone,
-#: up to 1 between two others; a quarter of that keeps its error below the restitution's (design 2.3).
-FOLLOWED = 0.25
+#: Most substeps that a tolerance may ask for.
+MOST_SUBSTEPS = 1024
+#: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler
+#: is stable up to 4; its restitution is then within 0.002.
+FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time), times w h where that is above 1: the row's S,
 #: its release overdamped. Less: what sweeps have left unsolved is handed back before they have learnt of it, and piles
 #: sway; more: they go on sliding for seconds. The stiffer, the more of it is left (docs/architecture.md).
 RELEASE_STEPS = 9.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time).
 RELEASE_SPEED = 1.0
+#: Overlaps deeper than this fraction of it are: no load has pressed them so far, somebody has put them there.
+DEEP = 0.05
 #: Damping ratio of a contact at rest that the step follows: beyond critical, so that what is pressed in comes to the
 #: surface without the speed to leave it.
 REST_DAMPING = 1.0

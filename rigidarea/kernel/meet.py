@@ -275,7 +275,8 @@ def _touch(
 
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
     u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
-    there is a region to see its direction by. Sets `region.back`, the time since touch.
+    there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms are:
+    what is done there and then, and carried on from there, keeps all momenta.
     """
     come = back > 0.0
     region.back = back
@@ -291,25 +292,30 @@ def _touch(
         if tau + back > MOST_ARRIVED * h:
             return come
         come = True
-        region.back = back + tau
-        back += 0.999 * tau
-        pose = earlier(a, back)
-        other = earlier(b, back)
-        n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
         best = -1
-        least = np.inf
-        for k in range(n):
-            patch = _patch(pool, work, law, k, ia, pose)
-            far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-            if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
-                least = far
-                best = k
+        then = back
+        for share in (0.999, 0.9, 0.5):
+            then = back + share * tau
+            pose = earlier(a, then)
+            other = earlier(b, then)
+            n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
+            least = np.inf
+            for k in range(n):
+                patch = _patch(pool, work, law, k, ia, pose)
+                far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+                if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
+                    least = far
+                    best = k
+            if best >= 0:
+                break
         if best < 0:
             return come
         patch = _patch(pool, work, law, best, ia, pose)
         ax, ay = _centre(a, pose)
         bx, by = _centre(b, other)
         _fill(region, patch, ax, ay, bx, by)
+        region.back = then
+        back = then
         if patch.depth < 0.01 * d:
             return come
     return come
@@ -317,12 +323,12 @@ def _touch(
 
 @kernel
 def _enter(
-    pool: Pool, work: Work, law: Law, pair: Any, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+    pool: Pool, work: Work, law: Law, pair: Any, region: Any, face: float, ia: int, ib: int, a: Any, b: Any, back: float, h: float
 ) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
     k = pair.stiffness
     region.stiffness = k
-    stiffness = region_stiffness(law, k, region.chord)
+    stiffness = region_stiffness(law, k, max(region.chord, face))
     inverse = inverse_mass(region, a, b)
     phase2 = stiffness * inverse * h * h
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
@@ -491,13 +497,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.mode = REST
     free_regions(regions, counters, old)
     pair.head = kept
+    face = _face(pool, sa, sb, a, b)
     if pair.stiffness == 0.0 and kept >= 0:
-        choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
+        choose_stiffness(law, pair, face, a, b, h)
     r = kept
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
         if region.born:
-            _enter(pool, work, law, pair, region, ia, ib, a, b, back, h)
+            _enter(pool, work, law, pair, region, face, ia, ib, a, b, back, h)
         region.stiffness = pair.stiffness
         r = region.next
     return DONE
@@ -554,10 +561,11 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
             continue
+        face = _face(pool, sa, sb, a, b)
         if pair.stiffness == 0.0:
-            choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
+            choose_stiffness(law, pair, face, a, b, h)
         region.stiffness = pair.stiffness
-        stiffness = region_stiffness(law, pair.stiffness, region.chord)
+        stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
         inverse = inverse_mass(region, a, b)
         if stiffness * inverse * h * h <= law.followed:
             continue  # the steps follow it
