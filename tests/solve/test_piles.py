@@ -180,6 +180,10 @@ def test_a_tilted_pile_slides_at_once(name, steps):
 
     In the sliding frame weight points 17° off the normal, inside every base (width over height 1 or more, the
     pyramid's sides 29°). What would slow it is damping that creeps in friction's place.
+
+    Rigid contacts do so (pymunk at 4 steps: 1e-3). Soft ones swing in shear first: on beds of 2e-4 of a side with no
+    more damping than a spring's own, followed in 64 steps, the wall was 0.1 off and the pyramid 0.26 in these frames,
+    their centres of mass 0.016 and 0.009; a row 2e-4.
     """
     world = {
         "box": lambda: tower(1, friction=0.3),

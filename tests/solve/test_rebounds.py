@@ -1,0 +1,94 @@
+"""What must not bounce, and what must neither gain nor lose: boxes on boxes, elastic chains, elastic gases."""
+
+import math
+
+import numpy as np
+import pytest
+from solve_world import DT, ENGINE, World
+from test_impacts import NEAR_ZERO
+
+
+def dropped(upper, lower, steps, height=3.0):
+    """A box of `upper` kg from `height` on one of `lower` kg at rest: (fastest upward over arrival speed, world)."""
+    world = World(10.0, friction=0.5)
+    world.floor()
+    world.box((0, 0.5), mass=lower)
+    world.run(1.0, steps)  # at rest on its bed
+    world.box((0, 1.5 + height), mass=upper)
+    fastest = 0.0
+    for _ in range(180):
+        world.step(steps)
+        fastest = max(fastest, *(b.velocity.y for b in world.bodies))
+    return fastest / math.sqrt(2 * 10.0 * height), world
+
+
+@pytest.mark.parametrize("steps", [1, 2, 4, 16, None])
+@pytest.mark.parametrize("upper, lower", [(1.0, 1.0), (100.0, 1.0), (1.0, 100.0)])
+def test_a_box_dropped_on_a_box_stays(upper, lower, steps):
+    """e = 0, from 3 m: nothing moves up faster than 0.01 of the speed of arrival, and both come to rest in place."""
+    back, world = dropped(upper, lower, steps)
+    assert back < NEAR_ZERO
+    heights = [b.position.y for b in world.bodies]
+    # sinking of 2e-4 m a weight carried, the chosen stiffness being at most some seconds late
+    assert heights == pytest.approx([0.5, 1.5], abs=0.03)
+    assert world.fastest() < 0.01
+
+
+def chain(steps, seconds=3.0, engine=ENGINE):
+    """Elastic discs of 1, 10 … 10,000 go for a wall, the lightest first: kinetic energy over that at the start.
+
+    Its most in the last half second (contacts under way store some), and its most ever.
+    """
+    world = World(stiffness=1e6, elasticity=1.0, engine=engine)
+    world.block(-2, -5, 0, 5)
+    for i in range(5):
+        world.disc((0.3 + 0.55 * i, 0.0), 0.25, mass=10.0**i, velocity=(-1, 0))
+    start = world.kinetic()
+    seen = []
+    for _ in range(round(seconds / DT)):
+        world.step(steps)
+        seen.append(world.kinetic() / start)
+        if not all(b.position.x > 0 for b in world.bodies):
+            return -math.inf, math.inf
+    return max(seen[-30:]), max(seen)
+
+
+@pytest.mark.parametrize("steps", [1, 4, 64, None])
+def test_an_elastic_chain_against_a_wall(steps):
+    """Mass ratio 1e4, e = 1: energy never grows by 1 %, nobody goes through the wall; enough steps lose no 1 % either.
+
+    (The lightest meets its neighbours dozens of times a frame: few steps cannot follow it, and may lose.)
+    """
+    last, most = chain(steps)
+    assert most < 1.01
+    if steps is None or steps >= 64:
+        assert last > 0.99
+
+
+def gas(steps, seconds, count=60, engine=ENGINE):
+    """Kinetic energy over its start of equal elastic discs in a box: its median over the last ten frames."""
+    draw = np.random.default_rng(20)
+    world = World(stiffness=1e5, elasticity=1.0, engine=engine)
+    columns, pitch = 8, 1.4
+    side = columns * pitch
+    for left, bottom, right, top in ((-2, -2, 0, side + 2), (side, -2, side + 2, side + 2)):
+        world.block(left, bottom, right, top)
+        world.block(bottom, left, top, right)
+    for i in range(count):
+        at = ((i % columns + 0.5) * pitch, (i // columns + 0.5) * pitch)
+        world.disc(at, velocity=tuple(draw.normal(0.0, 2.0, 2)))
+    start = world.kinetic()
+    world.run(seconds - 10 * DT, steps)
+    last = []
+    for _ in range(10):
+        world.step(steps)
+        last.append(world.kinetic())
+    assert all(0 < b.position.x < side and 0 < b.position.y < side for b in world.bodies)
+    return float(np.median(last)) / start
+
+
+@pytest.mark.parametrize("seconds", [5, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("steps", [4, None])
+def test_a_gas_of_elastic_discs_keeps_its_energy(steps, seconds):
+    """e = 1, no friction: 1 % of kinetic energy, some 3 of 60 discs being in touch (and out of it within 10 frames)."""
+    assert gas(steps, seconds) == pytest.approx(1.0, abs=0.01)
