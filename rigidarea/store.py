@@ -39,6 +39,7 @@ from .kernel.tables import (
     rehash,
 )
 
+BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
@@ -124,15 +125,34 @@ STATE = record(
 )
 
 
-@kernel(inline="always")
-def load_kept(s: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-    """Room for what a frame that may have to be run again starts from: bodies, pairs, regions, counters."""
-    return (
-        array_at(s.kept_bodies_at, (s.kept_bodies_n,), BODY),
-        array_at(s.kept_pairs_at, (s.kept_pairs_n,), PAIR),
-        array_at(s.kept_regions_at, (s.kept_regions_n,), REGION),
-        array_at(s.kept_counters_at, (s.kept_counters_n,), np.int64),
-    )
+@kernel
+def _copy(to: int, source: int, size: int) -> None:
+    """Copy so many words."""
+    there = array_at(to, (size,), np.uint64)
+    here = array_at(source, (size,), np.uint64)
+    for i in range(size):
+        there[i] = here[i]
+
+
+@kernel
+def keep_tables(s: Any, back: bool) -> bool:
+    """Take down what a frame that may have to be run again starts from, or put it back.
+
+    False: the tables have grown since there was room made for it.
+    """
+    fits = s.kept_bodies_n == s.bodies_n and s.kept_pairs_n == s.pairs_n and s.kept_regions_n == s.regions_n
+    if fits:
+        if back:
+            _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
+            _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
+            _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
+            _copy(s.counters_at, s.kept_counters_at, s.counters_n)
+        else:
+            _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
+            _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
+            _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
+            _copy(s.kept_counters_at, s.counters_at, s.counters_n)
+    return bool(fits)
 
 
 @kernel

@@ -20,6 +20,7 @@ from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.solve import (
+    accelerate,
     adapt_stiffness,
     drift,
     find_near,
@@ -34,7 +35,7 @@ from ..kernel.solve import (
     warm_start,
 )
 from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, ROWS, SUBSTEP, Tables, rehash
-from ..store import load_kept, load_law, load_pool, load_tables, load_work, row_of_body
+from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
 from .joints import (
     APPLY,
     APPLY_CACHED,
@@ -248,6 +249,8 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     return True
 
 
+import os
+NNCG=int(os.environ.get('NNCG','1'))
 @kernel
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps. Whether there was memory for it."""
@@ -264,6 +267,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         warm_start(tables)
         look = 0
         wait = 1
+        length = 0.0
         for k in range(s.sweeps):
             if k == look:  # less and less often, as long as nobody joins
                 joined = _join(s, h)
@@ -275,6 +279,8 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)
+            elif k < s.sweeps - 1 and NNCG:
+                length = accelerate(tables, length)
         if s.joint_count > 0:
             for joint in joints_of(s):
                 if joint.taken:
@@ -287,17 +293,8 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
 @kernel
 def _keep(s: Any) -> bool:
     """Take down what a frame starts from. Whether there is room for it."""
-    bodies, pairs, regions, counters = load_kept(s)
-    tables = load_tables(s)
-    if len(bodies) != len(tables.bodies) or len(pairs) != len(tables.pairs) or len(regions) != len(tables.regions):
-        if not ask(s, MORE_KEPT):
-            return False
-        bodies, pairs, regions, counters = load_kept(s)
-        tables = load_tables(s)
-    bodies[:] = tables.bodies
-    pairs[:] = tables.pairs
-    regions[:] = tables.regions
-    counters[:] = tables.counters
+    if not keep_tables(s, False) and not (ask(s, MORE_KEPT) and keep_tables(s, False)):
+        return False
     for joint in joints_of(s):
         if joint.taken:
             keep_impulse(joint)
@@ -307,14 +304,9 @@ def _keep(s: Any) -> bool:
 @kernel
 def _again(s: Any) -> bool:
     """Back to what was kept; False: the tables have grown since, and cannot go back into it."""
-    bodies, pairs, regions, counters = load_kept(s)
-    tables = load_tables(s)
-    if len(bodies) != len(tables.bodies) or len(pairs) != len(tables.pairs) or len(regions) != len(tables.regions):
+    if not keep_tables(s, True):
         return False
-    tables.bodies[:] = bodies
-    tables.pairs[:] = pairs
-    tables.regions[:] = regions
-    tables.counters[:] = counters
+    tables = load_tables(s)
     tables.counters[ANEW] = 1
     rehash(tables)
     for joint in joints_of(s):

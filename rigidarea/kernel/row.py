@@ -68,6 +68,13 @@ ROW = record(
         ("l1", "f8"),
         ("l2", "f8"),
         ("lt", "f8"),
+        ("g1", "f8"),  # what the last visit has changed, and the direction of the search so far (`solve.accelerate`)
+        ("g2", "f8"),
+        ("gt", "f8"),
+        ("p1", "f8"),
+        ("p2", "f8"),
+        ("pt", "f8"),
+        ("weight", "f8"),  # of its change in the length of a sweep: 1/m_eff
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -155,6 +162,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.lean_b = r.lean_b
     row.friction = pair.friction
     row.shift = 0.0
+    row.p1 = 0.0
+    row.p2 = 0.0
+    row.pt = 0.0
     row.t1 = 0.0
     row.t2 = 0.0
     ia = a.inverse_moment
@@ -162,6 +172,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     masses = a.inverse_mass + b.inverse_mass
     inverse = inverse_mass(r, a, b)
     inverse_t = masses + r.lean_a * r.lean_a * ia + r.lean_b * r.lean_b * ib
+    row.weight = inverse
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     k = r.stiffness
     stiffness = region_stiffness(law, k, r.chord)
@@ -242,6 +253,11 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             row.l1 += row.l2
             row.l2 = 0.0
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
+    if ia + ib <= 1e-12 * masses / (r.chord * r.chord):  # nothing turns: both ends are one
+        row.ends = 1
+        row.l1 += row.l2
+        row.l2 = 0.0
+        row.t1 = 0.5 * (row.t1 + row.t2)
     if row.ends == 1:
         row.gamma_a = gamma
         row.gamma_b = 0.0
@@ -287,6 +303,7 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
 @kernel(inline="always")
 def visit(row: Any, a: Any, b: Any) -> None:
     """Solve one row for the bodies' present velocities: both ends as a block, then friction under them."""
+    row.gt = 0.0
     ux = a.vx - b.vx
     uy = a.vy - b.vy
     v = ux * row.nx + uy * row.ny + a.w * row.arm_a - b.w * row.arm_b
@@ -311,13 +328,16 @@ def visit(row: Any, a: Any, b: Any) -> None:
                 d1 = max(-row.l1, (r1 - row.m12 * d2) / row.m11)
         row.l2 += d2
     row.l1 += d1
+    row.g1 = d1
+    row.g2 = d2
     push(row, a, b, d1, d2, 0.0)
     if row.friction > 0.0:
         slip = -(a.vx - b.vx) * row.ny + (a.vy - b.vy) * row.nx + a.w * row.lean_a - b.w * row.lean_b
         most = row.friction * (row.l1 + row.l2)
         l = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
         l = min(most, max(-most, l))
-        push(row, a, b, 0.0, 0.0, l - row.lt)
+        row.gt = l - row.lt
+        push(row, a, b, 0.0, 0.0, row.gt)
         row.lt = l
 
 

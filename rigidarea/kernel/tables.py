@@ -209,7 +209,7 @@ def find_pair(tables: Tables, a: int, b: int) -> int:
     """The pair of shape rows a and b; -1: there is none."""
     key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
     mask = len(tables.keys) - 1
-    i = (min(a, b) * 73856093 ^ max(a, b) * 19349663) & mask
+    i = int((np.int64(min(a, b)) * 73856093 ^ np.int64(max(a, b)) * 19349663) & mask)
     while tables.keys[i] != -1:
         if tables.keys[i] == key:
             return int(tables.values[i])
@@ -221,7 +221,7 @@ def find_pair(tables: Tables, a: int, b: int) -> int:
 def _enter(tables: Tables, a: int, b: int, p: int) -> None:
     key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
     mask = len(tables.keys) - 1
-    i = (min(a, b) * 73856093 ^ max(a, b) * 19349663) & mask
+    i = int((np.int64(min(a, b)) * 73856093 ^ np.int64(max(a, b)) * 19349663) & mask)
     while tables.keys[i] != -1:
         i = (i + 1) & mask
     tables.keys[i] = key
