@@ -15,7 +15,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.constants import MOST_SUBSTEPS
+from ..kernel.constants import FAR_SWEEPS, MOST_SUBSTEPS
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at
 from ..kernel.meet import DONE, GROW_WORK
@@ -249,8 +249,6 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     return True
 
 
-import os
-NNCG=int(os.environ.get('NNCG','1'))
 @kernel
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps. Whether there was memory for it."""
@@ -279,7 +277,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)
-            elif k < s.sweeps - 1 and NNCG:
+            elif k < s.sweeps // FAR_SWEEPS:
                 length = accelerate(tables, length)
         if s.joint_count > 0:
             for joint in joints_of(s):

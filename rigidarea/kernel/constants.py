@@ -6,6 +6,8 @@ What the user chooses (stiffness or penetration, law, sweeps, substeps) is not h
 #: Substeps of a frame, unless asked otherwise. Two: what the first one met the second one already answers, and the
 #: sweeps, not the substeps, are what piles need (docs/architecture.md has the measurement).
 SUBSTEPS = 2
+#: Of the sweeps of a substep, one in so many goes on in the direction of the search: those reach far, the rest settle.
+FAR_SWEEPS = 3
 #: Most substeps that a tolerance may ask for.
 MOST_SUBSTEPS = 1024
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler
@@ -15,10 +17,9 @@ FOLLOWED = 0.05
 #: its release overdamped. Less: what sweeps have left unsolved is handed back before they have learnt of it, and piles
 #: sway; more: they go on sliding for seconds. The stiffer, the more of it is left (docs/architecture.md).
 RELEASE_STEPS = 9.0
-#: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time).
+#: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
+#: somebody has put there at this speed.
 RELEASE_SPEED = 1.0
-#: Overlaps deeper than this fraction of it are: no load has pressed them so far, somebody has put them there.
-DEEP = 0.05
 #: Damping ratio of a contact at rest that the step follows: beyond critical, so that what is pressed in comes to the
 #: surface without the speed to leave it.
 REST_DAMPING = 1.0
@@ -26,7 +27,7 @@ REST_DAMPING = 1.0
 TANGENT_STIFFNESS = 2.0 / 7.0
 #: First touch slower than what the load gives in so many substeps (or natural times, where they are longer) is rest.
 REST_KICKS = 2.0
-#: Deeper at first touch than so many substeps' motion: put there, not come there. No impact then.
+#: Deeper (at first touch, or than before) than so many substeps' motion: put there, not come there. No impact then.
 MOST_ARRIVED = 2.0
 #: Restitution below this is taken as this: the exact law's damping grows as 1/e.
 LEAST_RESTITUTION = 0.01

@@ -322,6 +322,19 @@ def _touch(
 
 
 @kernel
+def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
+    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
+    return bool(r.depth - before > MOST_ARRIVED * h * speed + 0.01 * min(_size(a), _size(b)))
+
+
+@kernel(inline="always")
+def _size(body: Any) -> float:
+    """The smallest extent of a body that moves (length)."""
+    return body.extent if body.mobile else np.inf
+
+
+@kernel
 def _enter(
     pool: Pool, work: Work, law: Law, pair: Any, region: Any, face: float, ia: int, ib: int, a: Any, b: Any, back: float, h: float
 ) -> None:
@@ -337,6 +350,7 @@ def _enter(
         region.mode = IMPACT
     else:
         region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
+        region.put = region.mode == REST and _jumped_in(region, 0.0, a, b, h)
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
@@ -479,6 +493,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             min(patch.area, area_cap), x, y, wx, wy, patch.chord, middle, straight, patch.depth, patch.blind
         )
         region.born = 1 if born else 0
+        if born:
+            region.put = 0
+        else:
+            before = region.depth
+            region.put = region.put and patch.depth > 10.0 * region.rest_depth
+            if not region.put and patch.depth > 2.0 * before:
+                region.depth = patch.depth
+                region.put = _jumped_in(region, before, a, b, h)
         if back > 0.0:
             ax, ay = _centre(a, pose_a)
             bx, by = _centre(b, pose_b)
@@ -582,6 +604,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.pair = p
         region.stamp = counters[SUBSTEP]
         region.past = 0
+        region.put = 0
         region.born = 1
         region.mode = NEARING
         region.opened = 0

@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import DEEP, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
@@ -113,7 +113,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`).
+    so much further on it is put (`shift`); not where it rests, since in a pile others lie where it would be put.
     """
     back = r.back
     row.alpha = 0.0
@@ -140,10 +140,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if leaving >= 0.0:  # it rests where it has touched, or as deep as what pushes presses it
-        depth = touch * back + 0.5 * gain * back * back - r.rest_depth
-        row.shift = min(back, max(0.0, depth / full)) if full > 0.0 else 0.0
-    else:
+    if leaving < 0.0:
         row.shift = back
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
 
@@ -227,9 +224,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if a.inverse_mass > 0.0 and b.inverse_mass > 0.0:
             least = min(a.extent, b.extent)
         if theta > 0.0:
-            # deep overlaps open at RELEASE_SPEED, shallow ones not on its account
-            deep = min(1.0, r.depth / (DEEP * least)) ** 2 * RELEASE_SPEED * least
-            c = max(min(c, elastic / max(deep, 1e-300)), elastic / (RELEASE_SPEED * least))
+            slowest = elastic / (RELEASE_SPEED * least)
+            c = slowest if r.put else max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         gamma = h * c * row.alpha

@@ -125,6 +125,7 @@ REGION = record(
         ("mode", "i4"),
         ("born", "i4"),  # 1: first seen in this substep
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
+        ("put", "i4"),  # 1: an overlap that was put there by hand, while it is deeper than any load would press it
         ("opened", "i4"),  # 1 once the bodies have moved apart within this impact
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
