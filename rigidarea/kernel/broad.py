@@ -51,7 +51,8 @@ def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, floa
 
 @kernel
 def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
-    """Whether a shape that moves has left its box, or comes from outside of it within the last h."""
+    """Whether a shape that moves has left its box, or comes from outside of it within the last h. All boxes are renewed."""
+    gone = False
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
         if shape.outline < 0:
@@ -60,6 +61,10 @@ def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
         if body.stamp != frame and shape.low_x <= shape.high_x:
             continue
         low_x, low_y, high_x, high_y = box_of(pool, shape, body)
+        shape.left = low_x
+        shape.bottom = low_y
+        shape.right = high_x
+        shape.top = high_y
         dx = h * body.vx
         dy = h * body.vy
         if (
@@ -68,8 +73,8 @@ def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
             or high_x - min(0.0, dx) > shape.high_x
             or high_y - min(0.0, dy) > shape.high_y
         ):
-            return True
-    return False
+            gone = True
+    return gone
 
 
 @kernel
@@ -80,13 +85,13 @@ def _widen(pool: Pool, tables: Tables, time: float) -> None:
         if shape.outline < 0:
             continue
         body = tables.bodies[shape.body]
-        low_x, low_y, high_x, high_y = box_of(pool, shape, body)
+        shape.left, shape.bottom, shape.right, shape.top = box_of(pool, shape, body)
         dx = time * abs(body.vx) + MARGIN * shape.extent
         dy = time * abs(body.vy) + MARGIN * shape.extent
-        shape.low_x = low_x - dx
-        shape.low_y = low_y - dy
-        shape.high_x = high_x + dx
-        shape.high_y = high_y + dy
+        shape.low_x = shape.left - dx
+        shape.low_y = shape.bottom - dy
+        shape.high_x = shape.right + dx
+        shape.high_y = shape.top + dy
 
 
 @kernel

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .broad import box_of, search, somebody_left
+from .broad import search, somebody_left
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, meet, meet_ahead
 from .pool import Pool
@@ -58,7 +58,8 @@ def kick(tables: Tables, frame: int) -> None:
 @kernel
 def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> int:
     """Search pairs again if somebody has left the boxes of the last search. DONE or GROW_PAIRS."""
-    if not (tables.counters[ANEW] or somebody_left(pool, tables, frame, h)):
+    left = somebody_left(pool, tables, frame, h)
+    if not (left or tables.counters[ANEW]):
         return DONE
     if search(pool, tables, time) < 0:
         return GROW_PAIRS
@@ -110,23 +111,21 @@ def _after(one: Any, other: Any) -> bool:
     return bool(one.beside > other.beside)
 
 
-@kernel
-def _may_touch(pool: Pool, tables: Tables, pair: Any, h: float) -> bool:
-    """Whether the boxes of the two shapes meet, on the way that they have come in the last h (negative: that they go)."""
+@kernel(inline="always")
+def _may_touch(tables: Tables, pair: Any, h: float) -> bool:
+    """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     a = tables.bodies[sa.body]
     b = tables.bodies[sb.body]
-    alx, aly, ahx, ahy = box_of(pool, sa, a)
-    blx, bly, bhx, bhy = box_of(pool, sb, b)
     dx = h * (a.vx - b.vx)
     dy = h * (a.vy - b.vy)
     turn = abs(h) * (abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y))
     return bool(
-        alx - max(0.0, dx) <= bhx + turn
-        and ahx - min(0.0, dx) >= blx - turn
-        and aly - max(0.0, dy) <= bhy + turn
-        and ahy - min(0.0, dy) >= bly - turn
+        sa.left - max(0.0, dx) <= sb.right + turn
+        and sa.right - min(0.0, dx) >= sb.left - turn
+        and sa.bottom - max(0.0, dy) <= sb.top + turn
+        and sa.top - min(0.0, dy) >= sb.bottom - turn
     )
 
 
@@ -187,7 +186,7 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if pair.head < 0 and not _may_touch(pool, tables, pair, h):
+        if pair.head < 0 and not _may_touch(tables, pair, h):
             continue
         if not allowed(tables, pair, frame):
             continue
@@ -219,7 +218,7 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if not _may_touch(pool, tables, pair, -h) or not allowed(tables, pair, frame):
+        if not _may_touch(tables, pair, -h) or not allowed(tables, pair, frame):
             continue
         status = meet_ahead(pool, tables, work, law, p, h)
         if status != DONE:

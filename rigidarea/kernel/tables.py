@@ -75,6 +75,10 @@ SHAPE = record(
         ("group", "u8"),  # its filter
         ("categories", "u4"),
         ("mask", "u4"),
+        ("left", "f8"),  # its box now (length)
+        ("bottom", "f8"),
+        ("right", "f8"),
+        ("top", "f8"),
         ("low_x", "f8"),  # box within which it stays until pairs are searched again (length)
         ("low_y", "f8"),
         ("high_x", "f8"),
