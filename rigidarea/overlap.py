@@ -77,6 +77,9 @@ def overlap(
         span = slice(loop["start"], loop["stop"])
         corners = work.polygon[span]
         if loop["arcs"]:
-            corners = sampled(corners, work.bows[span], DEFAULT_TOLERANCE * math.sqrt(loop["area"]))
+            bows = np.where(
+                work.bows[span, 2:] == 0, 0.0, work.bows[span]
+            )  # no centre is written for no radius
+            corners = sampled(corners, bows, DEFAULT_TOLERANCE * math.sqrt(loop["area"]))
         row["polygon"] = (corners + middle) @ turn + (a.x, a.y)
     return out

@@ -10,6 +10,10 @@ the end). An edge whose ends differ crosses once; one whose ends are alike cross
 So the crossings of a whole ring with a line or circle always come in pairs, however the roots are rounded, and a root
 is never compared with an end. Where ends are alike, "twice" is asked of the one point of the arc that lies furthest
 across: if rounding gets that wrong, the arc dips across by no more than rounding, and so does the area that is lost.
+
+Two such signs can still contradict each other where an end of one boundary lies on the other to rounding: the exact tie
+of `side` is broken as if B were shifted, that of a circle by whatever rounding says. Shared edges and arcs are full of
+such ends. So an end that near is UNSURE, and the query is asked again with B shifted in earnest, by 1e-13.
 """
 
 from __future__ import annotations
@@ -21,8 +25,8 @@ from .predicates import side
 
 #: Bits of what `line_arc` and `arc_arc` return.
 FIRST, SECOND = 1, 2
-#: The circles are one to rounding: where they cross is undecided. (Above all others, which are 0 to 3.)
-COINCIDE = 4
+#: An end lies on the other edge to rounding, or the circles are one: undecided. (No other result has this bit.)
+UNSURE = 4
 #: So near in centre and radius, over the radii: 20 times the rounding of either.
 SAME_CIRCLE = 1e-14
 #: (half chord / radius)^2 below which the series is used: there the closed form would lose two digits.
@@ -67,11 +71,17 @@ def segment(half: float, apothem: float, radius: float) -> tuple[float, float]:
 
 
 @kernel(inline="always")
-def across(x: float, y: float, cx: float, cy: float, r: float) -> bool:
-    """Whether a point lies inside a circle."""
+def inside(x: float, y: float, cx: float, cy: float, r: float) -> float:
+    """Radius squared less distance squared of a point from the centre: positive inside the circle."""
     dx = x - cx
     dy = y - cy
-    return dx * dx + dy * dy < r * r
+    return r * r - (dx * dx + dy * dy)
+
+
+@kernel(inline="always")
+def across(x: float, y: float, cx: float, cy: float, r: float) -> bool:
+    """Whether a point lies inside a circle."""
+    return inside(x, y, cx, cy, r) > 0.0
 
 
 @kernel(inline="always")
@@ -119,11 +129,11 @@ def turned(px: float, py: float, cx: float, cy: float, r: float, x: float, y: fl
 @kernel
 def line_arc(
     ax: float, ay: float, bx: float, by: float,
-    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float, arc_of_b: bool,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float, arc_of_b: bool, noise: float,
 ) -> tuple[int, float, float, float, float]:  # fmt: skip
-    """Crossings of the edge a -> b with the arc p -> q: (bits, x1, y1, x2, y2).
+    """Crossings of the edge a -> b with the arc p -> q: (bits, x1, y1, x2, y2), or UNSURE.
 
-    FIRST: the edge enters the arc's circle at (x1, y1); SECOND: it leaves it at (x2, y2).
+    FIRST: the edge enters the arc's circle at (x1, y1); SECOND: it leaves it at (x2, y2). noise: see `work.noise_of`.
     """
     ux = bx - ax
     uy = by - ay
@@ -132,11 +142,25 @@ def line_arc(
     length2 = ux * ux + uy * uy
     turn = ux * wy - uy * wx
     missed = turn * turn >= r * r * length2
-    p_left = side(ax, ay, bx, by, px, py, arc_of_b) > 0.0
-    q_left = side(ax, ay, bx, by, qx, qy, arc_of_b) > 0.0
-    a_in = across(ax, ay, cx, cy, r)
-    b_in = across(bx, by, cx, cy, r)
-    if (missed and (p_left == q_left or a_in == b_in)) or (a_in and b_in):
+    p_side = side(ax, ay, bx, by, px, py, arc_of_b)
+    q_side = side(ax, ay, bx, by, qx, qy, arc_of_b)
+    a_deep = inside(ax, ay, cx, cy, r)
+    b_deep = inside(bx, by, cx, cy, r)
+    close = noise * noise * length2
+    if (p_side * p_side <= close and 0.0 <= (px - ax) * ux + (py - ay) * uy <= length2) or (
+        q_side * q_side <= close and 0.0 <= (qx - ax) * ux + (qy - ay) * uy <= length2
+    ):
+        return UNSURE, 0.0, 0.0, 0.0, 0.0
+    close = 2.0 * noise * abs(r)
+    if (abs(a_deep) <= close and on_arc(px, py, qx, qy, r, ax, ay)) or (
+        abs(b_deep) <= close and on_arc(px, py, qx, qy, r, bx, by)
+    ):
+        return UNSURE, 0.0, 0.0, 0.0, 0.0
+    p_left = p_side > 0.0
+    q_left = q_side > 0.0
+    a_in = a_deep > 0.0
+    b_in = b_deep > 0.0
+    if (missed and p_left == q_left and a_in == b_in) or (a_in and b_in):
         return 0, 0.0, 0.0, 0.0, 0.0
     length = math.sqrt(length2)
     ex = ux / length
@@ -193,9 +217,9 @@ def circle_circle(
 @kernel
 def arc_arc(
     px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
-    sx: float, sy: float, tx: float, ty: float, gx: float, gy: float, u: float,
+    sx: float, sy: float, tx: float, ty: float, gx: float, gy: float, u: float, noise: float,
 ) -> tuple[int, float, float, float, float]:  # fmt: skip
-    """Crossings of the arc p -> q (c, r) with the arc s -> t (g, u): (bits, x1, y1, x2, y2), or COINCIDE.
+    """Crossings of the arc p -> q (c, r) with the arc s -> t (g, u): (bits, x1, y1, x2, y2), or UNSURE.
 
     FIRST: the first circle, counter-clockwise, enters the second; SECOND: it leaves it.
     """
@@ -205,16 +229,26 @@ def arc_arc(
     dy = gy - cy
     d2 = dx * dx + dy * dy
     apart = d2 >= (a + b) * (a + b) or d2 <= (a - b) * (a - b)
-    p_in = across(px, py, gx, gy, b)
-    q_in = across(qx, qy, gx, gy, b)
-    s_in = across(sx, sy, cx, cy, a)
-    t_in = across(tx, ty, cx, cy, a)
-    if apart and (p_in == q_in or s_in == t_in):
-        if d2 < (SAME_CIRCLE * (a + b)) ** 2 and abs(a - b) < SAME_CIRCLE * (a + b):
-            return COINCIDE, 0.0, 0.0, 0.0, 0.0
-        return 0, 0.0, 0.0, 0.0, 0.0
+    p_deep = inside(px, py, gx, gy, b)
+    q_deep = inside(qx, qy, gx, gy, b)
+    s_deep = inside(sx, sy, cx, cy, a)
+    t_deep = inside(tx, ty, cx, cy, a)
+    if (
+        (abs(p_deep) <= 2.0 * noise * b and on_arc(sx, sy, tx, ty, u, px, py))
+        or (abs(q_deep) <= 2.0 * noise * b and on_arc(sx, sy, tx, ty, u, qx, qy))
+        or (abs(s_deep) <= 2.0 * noise * a and on_arc(px, py, qx, qy, r, sx, sy))
+        or (abs(t_deep) <= 2.0 * noise * a and on_arc(px, py, qx, qy, r, tx, ty))
+    ):
+        return UNSURE, 0.0, 0.0, 0.0, 0.0
+    p_in = p_deep > 0.0
+    q_in = q_deep > 0.0
+    s_in = s_deep > 0.0
+    t_in = t_deep > 0.0
     if d2 < (SAME_CIRCLE * (a + b)) ** 2:
-        return COINCIDE, 0.0, 0.0, 0.0, 0.0
+        bits = UNSURE if abs(a - b) < SAME_CIRCLE * (a + b) else 0
+        return bits, 0.0, 0.0, 0.0, 0.0
+    if apart and p_in == q_in and s_in == t_in:
+        return 0, 0.0, 0.0, 0.0, 0.0
     dx, dy, x1, y1, x2, y2 = circle_circle(cx, cy, a, gx, gy, b)
     if p_in != q_in:
         bits = SECOND if p_in == (r > 0.0) else FIRST

@@ -14,7 +14,7 @@ from .curved import cross_curved_leaves, mend
 from .jit import kernel
 from .pool import LEAF, Pool
 from .predicates import order_exact, side
-from .work import A_EDGE, OVERFLOW, Relative, Work, placed
+from .work import A_EDGE, OVERFLOW, Relative, Work, noise_of, placed
 
 
 @kernel(inline="always")
@@ -103,7 +103,7 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
     """All crossings of the two boundaries, by a walk down both hierarchies at once."""
     ha = pa.heads[ia]
     hb = pb.heads[ib]
-    pad = 8.0 * 2.0**-52 * (ha.radius + hb.radius + abs(rel.tx) + abs(rel.ty))
+    pad = noise_of(ha.radius, hb.radius, rel)
     stack = work.stack
     stack[0, 0] = 1
     stack[0, 1] = 1
@@ -123,7 +123,7 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
             a1 = ha.point + min(a0 + LEAF, ha.count)
             b1 = hb.point + min(b0 + LEAF, hb.count)
             if ha.arcs or hb.arcs:
-                n = cross_curved_leaves(pa, ha.point + a0, a1, pb, hb.point + b0, b1, rel, work, n)
+                n = cross_curved_leaves(pa, ha.point + a0, a1, pb, hb.point + b0, b1, rel, pad, work, n)
             else:
                 n = _cross_leaves(
                     pa.points, pa.following, ha.point + a0, a1, pb.points, pb.following, hb.point + b0, b1,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arc import COINCIDE, FIRST, SECOND, arc_arc, line_arc, turned
+from .arc import FIRST, SECOND, UNSURE, arc_arc, line_arc, turned
 from .jit import kernel
 from .pool import Pool
 from .predicates import side
@@ -25,7 +25,7 @@ def _along(
 
 @kernel
 def cross_curved_leaves(
-    pa: Pool, a0: int, a1: int, pb: Pool, b0: int, b1: int, rel: Relative, work: Work, n: int
+    pa: Pool, a0: int, a1: int, pb: Pool, b0: int, b1: int, rel: Relative, noise: float, work: Work, n: int
 ) -> int:
     """Append the crossings of edges a0..a1 of A with edges b0..b1 of B; their number, or OVERFLOW, or TANGLED."""
     for j in range(b0, b1):
@@ -64,16 +64,16 @@ def cross_curved_leaves(
                 x2 = x1
                 y2 = y1
             elif r == 0.0:
-                bits, x1, y1, x2, y2 = line_arc(ax, ay, bx, by, cx, cy, dx, dy, gx, gy, u, True)
+                bits, x1, y1, x2, y2 = line_arc(ax, ay, bx, by, cx, cy, dx, dy, gx, gy, u, True, noise)
                 enters = 1 if u > 0.0 else -1
             elif u == 0.0:
-                bits, x1, y1, x2, y2 = line_arc(cx, cy, dx, dy, ax, ay, bx, by, fx, fy, r, False)
+                bits, x1, y1, x2, y2 = line_arc(cx, cy, dx, dy, ax, ay, bx, by, fx, fy, r, False, noise)
                 enters = -1 if r > 0.0 else 1  # B enters A: A leaves B
             else:
-                bits, x1, y1, x2, y2 = arc_arc(ax, ay, bx, by, fx, fy, r, cx, cy, dx, dy, gx, gy, u)
-                if bits == COINCIDE:
-                    return TANGLED
+                bits, x1, y1, x2, y2 = arc_arc(ax, ay, bx, by, fx, fy, r, cx, cy, dx, dy, gx, gy, u, noise)
                 enters = 1 if (r > 0.0) == (u > 0.0) else -1
+            if bits == UNSURE:
+                return TANGLED
             for bit in (FIRST, SECOND):
                 if bits & bit:
                     if n == len(work.cross):
