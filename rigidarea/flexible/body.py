@@ -80,5 +80,6 @@ def elastic_body(
     middle = mesh.points[mesh.rings[hub]].mean(0) - body.centre if hub is not None else np.zeros(2)
     return Body(
         boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
-        fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])), **keys,
+        fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])),
+        young=material.young if level != "rigid" else 0.0, **keys,
     ), mesh  # fmt: skip
