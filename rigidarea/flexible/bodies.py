@@ -21,9 +21,12 @@ from rigidarea.kernel.memory import array_at as compiled_array_at
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SIZES = 6  # points, FE nodes, circles of the tree, modes, rows of the flexibility, rows of the swelling
+SIZES = (
+    7  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses
+)
 WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
 COUPLING = WORK + len(Work._fields)
+GEOMETRIC = COUPLING + 1
 
 
 def _array_at(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
@@ -37,19 +40,24 @@ def _array_at(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
 array_at: Any = _array_at if config.DISABLE_JIT else compiled_array_at
 
 
-def table(boundaries: Sequence[Boundary], works: Sequence[Work], couplings: Sequence[Array]) -> Ints:
+def table(
+    boundaries: Sequence[Boundary],
+    works: Sequence[Work],
+    couplings: Sequence[Array],
+    geometric: Sequence[Array],
+) -> Ints:
     """A row a body. The arrays must be C-contiguous and outlive the table: nobody counts references to them.
 
     Raises ValueError for an array that is not contiguous.
     """
-    out = np.zeros((len(boundaries), COUPLING + 1), np.int64)
-    for row, b, w, g in zip(out, boundaries, works, couplings, strict=True):
-        arrays = (*b, *w, g)
-        for name, array in zip((*b._fields, *w._fields, "coupling"), arrays, strict=True):
+    out = np.zeros((len(boundaries), GEOMETRIC + 1), np.int64)
+    for row, b, w, g, s in zip(out, boundaries, works, couplings, geometric, strict=True):
+        arrays = (*b, *w, g, s)
+        for name, array in zip((*b._fields, *w._fields, "coupling", "geometric"), arrays, strict=True):
             if not array.flags.c_contiguous:
                 raise ValueError(f"{name} must be contiguous, got strides {array.strides}")
         row[:SIZES] = (
-            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell)
+            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s)
         )  # fmt: skip
         row[SIZES:] = [array.ctypes.data for array in arrays]
     return out
@@ -111,3 +119,10 @@ def coupling_at(bodies: Ints, i: int) -> Array:
     """Body i's ``modes.Reduced.coupling`` (m, m)."""
     m = bodies[i, 3]
     return array_at(bodies[i, COUPLING], (m, m), np.float64)
+
+
+@inner(inline="always")
+def geometric_at(bodies: Ints, i: int) -> Array:
+    """Body i's ``modes.Reduced.geometric`` (3, m, m), or (0, m, m)."""
+    m = bodies[i, 3]
+    return array_at(bodies[i, GEOMETRIC], (bodies[i, 6], m, m), np.float64)

@@ -15,10 +15,13 @@ from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, resample, triangulate
 from rigidarea.flexible.modes import reduce
+from rigidarea.flexible.recover import Shape
 
 Array = NDArray[np.float64]
 
 LEVELS = ("rigid", "compliant", "modal")
+CONTACT_NODES = 8000  # the flexibility between so many nodes takes 2 GiB
+BOUNDARY_NODES = 40_000  # a mesh from so many has some hundred thousand nodes
 
 
 def elastic_body(
@@ -42,12 +45,14 @@ def elastic_body(
     (``modes`` free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine:
     contact points a mesh edge, on the rings themselves. growth: of the size inside the body. keys: passed to
     ``Body``; ``position`` is where the origin of the rings' coordinates goes at angle 0, as given by the rings.
-    Raises ValueError for bad settings, see ``resample``, ``triangulate`` and ``reduce``.
+    Raises ValueError for bad settings, see ``resample``, ``triangulate`` and ``reduce``, and for a size that asks for
+    more nodes than fit into memory.
     """
     if level not in LEVELS:
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
     if refine < 1:
         raise ValueError(f"refine must be at least 1, got {refine}")
+    _check_size(rings, size, contact_rings if level != "rigid" else ())
     nodes = [resample(r, size) for r in rings]
 
     def build_mesh() -> dict[str, NDArray]:
@@ -72,7 +77,7 @@ def elastic_body(
         share.append((np.arange(len(fine)) % refine) / refine)
         first += len(fine) // refine
     carriers = (np.concatenate(low), np.concatenate(high), np.concatenate(share))
-    boundary = build(profile, carriers, body.modes, body.flexibility)
+    boundary = build(profile, carriers, body.modes, body.flexibility, body.swell)
     angle = keys.pop("angle", 0.0)
     c, s = np.cos(angle), np.sin(angle)
     x, y = keys.pop("position", (0.0, 0.0))
@@ -81,5 +86,22 @@ def elastic_body(
     return Body(
         boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
         fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])),
-        young=material.young if level != "rigid" else 0.0, **keys,
+        young=material.young if level != "rigid" else 0.0, geometric=body.geometric, slowest=body.slowest,
+        shape=Shape(mesh, material, tuple(contact_rings), hub, clamped, body) if level != "rigid" else None, **keys,
     ), mesh  # fmt: skip
+
+
+def _check_size(rings: Sequence[Array], size: float, contact: Sequence[int]) -> None:
+    """Refuses a mesh size before it is meshed that would ask for gigabytes."""
+    if not 0 < size < np.inf:
+        raise ValueError(f"size must be positive and finite, got {size}")
+    length = [float(np.hypot(*(np.roll(r, -1, 0) - r).T).sum()) for r in rings]
+    for what, total, most in (
+        ("on the boundary", sum(length), BOUNDARY_NODES),
+        ("in contact", sum(length[k] for k in contact if 0 <= k < len(length)), CONTACT_NODES),
+    ):
+        if total / size > most:
+            raise ValueError(
+                f"size must be at least {total / most:.4g} here, for {most} nodes {what}, got {size:.4g}:"
+                f" {total / size:.4g} nodes"
+            )

@@ -46,8 +46,8 @@ TWO = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)  # Gauss: exact for a product
 @inner
 def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: float, pose: Array) -> int:
     """One more unknown: a load at (x, y), world, along the force on its side; its number."""
-    i = s.count[0]
-    s.count[0] += 1
+    i = s.made[0]
+    s.made[0] += 1
     s.side[i], s.node[i], s.force[i] = side, node, 0.0
     s.stiffness[i, : i + 1] = 0.0
     s.stiffness[:i, i] = 0.0
@@ -62,10 +62,10 @@ def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: floa
 @inner
 def _at_node(b: Boundary, w: Work, pose: Array, s: Loads, side: int, node: int, nx: float, ny: float) -> int:
     """The unknown that is the load on an FE node in the present region."""
-    if w.slot_region[node] != s.count[1]:
+    if w.slot_region[node] != s.made[1]:
         x, y = b.nodes[node, 0] + w.displacement[node, 0], b.nodes[node, 1] + w.displacement[node, 1]
         c, sn = pose[2], pose[3]
-        w.slot_region[node] = s.count[1]
+        w.slot_region[node] = s.made[1]
         w.slot[node] = _new(s, side, node, pose[0] + c * x - sn * y, pose[1] + sn * x + c * y, nx, ny, pose)
     return w.slot[node]
 
@@ -115,13 +115,13 @@ def _begin(
     a: Boundary, pa: Array, b: Boundary, pb: Array, r: Any, s: Loads, x0: float, x1: float
 ) -> tuple[int, int]:
     """Starts a region: the first of the two unknowns of each rigid side, -1 for sides that yield."""
-    s.count[1] += 1
+    s.made[1] += 1
     nx, ny = r["nx"], r["ny"]
     first = (-1, -1)
     for side in range(2):
         body, pose = (a, pa) if side == 0 else (b, pb)
         if not _flexible(body):
-            i = s.count[0]
+            i = s.made[0]
             for x in (x0, x1):  # along the axis across the force, from the entry
                 _new(s, side, -1, r["enter_x"] - x * ny, r["enter_y"] + x * nx, nx, ny, pose)
             first = (i, first[1]) if side == 0 else (first[0], i)
@@ -131,7 +131,7 @@ def _begin(
 @inner
 def room(s: Scratch, n_a: int, n_b: int) -> bool:
     """Whether the loads of one more region, of arcs of so many pieces, find room."""
-    return s.load.count[0] + 2 * (n_a + n_b) + 4 <= len(s.load.force)
+    return s.load.made[0] + 2 * (n_a + n_b) + 4 <= len(s.load.force)
 
 
 @inner
@@ -238,17 +238,17 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
         for j in range(i + 1):
             if s.side[j] != body:
                 continue
-            c = 0.0
+            moved = 0.0
             if static:
                 u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
                 top, low = b.flexibility[row], b.flexibility[row + 1]
-                c = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)
-                buf.stale[i] += c * s.force[j]
+                moved = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)
+                buf.stale[i] += moved * s.force[j]
                 if j != i:
-                    buf.stale[j] += c * s.force[i]
+                    buf.stale[j] += moved * s.force[i]
             for k in range(m):
-                c += buf.modal[i, k] * buf.modal[j, k] * w.mobility[k]
-            buf.compliance[i, j] = buf.compliance[j, i] = c
+                moved += buf.modal[i, k] * buf.modal[j, k] * w.mobility[k]
+            buf.compliance[i, j] = buf.compliance[j, i] = moved
 
 
 @inner
@@ -310,7 +310,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
     ``s.side`` holds bodies by now, ``buf.modal_residual`` the modes' residual under the new loads. Returns how much
     force in all the new loads would change if the displacements were renewed with them.
     """
-    n, count = s.count[0], len(sy.mass)
+    n, count = s.made[0], len(sy.mass)
     buf.push[:] = 0.0
     if n == 0:
         return 0.0
@@ -385,7 +385,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
 @inner
 def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None:
     """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads."""
-    n, columns, count = s.count[0], buf.counts[2], 3 * len(sy.mass)
+    n, columns, count = s.made[0], buf.counts[2], 3 * len(sy.mass)
     for b in range(len(sy.mass)):
         clear_nodes(work_at(bodies, b))
     for i in range(n):

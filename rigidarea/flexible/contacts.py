@@ -73,6 +73,7 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
         buf.bend[b] = np.sqrt(most)
         for k in range(sy.first[b], sy.first[b + 1]):
             buf.bend[b] += abs(q[k]) * sy.amplitude[k]
+        buf.most[b] = max(buf.most[b], buf.bend[b])
 
 
 @inner
@@ -83,7 +84,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
     buf.load[:] = 0.0
     buf.tangent[:] = 0.0
     buf.force[:] = 0.0
-    s.load.count[0] = 0
+    s.load.made[0] = 0
     _bend(bodies, sy, buf, q)
     for b in range(len(sy.mass)):
         clear_loads(work_at(bodies, b))
@@ -119,14 +120,14 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         if n_pairs == 0:
             continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
-        first = s.load.count[0]
+        first = s.load.made[0]
         if st.sts:
             n = segment.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         else:
             n = nodal.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         if n < 0:
             return n
-        for i in range(first, s.load.count[0]):
+        for i in range(first, s.load.made[0]):
             s.load.side[i] = ia if s.load.side[i] == 0 else ib
         if total + n > len(buf.regions):
             return MANY

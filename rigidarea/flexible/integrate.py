@@ -20,7 +20,7 @@ from rigidarea.flexible.check import check_bodies, check_pairs, check_settings
 from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
-from rigidarea.flexible.system import REGIONS, Settings, State, System, buffers
+from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 
 Array = NDArray[np.float64]
 
@@ -39,7 +39,8 @@ class Body:
     body frame; anchor (2,): the world point it is pinned to by a revolute joint, None for a free body. drive: (angle
     at t = 0, final angular velocity, ramp time) of a prescribed hub rotation, None if free. damper: torsional,
     moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0. young: Young's modulus,
-    named in errors (0: rigid).
+    named in errors (0: rigid). geometric (3, m, m): of ``modes.Reduced``, None: none. slowest: the first elastic
+    angular frequency, for the watch on spin (0: not known). shape: a ``recover.Shape``, None where there is no mesh.
     """
 
     boundary: Boundary
@@ -59,6 +60,9 @@ class Body:
     torque: float = 0.0
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
     young: float = 0.0
+    geometric: Array | None = None
+    slowest: float = 0.0
+    shape: Any = None
 
 
 @dataclass(frozen=True)
@@ -161,7 +165,11 @@ class Simulation:
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
         self.works = tuple(workspace(b.boundary) for b in bodies)
-        self._table = table(self.boundaries, self.works, self.couplings)
+        self._geometric = tuple(
+            np.zeros((0, m, m)) if b.geometric is None else np.ascontiguousarray(b.geometric, float)
+            for b, m in zip(bodies, count, strict=True)
+        )
+        self._table = table(self.boundaries, self.works, self.couplings, self._geometric)
         spread = any(bd.modes.shape[1] > 0 or len(bd.flexibility) for bd in self.boundaries)
         self.settings = Settings(float(k), float(reach if contact == "sts" else q), contact == "sts", spread,
                                  float(margin), float(rho))  # fmt: skip
@@ -174,16 +182,15 @@ class Simulation:
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)
 
-    def _make_room(self, loads: int) -> None:
+    def _make_room(self, loads: int, old: Buffers | None = None) -> None:
         """Scratch arrays with room for so many loads as unknowns."""
         sizes = [len(b.points) for b in self.boundaries]
         largest = max((sizes[i] + sizes[j] for i, j in self.pairs), default=0)
         self.scratch = nodal.scratch(largest, loads)
-        evaluations = int(self._buffers.counts[1]) if hasattr(self, "_buffers") else 0
-        self._buffers = buffers(
-            len(self.bodies), len(self.pairs), [len(b.frequency) for b in self.bodies], loads
-        )
-        self._buffers.counts[1] = evaluations
+        made = buffers(len(self.bodies), len(self.pairs), [len(b.frequency) for b in self.bodies], loads)
+        if old is not None:
+            made.counts[1], made.most[:] = old.counts[1], old.most
+        self._buffers: Buffers = made
         # regions are numbered anew: no node belongs to one
         for w in self.works:
             w.slot_region[:] = 0
@@ -283,7 +290,7 @@ class Simulation:
                     part.append(source[:end].copy())
                 filled[1:3] = 0
                 if code == FULL:
-                    self._make_room(2 * len(self.scratch.load.force))
+                    self._make_room(2 * len(self.scratch.load.force), self._buffers)
                     code = 0
         finally:  # an interrupt arrives between chunks: what was computed stays readable
             self.time = begin + h * done
@@ -320,11 +327,8 @@ class Simulation:
         forces = rows[:, at : at + 2 * p].reshape(len(rows), p, 2)
         counts, loaded = rows[:, 5].astype(int), rows[:, 6].astype(int)
         regions = regions[: counts.sum()]
-        which = (
-            np.repeat(np.arange(len(rows)), counts),
-            np.concatenate([np.arange(c) for c in counts] or [[]]),
-        )
-        place = which[0], which[1].astype(int)
+        row = np.repeat(np.arange(len(rows)), counts)
+        place = row, np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
         table = np.zeros((len(rows), max(1, counts.max(initial=0)), 5))
         table[place] = regions[:, 1:]
         pair = np.full(table.shape[:2], -1)

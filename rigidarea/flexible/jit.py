@@ -1,4 +1,4 @@
-"""Kernels that only kernels call: without the entry points from Python and C, which cost more to compile than they do."""
+"""Kernels that only kernels call: without entry points from Python and C, which take long to compile."""
 
 from __future__ import annotations
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidarea.flexible.bodies import boundary_at, coupling_at, work_at
+from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.hub import hub_displacement, hub_rate
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.scratch import FULL
@@ -40,11 +40,13 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
     at = HEAD
     for b in range(count):
         lo, hi = sy.first[b], sy.first[b + 1]
-        j, v, g = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b)
+        j, v, g, stiff = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b), geometric_at(bodies, b)
         for i in range(lo, hi):
             gq = 0.0
             for k in range(lo, hi):
                 gq += g[i - lo, k - lo] * state.q[k]
+                if len(stiff) > 0:
+                    j -= state.q[i] * stiff[0, i - lo, k - lo] * state.q[k]
             j += 2.0 * sy.stretch[i] * state.q[i] + state.q[i] ** 2
             kinetic += 0.5 * state.dq[i] ** 2 + v * gq * state.dq[i]
         kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2) + 0.5 * j * v * v

@@ -40,7 +40,7 @@ FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: 
 class Loads(NamedTuple):
     """The loads of all regions as unknowns, and how they answer to displacements; see ``condense``. Room for c."""
 
-    count: Ints  # (2,) unknowns so far, serial number of the region
+    made: Ints  # (2,) unknowns so far, serial number of the region
     side: Ints  # (c,) 0: on A, 1: on B; then the body
     node: Ints  # (c,) FE boundary node, -1: one of the two of a rigid body's side
     at: Array  # (c, 2) where, world

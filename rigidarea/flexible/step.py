@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.bodies import boundary_at, coupling_at, work_at
+from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import evaluate, poses
@@ -268,7 +268,7 @@ def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # typ
     x, y = c * d0 + s * d1, -s * d0 + c * d1
     for j in range(hi - lo):
         f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
-        for i in range(s_load.count[0]):
+        for i in range(s_load.made[0]):
             if s_load.side[i] == b:
                 f += buf.modal[i, j] * buf.answer[i]
         _move_mode(state, scheme, lo + j, (f - buf.modal_residual[lo + j]) * w.mobility[j])
@@ -309,8 +309,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             lo, hi = sy.first[b], sy.first[b + 1]
             hub = hub_of(body, w, sy, buf, state, b)
             moment = inertia_forces(
-                sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), state.q[lo:hi], state.dq[lo:hi],
-                state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2], buf.modal_residual[lo:hi],
+                sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), geometric_at(bodies, b), w.hub_load[0],
+                w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
+                buf.modal_residual[lo:hi],
             )  # fmt: skip
             buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3] = (
                 hub.x,

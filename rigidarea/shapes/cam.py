@@ -15,8 +15,8 @@ def eccentric(
 ) -> Outline:
     """A disc that turns about a point of its own: the origin, where its bore is; its centre lies at (eccentricity, 0).
 
-    Lengths; bore: radius of the hole, 0 for none. tolerance: largest sagitta, default a thousandth of the radius. A flat
-    follower perpendicular to its direction of motion is lifted by eccentricity · cos of the disc's angle to it.
+    Lengths; bore: radius of the hole, 0 for none. tolerance: largest sagitta, default a thousandth of the radius. A
+    flat follower perpendicular to its direction of motion is lifted by eccentricity · cos of the disc's angle to it.
     Raises ValueError for lengths out of range and a bore that leaves the disc.
     """
     positive(radius, "radius")
