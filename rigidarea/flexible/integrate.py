@@ -21,6 +21,7 @@ from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
+from rigidarea.flexible.watch import watch
 
 Array = NDArray[np.float64]
 
@@ -261,7 +262,8 @@ class Simulation:
         """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps; ``shapes`` too if asked for.
 
         Raises ValueError for lengths of time or ``every`` out of range, RuntimeError naming step, residual, pair and
-        its stiffness if a step does not converge after HALVINGS halvings. What was computed until then, or until an
+        its stiffness if a step does not converge after HALVINGS halvings. Warns (``watch.LinearityWarning``) where a
+        body went beyond linear elasticity. What was computed until then, or until an
         interrupt, is in ``self.record``.
         """
         if not (0 < h < np.inf and 0 < duration < np.inf):
@@ -300,6 +302,8 @@ class Simulation:
             )
         if code < 0:
             raise RuntimeError(f"step {done} (t = {self.time:.6g}, h = {h:g}, {self._trouble(code)}")
+        spin = np.abs(self.record.v[:, :, 2]).max(0, initial=0.0)
+        watch(self.bodies, self.system.size, self._buffers.most, spin)
         return self.record
 
     def _trouble(self, code: int) -> str:

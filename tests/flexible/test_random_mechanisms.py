@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -142,8 +143,13 @@ def beams(rng, level):
 KINDS = (gears, internal_gears, genevas, cams, soft_discs, beams)
 
 
+@cache
+def built(make, seed, level):
+    return make(np.random.default_rng(seed), level)
+
+
 def run(make, seed, level, ratio):
-    made = make(np.random.default_rng(seed), level)
+    made = built(make, seed, level)
     margin = 0.02 * min(np.linalg.norm(b.boundary.points, axis=1).max() for b in made.bodies)
     sim = Simulation(made.bodies, k=ratio * made.young, margin=margin, rho=0.8)
     return made, sim.run(made.duration, made.step)
