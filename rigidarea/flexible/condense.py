@@ -307,8 +307,8 @@ def _eliminate(a: Array, n: int, rhs: Array, columns: int) -> None:
 def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> float:
     """Takes the loads out of Newton's system: ``buf.tangent`` gets Pᵀ S, ``buf.push`` Pᵀ y₀.
 
-    ``s.side`` holds bodies by now, ``buf.modal_residual`` the modes' residual under the new loads. Returns how much
-    force in all the new loads would change if the displacements were renewed with them.
+    ``s.side`` holds bodies by now, ``buf.modal_residual`` the modes' residual under the new loads. Returns the sum
+    of |y₀|: by how much the loads are off from what belongs to the present frames.
     """
     n, count = s.made[0], len(sy.mass)
     buf.push[:] = 0.0
@@ -347,7 +347,6 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
                 hub_moves(bd, w, s.node[i], ex, ey, buf.pose[b], buf.modal[i], moves[3:])
         columns += 6 if held else 3
     # (I + K C̃) y = −K (a + P δ)
-    apart = 0.0
     for i in range(n):
         row, k = buf.system[i], s.stiffness[i]
         for j in range(n):
@@ -356,19 +355,19 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         right = buf.right[i]
         for c in range(columns + 1):
             right[c] = 0.0
-        force = 0.0
         for m in range(n):
             stiff = k[m]
             if stiff == 0.0:
                 continue
             for j in range(n):
                 row[j] += stiff * buf.compliance[m, j]
-            force += stiff * buf.stale[m]
             right[0] -= stiff * (buf.stale[m] + buf.shift[m])
             for c in range(columns):
                 right[c + 1] -= stiff * buf.moves[m, c]
-        apart += abs(force)
     _eliminate(buf.system, n, buf.right, columns + 1)
+    off = 0.0
+    for i in range(n):
+        off += abs(buf.right[i, 0])
     for c in range(columns):
         to = buf.active[c]
         for i in range(n):
@@ -379,7 +378,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
             for d in range(columns):
                 buf.tangent[to, buf.active[d]] -= p * buf.right[i, d + 1]
     buf.counts[2] = columns
-    return apart
+    return off
 
 
 @inner

@@ -78,7 +78,10 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
 
 @inner
 def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
-    """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``scratch``."""
+    """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``scratch``.
+
+    Without any contact the loads of the evaluation before stay on the nodes, for ``step`` to take away.
+    """
     buf.counts[1] += 1
     stamp = buf.counts[1]
     buf.load[:] = 0.0
@@ -146,7 +149,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             buf.force[p, 1] += r["force"] * r["ny"]
             _assemble(sy, buf, st, r, ia, ib)
             total += 1
-    if st.spread:
+    if st.spread and (st.sts or total > 0):
         for b in range(len(sy.mass)):
             to_nodes(boundary_at(bodies, b), work_at(bodies, b), buf.pose[b])
     buf.counts[0] = total

@@ -80,7 +80,6 @@ class Buffers(NamedTuple):
     counts: Ints  # [0] regions, [1] evaluation stamp, [2] columns of ``right`` but the first
     bend: Array  # (b,) largest displacement of the boundary under a contact, by static flexibility
     most: Array  # (b,) the largest of it so far
-    off: Array  # (1,) force that changes if displacements are renewed with the new loads
     # the loads' system, see ``condense``
     touched: Ints  # (b,)
     active: Ints  # (6 b,) frames' and hubs' unknowns that move a load: rows of ``tangent``
@@ -100,7 +99,7 @@ def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
     return Buffers(
         np.zeros((n, 4)), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
         np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 6)), np.zeros(m), np.zeros((n, 5)),
-        np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(1), np.zeros(n, np.int64),
+        np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
         np.zeros(room),

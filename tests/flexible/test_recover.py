@@ -71,7 +71,9 @@ def pressed_block(level):
     # laid where the floor carries it, but for its own yielding
     depth = 1000.0 * 0.06 * 0.02 * 9.81 / 1e7
     block, mesh = elastic_body([corners], 0.01, mat, level, modes=8, position=(0.0, -depth), damping=0.3)
-    floor = Body(build([np.array([[-1, -0.5], [1, -0.5], [1, 0.5], [-1, 0.5]])]), 1.0, 1.0, (0, -0.5), fixed=True)
+    floor = Body(
+        build([np.array([[-1, -0.5], [1, -0.5], [1, 0.5], [-1, 0.5]])]), 1.0, 1.0, (0, -0.5), fixed=True
+    )
     sim = Simulation([block, floor], k=1e7, gravity=(0.0, -9.81), margin=1e-3, rho=0.6)
     return sim, sim.run(0.2, 1e-3, every=10, shapes=True), block, mesh
 
@@ -102,7 +104,9 @@ def test_force_in_the_mean_stress():
     assert loads[:, 2].sum() == pytest.approx(force, rel=1e-6)
     _, p = pressure(state.shape, loads)
     assert p.max() > 0 and p.min() >= -1e-9 * p.max()
-    inner = np.isclose(mesh.points[mesh.rings[0], 1], 0.0) & (np.abs(mesh.points[mesh.rings[0], 0] - 0.05) < 0.045)
+    inner = np.isclose(mesh.points[mesh.rings[0], 1], 0.0) & (
+        np.abs(mesh.points[mesh.rings[0], 0] - 0.05) < 0.045
+    )
     assert p[inner].mean() == pytest.approx(force / (0.1 * 0.02), rel=0.15)  # corners carry more
 
 
