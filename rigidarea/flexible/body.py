@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,7 @@ def elastic_body(
     *,
     contact_rings: Sequence[int] = (0,),
     hub: int | None = None,
-    clamped: int | None = None,
+    clamped: int | Callable[[Array], NDArray[np.bool_]] | None = None,
     modes: int = 40,
     refine: int = 1,
     growth: float = 0.2,
@@ -41,12 +41,12 @@ def elastic_body(
 ) -> tuple[Body, Mesh]:
     """A body from finely sampled ``rings`` ([0] outer, counter-clockwise; then holes, clockwise), and its mesh.
 
-    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal"
-    (``modes`` free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine:
-    contact points a mesh edge, on the rings themselves. growth: of the size inside the body. keys: passed to
-    ``Body``; ``position`` is where the origin of the rings' coordinates goes at angle 0, as given by the rings.
-    Raises ValueError for bad settings, see ``resample``, ``triangulate`` and ``reduce``, and for a size that asks for
-    more nodes than fit into memory.
+    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
+    free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers; clamped may be a function that
+    says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, on the rings themselves.
+    growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the rings'
+    coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
+    ``triangulate`` and ``reduce``, and for a size that asks for more nodes than fit into memory.
     """
     if level not in LEVELS:
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
@@ -64,6 +64,11 @@ def elastic_body(
     )
     ends = np.cumsum([0] + [len(r) for r in nodes])
     mesh = Mesh(found["points"], found["triangles"], tuple(map(np.arange, ends[:-1], ends[1:])))
+    if callable(clamped):
+        ends_at = int(ends[-1])
+        held = np.flatnonzero(np.asarray(clamped(mesh.points[:ends_at]), bool))
+        mesh = Mesh(mesh.points, mesh.triangles, (*mesh.rings, held))
+        clamped = len(mesh.rings) - 1
     body = reduce(
         mesh, material, contact_rings, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
     )
