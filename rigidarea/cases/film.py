@@ -160,7 +160,7 @@ def still(scene: Scene, out: Path) -> None:
     middle.set(xlabel=f"way along the face ({unit})", ylabel=f"contact pressure ({pressure})")
     middle.legend()
     draw_deformed(right, scene.states[n], scene.magnification, (report.BLUE, report.RED), length=scene.length)
-    right.set_title(f"deformed {scene.magnification:g} times over; grey: as it was", fontsize=10)
+    right.set_title(f"deformed, displacements × {scene.magnification:g}; grey: as it was", fontsize=10)
     for ax in (left, right):
         _frame(ax, scene)
     report.save(fig, out, f"{scene.name}_stress")

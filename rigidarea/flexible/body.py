@@ -102,8 +102,8 @@ def _check_size(rings: Sequence[Array], size: float, contact: Sequence[int]) -> 
         raise ValueError(f"size must be positive and finite, got {size}")
     length = [float(np.hypot(*(np.roll(r, -1, 0) - r).T).sum()) for r in rings]
     for what, total, most in (
-        ("on the boundary", sum(length), BOUNDARY_NODES),
         ("in contact", sum(length[k] for k in contact if 0 <= k < len(length)), CONTACT_NODES),
+        ("on the boundary", sum(length), BOUNDARY_NODES),
     ):
         if total / size > most:
             raise ValueError(

@@ -1,21 +1,23 @@
 """A mechanism of one's own, put together by name: bodies, pivots, drives, loads, contacts, then a run.
 
-from rigidarea.flexible import Material, Mechanism
-from rigidarea.shapes import involute_gear
-from rigidarea.shapes.internal import internal_gear
+A pinion in a ring gear, lengths in metres:
 
-steel = Material(young=207e9, poisson=0.29, density=7800.0, thickness=0.02)
-m = Mechanism(k=2e10)  # N/m²: contact force per overlap area
-pinion = m.body(involute_gear(2e-3, 20, bore=6e-3), steel, mesh=1e-3, hub=1)
-ring = m.body(internal_gear(2e-3, 60), steel, mesh=1e-3, at=(-0.04, 0.0), hub=0, contact=(1,))
-m.pivot(pinion, (0.0, 0.0))
-m.drive(pinion, 20.0, ramp=0.01)  # rad/s
-m.pivot(ring, (-0.04, 0.0))
-m.load(ring, damper=0.5)  # N m s
-m.contact(pinion, ring)
-record = m.run(0.05, 2e-5, shapes=True)
-print(record.hub_rate[-1, 1] / record.hub_rate[-1, 0])  # 20/60
-stress = m.state(record, -1, pinion).stress  # (triangles, 3)
+    from rigidarea.flexible import Material, Mechanism
+    from rigidarea.shapes import involute_gear
+    from rigidarea.shapes.internal import internal_gear
+
+    steel = Material(young=207e9, poisson=0.29, density=7800.0, thickness=0.02)
+    m = Mechanism(k=2e10)  # N/m²: contact force per overlap area
+    pinion = m.body(involute_gear(2e-3, 20, bore=6e-3), steel, mesh=1e-3, hub=1)
+    ring = m.body(internal_gear(2e-3, 60), steel, mesh=1e-3, at=(-0.04, 0.0), hub=0, contact=(1,))
+    m.pivot(pinion, (0.0, 0.0))
+    m.drive(pinion, 20.0, ramp=0.01)  # rad/s
+    m.pivot(ring, (-0.04, 0.0))
+    m.load(ring, damper=0.5)  # N m s
+    m.contact(pinion, ring)
+    record = m.run(0.05, 2e-5, shapes=True)
+    print(record.hub_rate[-1, 1] / record.hub_rate[-1, 0])  # 20/60
+    stress = m.state(record, -1, pinion).stress  # (triangles, 3)
 """
 
 from __future__ import annotations

@@ -20,7 +20,7 @@ def far():
 @pytest.mark.parametrize("level", ["compliant", "modal"])
 def test_ring_grows(level):
     """A free spinning ring against S. P. Timoshenko and J. N. Goodier, Theory of Elasticity, section 32."""
-    a, b, spin = 0.08, 0.1, 300.0
+    a, b, spin = 0.08, 0.1, 240.0
     mat = Material(2e9, 0.3, 1200.0, 0.01)
     ring, mesh = elastic_body(
         [circle(b), circle(a)[::-1]], 4e-3, mat, level, modes=8, velocity=(0.0, 0.0, spin)
@@ -102,10 +102,11 @@ def test_tension_stiffens_a_spinning_beam():
         sim.state.dq[0] = 1e-4
         r = sim.run(16 * 2 * np.pi / at_rest, 2 * np.pi / at_rest / 200, shapes=True)
         q = r.shapes.modal[:, 0]
-        q = q - q.mean()
-        up = np.flatnonzero((q[:-1] < 0) & (q[1:] >= 0))
-        t = r.t[up] - q[up] / (q[up + 1] - q[up]) * (r.t[1] - r.t[0])
-        found.append(2 * np.pi * (len(t) - 1) / (t[-1] - t[0]))
+        q = (q - q.mean()) * np.hanning(
+            len(q)
+        )  # of several frequencies the lowest: the window keeps the others off
+        trial = at_rest * np.linspace(0.7, 1.3, 1201)
+        found.append(float(trial[np.abs(np.exp(-1j * np.outer(trial, r.t)) @ q).argmax()]))
     # the block's own yielding is in both; at rest it is what the beam model leaves out
     assert found[0] == pytest.approx(at_rest, rel=0.05)
     stiffened = rotating(length, height, 0.015, mat, 0.5 * at_rest) / at_rest
