@@ -22,7 +22,7 @@ class Scene(NamedTuple):
     """What is drawn: states of the bodies at each instant, their contact loads, and how.
 
     length, stress: factors from the case's units to ``units``. window: middle and half width and height, in the units
-    drawn. magnification: of the displacements in the still's deformed shape, and in the film.
+    drawn.
     """
 
     name: str
@@ -31,7 +31,6 @@ class Scene(NamedTuple):
     loads: list[list[Array]]
     bodies: tuple[str, str]
     window: tuple[float, float, float, float]
-    magnification: float
     length: float = MM
     stress: float = MPA
     units: tuple[str, str] = ("mm", "MPa")
@@ -39,7 +38,7 @@ class Scene(NamedTuple):
 
 def _record(
     name: str, sim: Any, until: float, h: float, duration: float, every: int, bodies: tuple[str, str],
-    window: tuple[float, float, float, float], magnification: float,
+    window: tuple[float, float, float, float],
 ) -> Scene:  # fmt: skip
     if until > 0:
         sim.run(until, h)
@@ -49,7 +48,7 @@ def _record(
     states = [[recover(sim, r, n, b) for b in range(2)] for n in rows]
     loads = [[r.shapes.loads[n][r.shapes.loads[n][:, 0] == b, 1:] for b in range(2)] for n in rows]
     times = [f"t = {1e3 * start:.3f} + {1e3 * (t - start):.3f} ms" for t in r.t]
-    return Scene(name, times, states, loads, bodies, window, magnification)
+    return Scene(name, times, states, loads, bodies, window)
 
 
 def pin_joint(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Scene:
@@ -67,7 +66,6 @@ def pin_joint(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Sc
         3,
         ("pin", "journal"),
         (0.0, -35.0, 14.0, 9.0),
-        1.0,
     )
 
 
@@ -76,7 +74,7 @@ def geneva(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Scene
     from rigidarea.cases import geneva as case
 
     sim, _ = case.simulation(mode, mesh_mm, contact, cache=cache)
-    return _record("geneva", sim, 0.03, case.STEP, 0.6, 40, ("pin", "wheel"), (34.0, 0.0, 33.0, 33.0), 1.0)
+    return _record("geneva", sim, 0.03, case.STEP, 0.6, 40, ("pin", "wheel"), (34.0, 0.0, 33.0, 33.0))
 
 
 def gearbox(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Scene:
@@ -93,7 +91,6 @@ def gearbox(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Scen
         1,
         ("pinion", "wheel"),
         (23.0, 0.0, 12.0, 9.0),
-        200.0,
     )
 
 
@@ -106,7 +103,7 @@ def hertz(cache: Path | None, division: int = 8, frames: int = 24) -> Scene:
     return Scene(
         "hertz", [f"approach {1e3 * top * (n + 1) / frames:.1f} mm" for n in range(frames)],
         [list(f[0]) for f in found], [list(f[1]) for f in found], ("lower disc", "upper disc"),
-        (0.0, 8.0 - 0.5 * top, 3.0, 3.0), 1.0, 1.0, 1.0, ("m", "Pa"),
+        (0.0, 8.0 - 0.5 * top, 3.0, 3.0), 1.0, 1.0, ("m", "Pa"),
     )  # fmt: skip
 
 
@@ -159,11 +156,20 @@ def still(scene: Scene, out: Path) -> None:
         )  # fmt: skip
     middle.set(xlabel=f"way along the face ({unit})", ylabel=f"contact pressure ({pressure})")
     middle.legend()
-    draw_deformed(right, scene.states[n], scene.magnification, (report.BLUE, report.RED), length=scene.length)
-    right.set_title(f"deformed, displacements × {scene.magnification:g}; grey: as it was", fontsize=10)
+    magnification = _magnification(scene, n)
+    draw_deformed(right, scene.states[n], magnification, (report.BLUE, report.RED), length=scene.length)
+    right.set_title(f"deformed, displacements × {magnification:g}; grey: as it was", fontsize=10)
     for ax in (left, right):
         _frame(ax, scene)
     report.save(fig, out, f"{scene.name}_stress")
+
+
+def _magnification(scene: Scene, n: int) -> float:
+    """1, 2 or 5 times a power of ten: largest displacements in the picture's twentieth part; 1 at least."""
+    moved = max(float(np.hypot(*s.displacement.T).max()) for s in scene.states[n]) * scene.length
+    wanted = 0.05 * scene.window[2] / moved if moved > 0 else 1.0
+    power = 10.0 ** np.floor(np.log10(wanted))
+    return max(1.0, float(max(f for f in (1, 2, 5) if f * power <= wanted) * power))
 
 
 def _frame(ax: Any, scene: Scene) -> None:
