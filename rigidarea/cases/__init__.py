@@ -28,6 +28,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--mesh", type=float, metavar="MM", help="mesh size in millimetres (pin-joint, geneva, gearbox)"
     )
     parser.add_argument("--contact", choices=("area", "sts"), default="area", help="contact evaluation")
+    parser.add_argument(
+        "--film", action="store_true", help="also a still and a film of the stresses (compliant and modal)"
+    )
 
 
 def cache_directory() -> Path:
@@ -44,6 +47,12 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     no use for, and for mesh sizes it cannot mesh.
     """
     out = getattr(args, "out", None)
+    wanted = getattr(args, "film", False)
+    if wanted and (args.name == "patch" or args.mode == "rigid" or out is None):
+        raise ValueError(
+            "--film draws stresses that change: expected --out, a case that moves and --mode compliant or modal, got"
+            f" {args.name}, --mode {args.mode}, --out {out}"
+        )
     if out is None:
         return _run(args, None)
     file = Path(out) / f"{args.name}.json"
@@ -55,6 +64,12 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
             print(f"interrupted: what was computed is in {file}", file=sys.stderr)
             write_json(json.loads(file.read_text()), getattr(args, "json", None))
         raise
+    if wanted:
+        from rigidarea.cases import film
+
+        told["film"] = str(
+            film.make(args.name, args.mode, args.mesh, args.contact, Path(out), cache_directory())
+        )
     write_json(told, file)
     return told
 

@@ -24,6 +24,7 @@ from rigidarea.flexible.boundary import Boundary, build, workspace
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import reduce
+from rigidarea.flexible.recover import Shape, State
 from rigidarea.flexible.region import arcs
 from rigidarea.flexible.statics import solve
 
@@ -104,6 +105,32 @@ def discs(division: int, cache: Path | None = None) -> tuple[Boundary, Boundary,
         bodies.append(build([ring - body.centre], flexibility=body.flexibility))
         nodes = len(mesh.points)
     return bodies[0], bodies[1], nodes
+
+
+def pressed(
+    division: int, approach: float, cache: Path | None = None
+) -> tuple[tuple[State, State], tuple[Array, Array]]:
+    """Both discs of ``predicted`` at an approach (length): their states, stresses among them, and contact loads."""
+    made = []
+    for shift, top in ((0.0, True), (0.5, False)):
+        ring = graded_ring(half_width(0.5 * RADIUS) / division, shift, top)
+        mesh = triangulate([ring], growth=0.12, max_size=1.0)
+        material = Material(YOUNG, POISSON, 1.0, 1.0, "strain")
+        reduced = reduce(mesh, material, cache=cache)
+        boundary = build([ring - reduced.centre], flexibility=reduced.flexibility)
+        made.append((Shape(mesh, material, (0,), None, None, reduced), boundary))
+    (shape_a, a), (shape_b, b) = made
+    solution = solve(a, (0, 0, 0), b, (0, 2 * RADIUS - approach, 0), STIFF, (0.0, 1.0))
+    states, loads = [], []
+    for shape, at, force in zip(
+        (shape_a, shape_b), (0.0, 2 * RADIUS - approach), solution.loads, strict=True
+    ):
+        on = np.flatnonzero(np.hypot(*force.T))
+        load = np.column_stack([on, force[on]])
+        u = shape.displacement(np.zeros(0), load)
+        states.append(State(shape, np.array([0.0, at, 0.0]), u, shape.stress(u)))
+        loads.append(load)
+    return (states[0], states[1]), (loads[0], loads[1])
 
 
 def predicted(division: int, full: bool = False, cache: Path | None = None) -> dict[str, Any]:

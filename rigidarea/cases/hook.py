@@ -11,7 +11,7 @@ import numpy as np
 import pymunk
 
 import rigidarea
-from rigidarea.flexible.integrate import REGIONS_KEPT, Record
+from rigidarea.flexible.integrate import Record
 
 
 def turn(
@@ -45,10 +45,11 @@ def turn(
     space.add(pivot)
     # Eq. 5 and 8-15 literally, as a verification asks: the chord would lean by another third of a degree on gear
     # flanks, and a contact taken implicitly is softer than k where the step is long for it
+    most = 16  # regions of the one pair: more than a mechanism's teeth in contact
     contact = rigidarea.attach(space, stiffness=stiffness, direction="nodal", integration="explicit")
     n = round(duration / h)
     x, v = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))
-    force, regions = np.zeros((n, 2)), np.zeros((n, REGIONS_KEPT, 5))
+    force, regions = np.zeros((n, 2)), np.zeros((n, most, 5))
     for i in range(n):
         crank.angular_velocity = speed(
             (i + 0.5) * h
@@ -57,7 +58,7 @@ def turn(
         space.step(h)
         x[i] = (*crank.position, crank.angle), (*driven.position, driven.angle)
         v[i] = (0.0, 0.0, crank.angular_velocity), (*driven.velocity, driven.angular_velocity)
-        for k, r in enumerate(contact.regions[:REGIONS_KEPT]):
+        for k, r in enumerate(contact.regions[:most]):
             sign = 1.0 if r["body_b"] is driven else -1.0
             regions[i, k] = r["force"], *(sign * r["direction"]), *r["centroid"]
             force[i] += sign * r["force"] * r["direction"]
@@ -70,8 +71,9 @@ def turn(
         v,
         x[:, :, 2],
         v[:, :, 2],
-        force,
+        force[:, None],
         regions,
+        np.where(regions[:, :, 0] > 0, 0, -1),
         one,
         none,
         none,

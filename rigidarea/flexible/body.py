@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,10 +15,13 @@ from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, resample, triangulate
 from rigidarea.flexible.modes import reduce
+from rigidarea.flexible.recover import Shape
 
 Array = NDArray[np.float64]
 
 LEVELS = ("rigid", "compliant", "modal")
+CONTACT_NODES = 8000  # the flexibility between so many nodes takes 2 GiB
+BOUNDARY_NODES = 40_000  # a mesh from so many has some hundred thousand nodes
 
 
 def elastic_body(
@@ -29,7 +32,7 @@ def elastic_body(
     *,
     contact_rings: Sequence[int] = (0,),
     hub: int | None = None,
-    clamped: int | None = None,
+    clamped: int | Callable[[Array], NDArray[np.bool_]] | None = None,
     modes: int = 40,
     refine: int = 1,
     growth: float = 0.2,
@@ -38,16 +41,18 @@ def elastic_body(
 ) -> tuple[Body, Mesh]:
     """A body from finely sampled ``rings`` ([0] outer, counter-clockwise; then holes, clockwise), and its mesh.
 
-    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal"
-    (``modes`` free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers. refine:
-    contact points a mesh edge, on the rings themselves. growth: of the size inside the body. keys: passed to
-    ``Body``; ``position`` is where the origin of the rings' coordinates goes at angle 0, as given by the rings.
-    Raises ValueError for bad settings, see ``resample``, ``triangulate`` and ``reduce``.
+    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
+    free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers; clamped may be a function that
+    says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, on the rings themselves.
+    growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the rings'
+    coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
+    ``triangulate`` and ``reduce``, and for a size that asks for more nodes than fit into memory.
     """
     if level not in LEVELS:
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
     if refine < 1:
         raise ValueError(f"refine must be at least 1, got {refine}")
+    _check_size(rings, size, contact_rings if level != "rigid" else ())
     nodes = [resample(r, size) for r in rings]
 
     def build_mesh() -> dict[str, NDArray]:
@@ -59,6 +64,11 @@ def elastic_body(
     )
     ends = np.cumsum([0] + [len(r) for r in nodes])
     mesh = Mesh(found["points"], found["triangles"], tuple(map(np.arange, ends[:-1], ends[1:])))
+    if callable(clamped):
+        ends_at = int(ends[-1])
+        held = np.flatnonzero(np.asarray(clamped(mesh.points[:ends_at]), bool))
+        mesh = Mesh(mesh.points, mesh.triangles, (*mesh.rings, held))
+        clamped = len(mesh.rings) - 1
     body = reduce(
         mesh, material, contact_rings, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
     )
@@ -72,7 +82,7 @@ def elastic_body(
         share.append((np.arange(len(fine)) % refine) / refine)
         first += len(fine) // refine
     carriers = (np.concatenate(low), np.concatenate(high), np.concatenate(share))
-    boundary = build(profile, carriers, body.modes, body.flexibility)
+    boundary = build(profile, carriers, body.modes, body.flexibility, body.swell)
     angle = keys.pop("angle", 0.0)
     c, s = np.cos(angle), np.sin(angle)
     x, y = keys.pop("position", (0.0, 0.0))
@@ -80,5 +90,23 @@ def elastic_body(
     middle = mesh.points[mesh.rings[hub]].mean(0) - body.centre if hub is not None else np.zeros(2)
     return Body(
         boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
-        fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])), **keys,
+        fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])),
+        young=material.young if level != "rigid" else 0.0, geometric=body.geometric, slowest=body.slowest,
+        shape=Shape(mesh, material, tuple(contact_rings), hub, clamped, body) if level != "rigid" else None, **keys,
     ), mesh  # fmt: skip
+
+
+def _check_size(rings: Sequence[Array], size: float, contact: Sequence[int]) -> None:
+    """Refuses a mesh size before it is meshed that would ask for gigabytes."""
+    if not 0 < size < np.inf:
+        raise ValueError(f"size must be positive and finite, got {size}")
+    length = [float(np.hypot(*(np.roll(r, -1, 0) - r).T).sum()) for r in rings]
+    for what, total, most in (
+        ("in contact", sum(length[k] for k in contact if 0 <= k < len(length)), CONTACT_NODES),
+        ("on the boundary", sum(length), BOUNDARY_NODES),
+    ):
+        if total / size > most:
+            raise ValueError(
+                f"size must be at least {total / most:.4g} here, for {most} nodes {what}, got {size:.4g}:"
+                f" {total / size:.4g} nodes"
+            )

@@ -27,7 +27,8 @@ class Boundary(NamedTuple):
     holds edges right … right - left - 1); box (t, 6) of a leaf, along its chord: centre, direction, half length and
     half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
     rotation); shapes (m, 2 f + 3) the same with each mode in one piece; flexibility (2 f + 3, 2 f + 3), or (0, 0) if
-    not used.
+    not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
+    them beyond the modes (time² × length), or (0,).
     """
 
     points: Array
@@ -45,6 +46,8 @@ class Boundary(NamedTuple):
     modes: Array
     shapes: Array
     flexibility: Array
+    nodes: Array
+    swell: Array
 
 
 class Work(NamedTuple):
@@ -63,6 +66,9 @@ class Work(NamedTuple):
     hub_load: Array  # (3,) force and moment on the hub, body frame
     loaded: Ints  # (f + 1,) FE nodes that carry load; [-1] their number
     mobility: Array  # (m,) what a force on a mode moves it within the step, 1/(M' + C' + ω²)
+    spin: Array  # (1,) angular velocity of the frame, squared
+    slot: Ints  # (f,) unknown of ``condense`` that is the load on a node, in the region
+    slot_region: Ints  # (f,) that wrote it
 
 
 def _box(p: Array) -> Array:
@@ -81,8 +87,12 @@ def build(
     carriers: tuple[Ints, Ints, Array] | None = None,
     modes: Array | None = None,
     flexibility: Array | None = None,
+    swell: Array | None = None,
 ) -> Boundary:
-    """A boundary from rings of contact points; without ``carriers`` (low, high, share) each point is its own node."""
+    """A boundary from rings of contact points; without ``carriers`` (low, high, share) each point is its own node.
+
+    FE nodes that no point lies on keep the body's origin as their place.
+    """
     points = np.ascontiguousarray(np.vstack(rings), float)
     n = len(points)
     nxt, prv, ring = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
@@ -148,12 +158,16 @@ def build(
     low, high, share = identity if carriers is None else carriers
     f = int(max(low.max(), high.max())) + 1
     modes = np.zeros((2 * f + 3, 0)) if modes is None else np.ascontiguousarray(modes, float)
+    on_node = np.flatnonzero(np.asarray(share) == 0.0)
+    nodes = np.zeros((f, 2))
+    nodes[np.asarray(low, np.int64)[on_node]] = points[on_node]
     return Boundary(
         points, nxt, prv, ring,
         np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
         np.array(centre), np.array(radius), np.array(left), np.array(right), np.array(box), modes,
         np.ascontiguousarray(modes.T),
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
+        nodes, np.zeros(0) if swell is None else np.ascontiguousarray(swell, float),
     )  # fmt: skip
 
 
@@ -163,5 +177,6 @@ def workspace(b: Boundary) -> Work:
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
-        np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]),
+        np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
+        np.zeros(f, np.int64),
     )  # fmt: skip

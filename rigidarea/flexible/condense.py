@@ -1,16 +1,26 @@
-"""Contact force and quasi-static deformation solved together: a region's resultant condensed in Newton's iteration.
+"""Contact forces and quasi-static deformation solved together: the loads as unknowns of Newton's iteration.
 
-Displacements u = Φ q + C f enter an evaluation with the loads of the one before. On a soft body that alone runs
-away: a force F pushes the boundary back by c F, c the compliance under the region, so the next evaluation sees less
-overlap by c F, k L c times what it should. Newton on the resultant takes this in. The force that an evaluation
-finds is k A; the displacement behind it came from F₀; by the time both agree
+Displacements u = Φ q + C f enter an evaluation with the loads f° of the iteration before; the evaluation finds loads
+f. To renew u with them and nothing else runs away on a soft body: a pressure pushes the boundary back by more than it
+was pressed in. To treat each region's resultant alone is not enough either: regions of one body feel each other
+through it (the teeth of an internal gear), and within a region the pressure has a shape of its own.
 
-    F = k A − k L c (F − F₀)     ⇒     F = (k A + κ F₀)/(1 + κ),  κ = k L c,
+So the unknowns are all loads: one scalar f_i along the contact's direction for each FE boundary node under a region,
+and for a rigid side two, at the ends of its chord. With w_i the displacement at load i along its direction, Gauss
+points with weights ω and thickness d, and N the shape functions of both sides,
 
-a weighted mean, so it never pulls, and against the bodies' frames the contact is as stiff as spring and body in
-series, k L/(1 + κ). k A grows at least in proportion to the overlap, so this Newton converges from the undeformed
-side. c holds the static flexibility and what the modes give within a step, 1/(M' + C' + ω²) each, with M', C' the
-scheme's multiples of inertia and damping. An estimate suffices: it sets the speed of convergence, not the result.
+    f = Σ k ω d N,        ∂f/∂w = −K,        K = Σ k ω N Nᵀ,
+
+symmetric and positive as k > 0. Between two evaluations w changes by Δw = C̃ y + a + P δ, y = f_next − f, where C̃ is C
+and what the modes give within a step, Φ (M' + C' + ω²)⁻¹ Φᵀ; a = C (f − f°) less what the modes' own residual
+moves; δ the unknown changes of frames and hub forces with P what they move at the loads. Hence
+
+    (I + K C̃) y = −K (a + P δ)      ⇒      y = y₀ − S δ.
+
+Pᵀ y₀ and Pᵀ S go to the frames' and hubs' rows; the frames' solution δ gives the loads. As C̃ is positive as well, the
+linear system is regular, and this is the semi-smooth Newton method of the obstacle problem (M. Hintermüller, K. Ito,
+K. Kunisch, SIAM J. Optim. 13, 2002, doi:10.1137/S1052623401383558): where a load comes out negative the contact opens
+in the next evaluation. Left out of the tangent are the turns of the directions.
 """
 
 from __future__ import annotations
@@ -20,116 +30,373 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.kernel.jit import kernel
+from rigidarea.flexible.jit import inner
+from rigidarea.flexible.place import add_load, clear_nodes
+from rigidarea.flexible.scratch import Loads, Scratch
+from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-
-@kernel
-def _anchor(b: Boundary, x: Array, edge: Ints, t: Array, n: int, at: float) -> tuple[int, int, float]:
-    """The place on an arc above ``at`` on the chord: two finite-element nodes, and the share of the second."""
-    k = 0
-    while k < n - 1 and x[k + 1] < at:
-        k += 1
-    width = x[k + 1] - x[k]
-    part = min(max((at - x[k]) / width, 0.0), 1.0) if width > 0.0 else 0.5
-    along = t[k, 0] + part * (t[k, 1] - t[k, 0])
-    i, j = edge[k], b.next[edge[k]]
-    if b.share[j] > 0.0:  # both points within one finite-element edge
-        return b.low[i], b.high[j], b.share[i] + along * (b.share[j] - b.share[i])
-    return b.low[i], b.low[j], b.share[i] + along * (1.0 - b.share[i])
+TWO = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)  # Gauss: exact for a product of two linear shape functions
 
 
-@kernel
-def by_mode(b: Boundary, low: int, high: int, share: float, ex: float, ey: float, column: int) -> float:
-    """Displacement along (ex, ey), body frame, of a place between two nodes, by mode ``column``."""
-    m, n = 2 * low, 2 * high
-    return (1.0 - share) * (ex * b.modes[m, column] + ey * b.modes[m + 1, column]) + share * (
-        ex * b.modes[n, column] + ey * b.modes[n + 1, column]
-    )
+@inner
+def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: float, pose: Array) -> int:
+    """One more unknown: a load at (x, y), world, along the force on its side; its number."""
+    i = s.made[0]
+    s.made[0] += 1
+    s.side[i], s.node[i], s.force[i] = side, node, 0.0
+    s.stiffness[i, : i + 1] = 0.0
+    s.stiffness[:i, i] = 0.0
+    sign = -1.0 if side == 0 else 1.0
+    s.at[i, 0], s.at[i, 1] = x, y
+    s.world[i, 0], s.world[i, 1] = sign * nx, sign * ny
+    s.local[i, 0] = sign * (pose[2] * nx + pose[3] * ny)
+    s.local[i, 1] = sign * (-pose[3] * nx + pose[2] * ny)
+    return i
 
 
-@kernel
-def _static(b: Boundary, low: int, high: int, share: float, ex: float, ey: float, row: int) -> float:
-    """The same by a unit load on interface ``row`` and the static flexibility."""
-    c = b.flexibility[row]
-    m, n = 2 * low, 2 * high
-    return (1.0 - share) * (ex * c[m] + ey * c[m + 1]) + share * (ex * c[n] + ey * c[n + 1])
+@inner
+def _at_node(b: Boundary, w: Work, pose: Array, s: Loads, side: int, node: int, nx: float, ny: float) -> int:
+    """The unknown that is the load on an FE node in the present region."""
+    if w.slot_region[node] != s.made[1]:
+        x, y = b.nodes[node, 0] + w.displacement[node, 0], b.nodes[node, 1] + w.displacement[node, 1]
+        c, sn = pose[2], pose[3]
+        w.slot_region[node] = s.made[1]
+        w.slot[node] = _new(s, side, node, pose[0] + c * x - sn * y, pose[1] + sn * x + c * y, nx, ny, pose)
+    return w.slot[node]
 
 
-@kernel
-def _compliance(b: Boundary, w: Work, low: int, high: int, share: float, ex: float, ey: float) -> float:
-    """Displacement along (ex, ey) of a place between two nodes, by a unit force there in that direction."""
-    c = 0.0
-    if b.flexibility.shape[0] > 0:
-        for end in range(2):
-            weight, i = (1.0 - share, 2 * low) if end == 0 else (share, 2 * high)
-            c += weight * ex * _static(b, low, high, share, ex, ey, i)
-            c += weight * ey * _static(b, low, high, share, ex, ey, i + 1)
-    for k in range(b.modes.shape[1]):
-        c += by_mode(b, low, high, share, ex, ey, k) ** 2 * w.mobility[k]
-    return c
+@inner
+def _flexible(b: Boundary) -> bool:
+    return b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0
 
 
-@kernel
-def _before(b: Boundary, w: Work, edge: Ints, n: int, ex: float, ey: float) -> float:
-    """Force along (ex, ey) that the nodes under an arc's edges carried in the evaluation before."""
-    force = 0.0
-    for k in range(n):
-        for end in range(2):
-            i = edge[k] if end == 0 else b.next[edge[k]]
-            for side in range(2 if b.share[i] > 0.0 else 1):
-                node = b.low[i] if side == 0 else b.high[i]
-                if w.node_flag[node]:  # down while counting: each node once
-                    w.node_flag[node] = False
-                    force += ex * w.node_load[node, 0] + ey * w.node_load[node, 1]
-    for k in range(w.loaded[-1]):
-        w.node_flag[w.loaded[k]] = True
-    return force
+@inner
+def _enter(
+    b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, t: float, weight: float, ends: int, along: float,
+    nx: float, ny: float, count: int,
+) -> int:  # fmt: skip
+    """Appends the two unknowns under a place to ``s.entry``, with ``weight`` times their shares; their number so far.
+
+    The place: parameter t of a contact edge; of a rigid side (``ends`` >= 0, the first of its two) ``along`` in [0, 1].
+    """
+    if ends >= 0:
+        s.entry[count], s.share[count] = ends, weight * (1.0 - along)
+        s.entry[count + 1], s.share[count + 1] = ends + 1, weight * along
+        return count + 2
+    j = b.next[edge]
+    low = b.share[edge]
+    high = b.share[j] if b.share[j] > 0.0 else 1.0  # within one finite-element edge, or to its end
+    other = b.high[j] if b.share[j] > 0.0 else b.low[j]
+    part = low + t * (high - low)
+    s.entry[count] = _at_node(b, w, pose, s, side, b.low[edge], nx, ny)
+    s.share[count] = weight * (1.0 - part)
+    s.entry[count + 1] = _at_node(b, w, pose, s, side, other, nx, ny)
+    s.share[count + 1] = weight * part
+    return count + 2
 
 
-@kernel
-def resultant(
-    a: Boundary, wa: Work, pose_a: Array, b: Boundary, wb: Work, pose_b: Array, r: Any, x: Array, edge: Ints, t: Array,
-    n_a: int, n_b: int, stiffness: float,
+@inner
+def _gather(s: Loads, count: int, force: float, stiff: float) -> None:
+    """One Gauss point: adds its force, and its stiffness, to the unknowns entered."""
+    for p in range(count):
+        i, v = s.entry[p], s.share[p]
+        s.force[i] += force * v
+        for q in range(count):
+            s.stiffness[i, s.entry[q]] += stiff * v * s.share[q]
+
+
+@inner
+def _begin(
+    a: Boundary, pa: Array, b: Boundary, pb: Array, r: Any, s: Loads, x0: float, x1: float
+) -> tuple[int, int]:
+    """Starts a region: the first of the two unknowns of each rigid side, -1 for sides that yield."""
+    s.made[1] += 1
+    nx, ny = r["nx"], r["ny"]
+    first = (-1, -1)
+    for side in range(2):
+        body, pose = (a, pa) if side == 0 else (b, pb)
+        if not _flexible(body):
+            i = s.made[0]
+            for x in (x0, x1):  # along the axis across the force, from the entry
+                _new(s, side, -1, r["enter_x"] - x * ny, r["enter_y"] + x * nx, nx, ny, pose)
+            first = (i, first[1]) if side == 0 else (first[0], i)
+    return first
+
+
+@inner
+def room(s: Scratch, n_a: int, n_b: int) -> bool:
+    """Whether the loads of one more region, of arcs of so many pieces, find room."""
+    return s.load.made[0] + 2 * (n_a + n_b) + 4 <= len(s.load.force)
+
+
+@inner
+def couple(
+    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, scratch: Scratch, n_a: int, n_b: int,
+    k: float,
 ) -> None:  # fmt: skip
-    """Turns a region's force from k A into F; notes 1/(1 + κ) and the arcs' middles. ``stiffness`` is k L."""
-    nx, ny, middle = r["nx"], r["ny"], 0.5 * x[0, n_a]
-    kappa = force = 0.0
-    r["low_a"], r["high_a"], r["share_a"] = _anchor(a, x[0], edge[0], t[0], n_a, middle)
-    r["low_b"], r["high_b"], r["share_b"] = _anchor(b, x[1], edge[1], t[1], n_b, middle)
-    if a.modes.shape[1] > 0 or a.flexibility.shape[0] > 0:
-        ex, ey = -pose_a[2] * nx - pose_a[3] * ny, pose_a[3] * nx - pose_a[2] * ny
-        part = stiffness * _compliance(a, wa, r["low_a"], r["high_a"], r["share_a"], ex, ey)
-        kappa += part
-        force += part * _before(a, wa, edge[0], n_a, ex, ey)
-    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
-        ex, ey = pose_b[2] * nx + pose_b[3] * ny, -pose_b[3] * nx + pose_b[2] * ny
-        part = stiffness * _compliance(b, wb, r["low_b"], r["high_b"], r["share_b"], ex, ey)
-        kappa += part
-        force += part * _before(b, wb, edge[1], n_b, ex, ey)
-    r["give"] = 1.0 / (1.0 + kappa)
-    r["force"] = r["give"] * (r["force"] + force)
+    """Loads and stiffness of a region under p = k d, its arcs graphs in axes across and along the force."""
+    x, y, edge, t, s = scratch.x, scratch.y, scratch.edge, scratch.t, scratch.load
+    chord = x[0, n_a]
+    nx, ny = r["nx"], r["ny"]
+    rigid_a, rigid_b = _begin(a, pa, b, pb, r, s, 0.0, chord)
+    i = j = 0
+    lo = 0.0
+    while i < n_a and j < n_b:
+        hi = min(x[0, i + 1], x[1, j + 1])
+        if hi > lo:
+            inverse_a, inverse_b = 1.0 / (x[0, i + 1] - x[0, i]), 1.0 / (x[1, j + 1] - x[1, j])
+            for g in range(2):
+                z = lo + TWO[g] * (hi - lo)
+                ra, rb = (z - x[0, i]) * inverse_a, (z - x[1, j]) * inverse_b
+                d = y[1, j] + rb * (y[1, j + 1] - y[1, j]) - y[0, i] - ra * (y[0, i + 1] - y[0, i])
+                ta = t[0, i, 0] + ra * (t[0, i, 1] - t[0, i, 0])
+                tb = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])
+                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, z / chord, nx, ny, 0)
+                n = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, z / chord, nx, ny, n)
+                w = 0.5 * (hi - lo)
+                _gather(s, n, w * k * d, w * k)
+            lo = hi
+        if x[0, i + 1] <= lo:
+            i += 1
+        else:
+            j += 1
 
 
-@kernel
-def hub_row(
-    b: Boundary, w: Work, pose: Array, nx: float, ny: float, low: int, high: int, share: float, row: Array
+@inner
+def couple_slabs(
+    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, scratch: Scratch, n_a: int, n_b: int,
+    k: float, alpha: float, beta: float, xc: float, q: float,
+) -> None:  # fmt: skip
+    """``couple`` for any region: pressures (α + β (x − x_c)) d^q, as ``slabs.distribute`` has them.
+
+    The stiffness is that of k d: the resultant's, whatever the exponent.
+    """
+    x, y, edge, t, s, cut = scratch.x, scratch.y, scratch.edge, scratch.t, scratch.load, scratch.cut
+    nx, ny = r["nx"], r["ny"]
+    n = cuts(x, n_a, n_b, cut)
+    x0, x1 = cut[0], cut[n - 1]
+    rigid_a, rigid_b = _begin(a, pa, b, pb, r, s, x0, x1)
+    for m in range(n - 1):
+        lo, hi = cut[m], cut[m + 1]
+        if hi <= lo:
+            continue
+        d0, d1, _middle, net, right_a, right_b = slab(x, y, t, n_a, n_b, lo, hi)
+        if net <= 0:
+            continue
+        for g in range(3):
+            z = lo + GAUSS_X[g] * (hi - lo)
+            d = d0 + (d1 - d0) * GAUSS_X[g]
+            count = 0
+            for side in range(2):
+                body, work, pose = (a, wa, pa) if side == 0 else (b, wb, pb)
+                ends = rigid_a if side == 0 else rigid_b
+                part = 1.0 / (right_a if side == 0 else right_b)
+                for i in range(n_a if side == 0 else n_b):
+                    u0, u1 = x[side, i], x[side, i + 1]
+                    if u0 > lo or u1 < hi or t[side, i, 0] == t[side, i, 1]:
+                        continue
+                    at = t[side, i, 0] + (t[side, i, 1] - t[side, i, 0]) * (z - u0) / (u1 - u0)
+                    along = (z - x0) / (x1 - x0)
+                    count = _enter(
+                        body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count
+                    )
+            w = net * GAUSS_W[g] * (hi - lo)
+            _gather(s, count, w * (alpha + beta * (z - xc)) * d**q, w * k)
+
+
+@inner
+def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual: Array, n: int) -> None:
+    """One body's part of C̃ and a: modes, static flexibility, and what the loads of the iteration before moved."""
+    m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
+    for i in range(n):
+        if s.side[i] != body:
+            continue
+        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
+        shift = 0.0
+        old = ex * w.displacement[s.node[i], 0] + ey * w.displacement[s.node[i], 1]
+        for c in range(m):
+            value = ex * b.modes[row, c] + ey * b.modes[row + 1, c]
+            buf.modal[i, c] = value
+            shift -= value * w.mobility[c] * residual[c]
+            old -= value * q[c]
+        if static:
+            for c in range(3):
+                old -= w.hub_load[c] * (ex * b.flexibility[row, h + c] + ey * b.flexibility[row + 1, h + c])
+        if len(b.swell) > 0:
+            old -= w.spin[0] * (ex * b.swell[row] + ey * b.swell[row + 1])
+        buf.stale[i] = -old if static else 0.0
+        buf.shift[i] = shift
+    for i in range(n):
+        if s.side[i] != body:
+            continue
+        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
+        for j in range(i + 1):
+            if s.side[j] != body:
+                continue
+            moved = 0.0
+            if static:
+                u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
+                top, low = b.flexibility[row], b.flexibility[row + 1]
+                moved = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)
+                buf.stale[i] += moved * s.force[j]
+                if j != i:
+                    buf.stale[j] += moved * s.force[i]
+            for k in range(m):
+                moved += buf.modal[i, k] * buf.modal[j, k] * w.mobility[k]
+            buf.compliance[i, j] = buf.compliance[j, i] = moved
+
+
+@inner
+def hub_moves(
+    b: Boundary, w: Work, node: int, ex: float, ey: float, pose: Array, modal: Array, out: Array
 ) -> None:
-    """What loads on the hub move a place between two nodes along the world direction (nx, ny): row (3,), force x, y
-    and moment, world.
+    """What a force and a moment on the hub (world x, y, moment) move an FE node along (ex, ey), body frame: out (3,).
 
     By reciprocity also what a force there in that direction moves the hub.
     """
-    ex, ey = pose[2] * nx + pose[3] * ny, -pose[3] * nx + pose[2] * ny
-    row[:] = 0.0
-    h = b.modes.shape[0] - 3
+    h, row = len(b.modes) - 3, 2 * node
     for k in range(3):
+        c = 0.0
         if b.flexibility.shape[0] > 0:
-            row[k] += _static(b, low, high, share, ex, ey, h + k)
+            c = ex * b.flexibility[row, h + k] + ey * b.flexibility[row + 1, h + k]
         for m in range(b.modes.shape[1]):
-            row[k] += by_mode(b, low, high, share, ex, ey, m) * w.mobility[m] * b.modes[h + k, m]
-    x, y = row[0], row[1]
-    row[0], row[1] = pose[2] * x - pose[3] * y, pose[3] * x + pose[2] * y
+            c += modal[m] * w.mobility[m] * b.modes[h + k, m]
+        out[k] = c
+    x, y = out[0], out[1]
+    out[0], out[1] = pose[2] * x - pose[3] * y, pose[3] * x + pose[2] * y
+
+
+@inner
+def _eliminate(a: Array, n: int, rhs: Array, columns: int) -> None:
+    """Gaussian elimination with partial pivoting of n equations, ``columns`` right-hand sides; rhs: the solutions."""
+    for i in range(n):
+        p = i
+        for r in range(i + 1, n):
+            if abs(a[r, i]) > abs(a[p, i]):
+                p = r
+        if p != i:
+            for c in range(i, n):
+                a[i, c], a[p, c] = a[p, c], a[i, c]
+            for c in range(columns):
+                rhs[i, c], rhs[p, c] = rhs[p, c], rhs[i, c]
+        pivot = 1.0 / a[i, i]
+        for r in range(i + 1, n):
+            f = a[r, i] * pivot
+            if f != 0.0:
+                for c in range(i + 1, n):
+                    a[r, c] -= f * a[i, c]
+                for c in range(columns):
+                    rhs[r, c] -= f * rhs[i, c]
+    for i in range(n - 1, -1, -1):
+        pivot = 1.0 / a[i, i]
+        for c in range(columns):
+            rhs[i, c] *= pivot
+        for r in range(i):
+            f = a[r, i]
+            if f != 0.0:
+                for c in range(columns):
+                    rhs[r, c] -= f * rhs[i, c]
+
+
+@inner
+def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> float:
+    """Takes the loads out of Newton's system: ``buf.tangent`` gets Pᵀ S, ``buf.push`` Pᵀ y₀.
+
+    ``s.side`` holds bodies by now, ``buf.modal_residual`` the modes' residual under the new loads. Returns the sum
+    of |y₀|: by how much the loads are off from what belongs to the present frames.
+    """
+    n, count = s.made[0], len(sy.mass)
+    buf.push[:] = 0.0
+    if n == 0:
+        return 0.0
+    for b in range(count):
+        buf.touched[b] = 0
+    for i in range(n):
+        buf.stale[i] = buf.shift[i] = 0.0
+        buf.touched[s.side[i]] = 1
+        for j in range(i + 1):
+            buf.compliance[i, j] = buf.compliance[j, i] = 0.0
+    columns = 0
+    for b in range(count):
+        if buf.touched[b] == 0:
+            continue
+        bd, w = boundary_at(bodies, b), work_at(bodies, b)
+        lo, hi = sy.first[b], sy.first[b + 1]
+        if _flexible(bd):
+            _own(bd, w, s, buf, b, state.q[lo:hi], buf.modal_residual[lo:hi], n)
+        if sy.fixed[b] == 1:
+            continue
+        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1)
+        for k in range(6 if held else 3):
+            buf.active[columns + k] = 3 * b + k if k < 3 else 3 * count + 3 * b + k - 3
+        for i in range(n):
+            moves = buf.moves[i, columns : columns + 6]
+            moves[:] = 0.0
+            if s.side[i] != b:
+                continue
+            ex, ey = s.world[i, 0], s.world[i, 1]
+            moves[0], moves[1] = ex, ey
+            moves[2] = (s.at[i, 0] - buf.pose[b, 0]) * ey - (s.at[i, 1] - buf.pose[b, 1]) * ex
+            if held:
+                ex, ey = s.local[i, 0], s.local[i, 1]
+                hub_moves(bd, w, s.node[i], ex, ey, buf.pose[b], buf.modal[i], moves[3:])
+        columns += 6 if held else 3
+    # (I + K C̃) y = −K (a + P δ)
+    for i in range(n):
+        row, k = buf.system[i], s.stiffness[i]
+        for j in range(n):
+            row[j] = 0.0
+        row[i] = 1.0
+        right = buf.right[i]
+        for c in range(columns + 1):
+            right[c] = 0.0
+        for m in range(n):
+            stiff = k[m]
+            if stiff == 0.0:
+                continue
+            for j in range(n):
+                row[j] += stiff * buf.compliance[m, j]
+            right[0] -= stiff * (buf.stale[m] + buf.shift[m])
+            for c in range(columns):
+                right[c + 1] -= stiff * buf.moves[m, c]
+    _eliminate(buf.system, n, buf.right, columns + 1)
+    off = 0.0
+    for i in range(n):
+        off += abs(buf.right[i, 0])
+    for c in range(columns):
+        to = buf.active[c]
+        for i in range(n):
+            p = buf.moves[i, c]
+            if p == 0.0:
+                continue
+            buf.push[to] += p * buf.right[i, 0]
+            for d in range(columns):
+                buf.tangent[to, buf.active[d]] -= p * buf.right[i, d + 1]
+    buf.counts[2] = columns
+    return off
+
+
+@inner
+def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None:
+    """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads."""
+    n, columns, count = s.made[0], buf.counts[2], 3 * len(sy.mass)
+    for b in range(len(sy.mass)):
+        clear_nodes(work_at(bodies, b))
+    for i in range(n):
+        y = buf.right[i, 0]
+        for c in range(columns):
+            to = buf.active[c]
+            if to < count:
+                y += buf.right[i, c + 1] * buf.rhs[to]
+            elif buf.column[to - count] >= 0:
+                y += buf.right[i, c + 1] * buf.rhs[buf.column[to - count]] / scale
+        buf.answer[i] = y
+        if s.node[i] >= 0:
+            w = work_at(bodies, s.side[i])
+            f = s.force[i] + y
+            add_load(w.node_load, w.node_flag, w.loaded, s.node[i], f * s.local[i, 0], f * s.local[i, 1])

@@ -8,6 +8,12 @@ no angular momentum at rest, which leaves of LᵀML
 
 and of −LᵀML̇ the quadratic velocity forces Q_θ = −2 θ̇ (h + q)ᵀq̇, Q_q = θ̇² (h + q) − 2 θ̇ G q̇. (M_Rθ and M_Rq
 are zero because the modes have no net momentum in any orientation.)
+
+A body under tension is stiffer than a linear one: points that move across it also come nearer to each other, by
+squares of the modes, and so nearer to the axis (A. K. Banerjee and J. M. Dickens, J. Guidance 13, 1990,
+doi:10.2514/3.20527: motion stiffness). With S the geometric stiffness of the stress that centrifugal forces of unit
+angular velocity cause, that takes ½ θ̇² qᵀ S q from the kinetic energy: q becomes (I − S) q wherever θ̇² or M_θθ
+multiplies it. What the hub's force F, body frame, adds to the stress is in the modal stiffness: F_x S_x + F_y S_y.
 """
 
 from __future__ import annotations
@@ -22,12 +28,14 @@ Array = NDArray[np.float64]
 
 @kernel
 def inertia_forces(
-    j0: float, h: Array, g: Array, q: Array, dq: Array, ddq: Array, omega: float, alpha: float, out: Array
-) -> float:
+    j0: float, h: Array, g: Array, stiff: Array, fx: float, fy: float, q: Array, dq: Array, ddq: Array, omega: float,
+    alpha: float, out: Array,
+) -> float:  # fmt: skip
     """M q̈ − Q_v of one body: returns the row of θ (a moment), writes the modal rows (m,) to ``out``.
 
-    j0: moment of inertia of the undeformed body; h, g: ``stretch`` and ``coupling`` of ``modes.Reduced``; omega,
-    alpha: angular velocity and acceleration of the frame. The rows of R are m R̈.
+    j0: moment of inertia of the undeformed body; h, g, stiff: ``stretch``, ``coupling`` and ``geometric`` (3, m, m, or
+    none: (0, m, m)) of ``modes.Reduced``; fx, fy: force on the hub, body frame; omega, alpha: angular velocity and
+    acceleration of the frame. The rows of R are m R̈.
     """
     m = len(q)
     if m == 0:
@@ -39,9 +47,14 @@ def inertia_forces(
         for k in range(m):
             gq += g[i, k] * q[k]
             gd += g[i, k] * dq[k]
-        j += 2.0 * h[i] * q[i] + q[i] * q[i]
-        moment += gq * ddq[i] + 2.0 * omega * (h[i] + q[i]) * dq[i]
-        out[i] = gq * alpha + ddq[i] - omega * omega * (h[i] + q[i]) + 2.0 * omega * gd
+        free, tension = q[i], 0.0
+        if len(stiff) > 0:
+            for k in range(m):
+                free -= stiff[0, i, k] * q[k]
+                tension += (fx * stiff[1, i, k] + fy * stiff[2, i, k]) * q[k]
+        j += 2.0 * h[i] * q[i] + q[i] * free
+        moment += gq * ddq[i] + 2.0 * omega * (h[i] + free) * dq[i]
+        out[i] = gq * alpha + ddq[i] - omega * omega * (h[i] + free) + 2.0 * omega * gd + tension
     return moment + j * alpha
 
 

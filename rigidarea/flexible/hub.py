@@ -7,13 +7,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.system import Elastic
-from rigidarea.kernel.jit import kernel
+from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
 
 Array = NDArray[np.float64]
 
 
-@kernel
+@inner
 def prescribed(drive: Array, t: float) -> float:
     """Hub angle at time t: the angular velocity grows linearly over the ramp time, then stays."""
     if t < drive[2]:
@@ -21,28 +21,31 @@ def prescribed(drive: Array, t: float) -> float:
     return drive[0] + drive[1] * (t - 0.5 * drive[2])
 
 
-@kernel
-def hub_displacement(e: Elastic, modal: Array, row: int) -> float:
-    """Hub displacement (row 0, 1: body frame; 2: rotation) by modes and static flexibility."""
-    n = e.modes.shape[0] - 3 + row
+@inner
+def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
+    """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin."""
+    n = b.modes.shape[0] - 3 + row
     u = 0.0
-    for k in range(e.modes.shape[1]):
-        u += e.modes[n, k] * modal[k]
-    if e.flexibility.shape[0] > 0:
-        for k in range(e.loaded[-1]):
-            j = e.loaded[k]
-            u += e.flexibility[n, 2 * j] * e.node_load[j, 0] + e.flexibility[n, 2 * j + 1] * e.node_load[j, 1]
+    for k in range(b.modes.shape[1]):
+        u += b.modes[n, k] * modal[k]
+    if b.flexibility.shape[0] > 0:
+        c = b.flexibility[n]
+        for k in range(w.loaded[-1]):
+            j = w.loaded[k]
+            u += c[2 * j] * w.node_load[j, 0] + c[2 * j + 1] * w.node_load[j, 1]
         for k in range(3):
-            u += e.flexibility[n, k - 3] * e.hub_load[k]
+            u += c[len(c) - 3 + k] * w.hub_load[k]
+    if len(b.swell) > 0:
+        u += b.swell[n] * w.spin[0]
     return u
 
 
-@kernel
-def hub_rate(e: Elastic, dq: Array) -> float:
+@inner
+def hub_rate(b: Boundary, dq: Array) -> float:
     """Angular velocity of the hub in the body frame."""
     u = 0.0
-    for k in range(e.modes.shape[1]):
-        u += e.modes[e.modes.shape[0] - 1, k] * dq[k]
+    for k in range(b.modes.shape[1]):
+        u += b.modes[b.modes.shape[0] - 1, k] * dq[k]
     return u
 
 
@@ -55,18 +58,18 @@ class Hub(NamedTuple):
     moment: float
 
 
-@kernel
-def hub_of(e: Elastic, sy, buf, state, b):  # type: ignore[no-untyped-def]
+@inner
+def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
     """The hub of body b in the present state."""
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s, q = buf.pose[b, 2], buf.pose[b, 3], state.q[lo:hi]
-    x, y = sy.hub[b, 0] + hub_displacement(e, q, 0), sy.hub[b, 1] + hub_displacement(e, q, 1)
-    rate = state.v[b, 2] + hub_rate(e, state.dq[lo:hi])
+    x, y = sy.hub[b, 0] + hub_displacement(body, w, q, 0), sy.hub[b, 1] + hub_displacement(body, w, q, 1)
+    rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
     moment = state.mu[b, 2] + sy.torque[b] - sy.damper[b] * rate
-    return Hub(c * x - s * y, s * x + c * y, hub_displacement(e, q, 2), moment)
+    return Hub(c * x - s * y, s * x + c * y, hub_displacement(body, w, q, 2), moment)
 
 
-@kernel
+@inner
 def direction(kind: int, c: float, s: float) -> tuple[float, float, float]:
     """Hub component ``kind`` (0, 1: world displacement, 2: rotation) in the body frame."""
     if kind == 0:

@@ -14,16 +14,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal
+from rigidarea.flexible.bodies import table
 from rigidarea.flexible.boundary import Boundary, workspace
+from rigidarea.flexible.check import check_bodies, check_pairs, check_settings
 from rigidarea.flexible.contacts import replay
-from rigidarea.flexible.run import HALVINGS, run_steps
-from rigidarea.flexible.scratch import MANY, SLICED, TORN
-from rigidarea.flexible.system import REGIONS_KEPT as REGIONS_KEPT
-from rigidarea.flexible.system import Buffers, Settings, State, System, elastic
+from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
+from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
+from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
+from rigidarea.flexible.watch import watch
 
 Array = NDArray[np.float64]
 
 CHUNK = 5000  # steps a compiled call: a Python signal waits at most this long
+ROOM = 128  # loaded FE nodes of all contacts at once, to begin with; doubled when they are more
 
 
 @dataclass
@@ -36,7 +39,9 @@ class Body:
     acts on frames: it does not bend a clamped body, and free-free modes do not feel it.) hub (2,): hub centre in the
     body frame; anchor (2,): the world point it is pinned to by a revolute joint, None for a free body. drive: (angle
     at t = 0, final angular velocity, ramp time) of a prescribed hub rotation, None if free. damper: torsional,
-    moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0.
+    moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0. young: Young's modulus,
+    named in errors (0: rigid). geometric (3, m, m): of ``modes.Reduced``, None: none. slowest: the first elastic
+    angular frequency, for the watch on spin (0: not known). shape: a ``recover.Shape``, None where there is no mesh.
     """
 
     boundary: Boundary
@@ -55,16 +60,21 @@ class Body:
     damper: float = 0.0
     torque: float = 0.0
     velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    young: float = 0.0
+    geometric: Array | None = None
+    slowest: float = 0.0
+    shape: Any = None
 
 
 @dataclass(frozen=True)
 class Record:
-    """What a run leaves, n rows.
+    """What a run leaves, n rows, b bodies, p pairs.
 
-    t (n,); x, v (n, b, 3) frames; hub (n, b) hub rotation; force (n, 2) contact force on the second body of the pair;
-    regions (n, REGIONS_KEPT, 5): force, direction, point; iterations (n,) of Newton; halved (n,) times the step
-    was halved; elastic (n,) strain energy of the modes; q (m,), dq (m,) at the end. evaluations: of the contact,
-    in all.
+    t (n,); x, v (n, b, 3) frames; hub, hub_rate (n, b) hub rotation; forces (n, p, 2) contact force on the second body
+    of each pair; regions (n, r, 5): force on the second body of its pair, direction, point, zeros beyond the regions
+    of the instant, r the most at one; pair (n, r) which pair, -1 beyond; iterations (n,) of Newton; halved (n,) times
+    the step was halved; elastic, kinetic (n,) strain energy of the modes, kinetic energy; q (m,), dq (m,) at the end.
+    evaluations: of the contact, in all. shapes: what ``recover`` makes stresses of, None unless the run kept it.
     """
 
     t: Array
@@ -72,8 +82,9 @@ class Record:
     v: Array
     hub: Array
     hub_rate: Array
-    force: Array
+    forces: Array
     regions: Array
+    pair: NDArray[np.int64]
     iterations: Array
     halved: Array
     elastic: Array
@@ -81,15 +92,39 @@ class Record:
     q: Array
     dq: Array
     evaluations: int
+    shapes: Shapes | None = None
+
+    @property
+    def force(self) -> Array:
+        """Contact force (n, 2) on the second body, in a system of one pair. Raises ValueError with several."""
+        if self.forces.shape[1] > 1:
+            raise ValueError(
+                f"force is that of the one pair: expected 1, got {self.forces.shape[1]}; see forces"
+            )
+        return self.forces[:, 0] if self.forces.shape[1] else np.zeros((len(self.t), 2))
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The deformed state at each of n recorded times.
+
+    modal (n, m): coordinates of all bodies' modes; hub (n, b, 3): force and moment on each hub, body frame; loads: n
+    arrays (l, 4) of body, FE boundary node, and force on it, body frame.
+    """
+
+    modal: Array
+    hub: Array
+    loads: list[Array]
 
 
 class Simulation:
     """Bodies, contact pairs and the stepper.
 
-    k: contact stiffness, force per area. q: pressure exponent of Alg. 3. contact: "area" or "sts". reach: STS only,
-    the deepest penetration looked at (length). margin: length a leaf pair may move before the search is renewed.
-    rho: spectral radius at infinity ρ∞, in [0, 1]; below 1 where there are constraints (index 3). Raises
-    ValueError for settings out of range or an overlap at t = 0 deeper than ``depth_limit``.
+    pairs: of body numbers; forces are recorded on the second of each. k: contact stiffness, force per area. q: pressure
+    exponent of Alg. 3. contact: "area" or "sts". reach: STS only, the deepest penetration looked at (length). margin:
+    length a leaf pair may move before the search is renewed. rho: spectral radius at infinity ρ∞, in [0, 1]; below 1
+    where there are constraints (index 3). Raises ValueError for bodies, pairs or settings out of range, or an overlap
+    at t = 0 deeper than ``depth_limit``.
     """
 
     def __init__(
@@ -105,31 +140,14 @@ class Simulation:
         gravity: tuple[float, float] = (0.0, 0.0),
         depth_limit: float = np.inf,
     ) -> None:
-        if not 0.0 <= rho <= 1.0:
-            raise ValueError(f"rho must lie in [0, 1], got {rho}")
-        if contact not in ("area", "sts"):
-            raise ValueError(f"contact must be 'area' or 'sts', got {contact!r}")
-        if contact == "sts" and not reach > 0:
-            raise ValueError(f"reach must be positive for STS, got {reach}")
-        if not k > 0:
-            raise ValueError(f"k must be positive, got {k}")
-        constrained = any(b.anchor is not None or b.drive is not None for b in bodies)
-        if constrained and rho == 1.0:
-            raise ValueError("rho must be below 1 with constraints (index 3 is unstable at 1), got 1")
-        for i, b in enumerate(bodies):
-            if b.fixed and (b.anchor is not None or b.drive is not None):
-                raise ValueError(f"body {i} is fixed: expected neither anchor nor drive")
+        check_settings(k, q, contact, reach, margin, rho, gravity)
+        check_bodies(bodies, rho)
+        self.pairs = check_pairs(pairs, len(bodies))
         self.bodies = list(bodies)
         count = [len(b.frequency) for b in bodies]
-        for i, b in enumerate(bodies):
-            if b.boundary.modes.shape[1] != count[i]:
-                raise ValueError(
-                    f"body {i}: expected {b.boundary.modes.shape[1]} frequencies, got {count[i]}"
-                )
         first = np.concatenate([[0], np.cumsum(count)])
         omega = np.concatenate([np.asarray(b.frequency, float) for b in bodies])
         zeta = np.repeat([b.damping for b in bodies], count)
-        n = len(bodies)
 
         def column(values: list[Any]) -> Array:
             return np.ascontiguousarray(np.array(values, float))
@@ -148,27 +166,39 @@ class Simulation:
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
         self.works = tuple(workspace(b.boundary) for b in bodies)
-        self._elastic = tuple(map(elastic, self.boundaries, self.works))
-        self.pairs = np.array(pairs, np.int64).reshape(-1, 2)
+        self._geometric = tuple(
+            np.zeros((0, m, m)) if b.geometric is None else np.ascontiguousarray(b.geometric, float)
+            for b, m in zip(bodies, count, strict=True)
+        )
+        self._table = table(self.boundaries, self.works, self.couplings, self._geometric)
         spread = any(bd.modes.shape[1] > 0 or len(bd.flexibility) for bd in self.boundaries)
         self.settings = Settings(float(k), float(reach if contact == "sts" else q), contact == "sts", spread,
                                  float(margin), float(rho))  # fmt: skip
         m = int(first[-1])
         self.state, self._saved = self._new_state(m), self._new_state(m)
         self.time = 0.0
-        self.scratch = nodal.scratch(sum(len(b.points) for b in self.boundaries))
-        self._buffers = Buffers(
-            np.zeros((n, 4)), np.full((n, 4), np.inf), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)),
-            np.zeros((6 * n, 6 * n)), np.zeros(6 * n), np.zeros(2), np.zeros((REGIONS_KEPT, 5)), np.zeros(m),
-            np.zeros(3 * n, np.int64), np.array([-1, 0, 0]), np.zeros((REGIONS_KEPT * n, 24)),
-            np.zeros(2), np.zeros(1),
-        )  # fmt: skip
+        sizes = [len(b.points) for b in self.boundaries]
+        self._searches = searches([max(sizes[i], sizes[j]) for i, j in self.pairs])
+        self._make_room(ROOM if spread and contact == "area" else 0)
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)
 
+    def _make_room(self, loads: int, old: Buffers | None = None) -> None:
+        """Scratch arrays with room for so many loads as unknowns."""
+        sizes = [len(b.points) for b in self.boundaries]
+        largest = max((sizes[i] + sizes[j] for i, j in self.pairs), default=0)
+        self.scratch = nodal.scratch(largest, loads)
+        made = buffers(len(self.bodies), len(self.pairs), [len(b.frequency) for b in self.bodies], loads)
+        if old is not None:
+            made.counts[1], made.most[:] = old.counts[1], old.most
+        self._buffers: Buffers = made
+        # regions are numbered anew: no node belongs to one
+        for w in self.works:
+            w.slot_region[:] = 0
+
     def counts(self) -> tuple[int, int]:
         """Contact evaluations so far, and contact regions in the last one."""
-        return int(self._buffers.counts[1]), int(self._buffers.counts[2])
+        return int(self._buffers.counts[1]), int(self._buffers.counts[0])
 
     def _check_start(self, limit: float) -> None:
         for i, j in self.pairs:
@@ -228,57 +258,103 @@ class Simulation:
             mu[2] = solution[-1]
         return solution[:3], mu
 
-    def run(self, duration: float, h: float, every: int = 1) -> Record:
-        """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps.
+    def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
+        """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps; ``shapes`` too if asked for.
 
-        Raises RuntimeError naming step, residual and body if a step does not converge after HALVINGS halvings.
-        What was computed until then, or until an interrupt, is in ``self.record``.
+        Raises ValueError for lengths of time or ``every`` out of range, RuntimeError naming step, residual, pair and
+        its stiffness if a step does not converge after HALVINGS halvings. Warns (``watch.LinearityWarning``) where a
+        body went beyond linear elasticity. What was computed until then, or until an
+        interrupt, is in ``self.record``.
         """
-        if not (h > 0 and duration > 0):
-            raise ValueError(f"duration and h must be positive, got {duration} and {h}")
+        if not (0 < h < np.inf and 0 < duration < np.inf):
+            raise ValueError(f"duration and h must be positive and finite, got {duration} and {h}")
+        if not (isinstance(every, int | np.integer) and every >= 1):
+            raise ValueError(f"every must be a whole number of at least 1, got {every!r}")
         steps = round(duration / h)
-        n = len(self.bodies)
-        out = np.zeros((steps // every, 7 + 8 * n + 5 * REGIONS_KEPT))
+        n, m, p = len(self.bodies), len(self.state.q), len(self.pairs)
+        out = np.zeros((steps // every, HEAD + BODY * n + 2 * p + (m + 3 * n if shapes else 0)))
+        chunk = every * max(1, CHUNK // every)
+        nodes = sum(len(w.node_load) for w in self.works)
+        regions = np.zeros((REGIONS + 4 * CHUNK, 6))
+        loads = np.zeros((max(nodes, 40 * CHUNK) if shapes else 0, 4))
+        kept = [np.zeros((0, 6))], [np.zeros((0, 4))]
+        filled = np.zeros(5, np.int64)
         start = int(self._buffers.counts[1])
-        done = code = 0
-        begin, chunk = self.time, every * max(1, CHUNK // every)
+        begin, done, code = self.time, 0, 0
         try:
             while done < steps and code >= 0:
-                part, code = run_steps(
-                    self.boundaries, self.works, self._elastic, self.system, self.couplings, self.state, self._saved,
-                    self.pairs, self.settings, self.scratch, self._buffers, begin + h * done, h,
-                    min(chunk, steps - done), every, out[done // every :],
+                done, code = run_steps(
+                    self._table, self.system, self.state, self._saved, self.pairs, self.settings, self.scratch,
+                    self._searches, self._buffers, begin, h, done, min(done + chunk, steps), every, out, regions,
+                    loads, filled,
                 )  # fmt: skip
-                done += part
+                for part, source, end in zip(kept, (regions, loads), filled[1:3], strict=True):
+                    part.append(source[:end].copy())
+                filled[1:3] = 0
+                if code == FULL:
+                    self._make_room(2 * len(self.scratch.load.force), self._buffers)
+                    code = 0
         finally:  # an interrupt arrives between chunks: what was computed stays readable
             self.time = begin + h * done
-            self.record = self._rows(out[: done // every], int(self._buffers.counts[1]) - start)
-        if code < 0:
-            reason = {
-                MANY: "more contact points than the work arrays hold",
-                TORN: "a boundary crosses itself, or the bodies overlap deeper than a feature",
-                SLICED: "one body passes through the other",
-            }.get(code, "no convergence")
-            worst = int(np.argmax(np.abs(self._buffers.load).sum(1))) if self._buffers.load.any() else 0
-            raise RuntimeError(
-                f"step {done} (t = {self.time:.6g}, h = {h:g}, halved {HALVINGS} times): {reason}; residual"
-                f" {self._buffers.rhs[-2]:.3g} against forces of {self._buffers.rhs[-1]:.3g}, body {worst}"
+            evaluations = int(self._buffers.counts[1]) - start
+            self.record = self._rows(
+                out[: filled[0]], np.vstack(kept[0]), np.vstack(kept[1]), evaluations, shapes
             )
+        if code < 0:
+            raise RuntimeError(f"step {done} (t = {self.time:.6g}, h = {h:g}, {self._trouble(code)}")
+        spin = np.abs(self.record.v[:, :, 2]).max(0, initial=0.0)
+        watch(self.bodies, self.system.size, self._buffers.most, spin)
         return self.record
 
-    def _rows(self, rows: Array, evaluations: int) -> Record:
-        n = len(self.bodies)
-        body = rows[:, 7 : 7 + 8 * n].reshape(len(rows), n, 8)
+    def _trouble(self, code: int) -> str:
+        """What stopped a run, where, and what may help."""
+        reason = {
+            MANY: "more contact points than the work arrays hold",
+            TORN: "a boundary crosses itself, or the bodies overlap deeper than a feature",
+            SLICED: "one body passes through the other",
+        }.get(code, "no convergence")
+        told = f"halved {HALVINGS} times): {reason}"
+        if len(self.pairs):
+            p = int(np.argmax(np.abs(self._buffers.force).sum(1)))
+            i, j = (int(b) for b in self.pairs[p])
+            young = [f"{b.young:.4g}" if b.young else "rigid" for b in (self.bodies[i], self.bodies[j])]
+            told += (
+                f"; residual {self._buffers.rhs[-2]:.3g} against forces of {self._buffers.rhs[-1]:.3g}, pair ({i}, {j})"
+                f" under k = {self.settings.k:.4g}, E of its bodies {young[0]} and {young[1]}"
+            )
+        return told + "; try a shorter step, a finer mesh under the contact, or a smaller k"
+
+    def _rows(self, rows: Array, regions: Array, loads: Array, evaluations: int, shapes: bool) -> Record:
+        n, p, m = len(self.bodies), len(self.pairs), len(self.state.q)
+        at = HEAD + BODY * n
+        body = rows[:, HEAD:at].reshape(len(rows), n, BODY)
+        forces = rows[:, at : at + 2 * p].reshape(len(rows), p, 2)
+        counts, loaded = rows[:, 5].astype(int), rows[:, 6].astype(int)
+        regions = regions[: counts.sum()]
+        row = np.repeat(np.arange(len(rows)), counts)
+        place = row, np.arange(len(row)) - np.repeat(np.cumsum(counts) - counts, counts)
+        table = np.zeros((len(rows), max(1, counts.max(initial=0)), 5))
+        table[place] = regions[:, 1:]
+        pair = np.full(table.shape[:2], -1)
+        pair[place] = regions[:, 0]
+        kept = None
+        if shapes:
+            at += 2 * p
+            ends = np.cumsum(loaded)
+            kept = Shapes(
+                rows[:, at : at + m].copy(), rows[:, at + m :].reshape(len(rows), n, 3).copy(),
+                np.split(loads[: loaded.sum()], ends[:-1]) if len(rows) else [],
+            )  # fmt: skip
         return Record(
-            rows[:, 0], body[:, :, :3], body[:, :, 3:6], body[:, :, 6], body[:, :, 7], rows[:, 1:3],
-            rows[:, 7 + 8 * n :].reshape(len(rows), REGIONS_KEPT, 5), rows[:, 3], rows[:, 4], rows[:, 5], rows[:, 6],
-            self.state.q.copy(), self.state.dq.copy(), evaluations,
+            rows[:, 0], body[:, :, :3], body[:, :, 3:6], body[:, :, 6], body[:, :, 7], forces, table, pair,
+            rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4], self.state.q.copy(), self.state.dq.copy(), evaluations,
+            kept,
         )  # fmt: skip
 
     def contact_seconds(self, x: Array, repeat: int = 5) -> float:
         """Seconds of one contact evaluation, search included, at the frames ``x`` (n, b, 3); best of ``repeat``."""
         x = np.ascontiguousarray(x)
-        args = (self.boundaries, self.works, self.system, self.state.q, self.pairs, self.settings, self.scratch,
+        args = (self._table, self.system, self.state.q, self.pairs, self.settings, self.scratch, self._searches,
                 self._buffers, x)  # fmt: skip
         replay(*args)
         best = np.inf

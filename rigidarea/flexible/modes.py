@@ -24,9 +24,9 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from rigidarea.flexible.cache import arrays
-from rigidarea.flexible.element import Material, lumped_mass, stiffness
+from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
+from rigidarea.flexible.factor import substitute
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -39,7 +39,11 @@ class Reduced:
     """A reduced body; i interface rows (2 f + 3), m modes; SI or any consistent units.
 
     centre (2,): centre of mass in the mesh's coordinates. frequency (m,): rad/time. modes (i, m). flexibility (i,
-    i), length/force. coupling (m, m): G_jk = Σ mᵢ φᵢⱼᵀ J φᵢₖ. stretch (m,): h_k = Σ mᵢ xᵢᵀ φᵢₖ (design 2.8).
+    i), length/force. coupling (m, m): G_jk = Σ mᵢ φᵢⱼᵀ J φᵢₖ. stretch (m,): h_k = Σ mᵢ xᵢᵀ φᵢₖ. swell (i,): what
+    moves by the centrifugal forces of unit angular velocity that the modes leave out (length × time²). geometric (3,
+    m, m):
+    stiffness of the stress by those forces, and by a unit force on the hub along x and y; (0, m, m) for a clamped body
+    and without modes. slowest: the first elastic angular frequency, 0 for a rigid body.
     """
 
     mass: float
@@ -50,6 +54,9 @@ class Reduced:
     flexibility: Array
     coupling: Array
     stretch: Array
+    swell: Array
+    geometric: Array
+    slowest: float
 
 
 def reduce(
@@ -61,12 +68,13 @@ def reduce(
     modes: int = 0,
     flexible: bool = True,
     cache: Path | str | None = None,
+    smooth: bool = True,
 ) -> Reduced:
     """Reduce a body. Rings are numbered as in ``mesh.rings``; ``hub`` and ``clamped`` name a ring.
 
     modes: free-free modes kept (0: compliant). flexible: with False only the rigid-body data. cache: a directory; a
-    file there that cannot be read is built again, with a warning. Raises ValueError for a hub or a clamped ring
-    that does not exist, or more modes than the mesh has.
+    file there that cannot be read is built again, with a warning. smooth: see ``element.stiffness``. Raises ValueError
+    for a hub or a clamped ring that does not exist, or more modes than the mesh has.
     """
     for name, ring in (("hub", hub), ("clamped", clamped)):
         if ring is not None and not (0 <= ring < len(mesh.rings) and len(mesh.rings[ring]) > 0):
@@ -76,12 +84,13 @@ def reduce(
     names = [f.name for f in fields(Reduced)]
 
     def build() -> dict[str, NDArray]:
-        body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible)
+        body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible, smooth)
         return {name: np.asarray(getattr(body, name)) for name in names}
 
-    settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible)
+    settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible, smooth)
     found = arrays(cache, settings, (mesh.points, mesh.triangles, *mesh.rings), names, build)
-    return Reduced(float(found.pop("mass")), float(found.pop("inertia")), **found)
+    mass, inertia, slowest = (float(found.pop(name)) for name in ("mass", "inertia", "slowest"))
+    return Reduced(mass, inertia, slowest=slowest, **found)
 
 
 def rigid_modes(points: Array, mass: Array) -> tuple[Array, Array, float]:
@@ -105,27 +114,6 @@ def hub_rows(points: Array, nodes: Ints) -> Array:
     spread = (x**2).sum()
     w[nodes, 0, 2], w[nodes, 1, 2] = -x[:, 1] / spread, x[:, 0] / spread
     return w.reshape(-1, 3)
-
-
-@kernel
-def _substitute(
-    lp: Ints, li: Ints, lx: Array, up: Ints, ui: Ints, ux: Array, x: Array
-) -> None:  # compressed columns of L and U, right-hand sides as the columns of x
-    n, m = x.shape
-    for j in range(n):
-        for p in range(lp[j], lp[j + 1]):
-            if li[p] > j:
-                for k in range(m):
-                    x[li[p], k] -= lx[p] * x[j, k]
-    for j in range(n - 1, -1, -1):
-        for p in range(up[j], up[j + 1]):
-            if ui[p] == j:
-                for k in range(m):
-                    x[j, k] /= ux[p]
-        for p in range(up[j], up[j + 1]):
-            if ui[p] < j:
-                for k in range(m):
-                    x[ui[p], k] -= ux[p] * x[j, k]
 
 
 class Flexibility:
@@ -161,7 +149,7 @@ class Flexibility:
         loads = loads - np.einsum("ir,rc->ic", self._momentum, np.einsum("ir,ic->rc", self._rigid, loads))
         x = np.empty((len(self._free), loads.shape[1]))
         x[self._row] = loads[self._free]
-        _substitute(*self._factors, x)
+        substitute(*self._factors, x)
         u = np.zeros(loads.shape)
         u[self._free] = x[self._column]
         return u - np.einsum("ir,rc->ic", self._rigid, np.einsum("ir,ic->rc", self._momentum, u))
@@ -188,9 +176,9 @@ class Flexibility:
         return phi * np.sign(phi[np.abs(phi).argmax(0), np.arange(count)]), value[first] ** -0.5
 
 
-def elastic(mesh: Mesh, material: Material, clamped: int | None = None) -> Flexibility:
+def elastic(mesh: Mesh, material: Material, clamped: int | None = None, smooth: bool = True) -> Flexibility:
     """A mesh's static response, free in space or with the nodes of ring ``clamped`` held."""
-    mass, k = lumped_mass(mesh, material), stiffness(mesh, material)
+    mass, k = lumped_mass(mesh, material), stiffness(mesh, material, smooth)
     if clamped is not None:
         held = (2 * mesh.rings[clamped][:, None] + np.arange(2)).ravel()
         return Flexibility(k, mass, np.zeros((k.shape[0], 0)), held)
@@ -204,7 +192,7 @@ def elastic(mesh: Mesh, material: Material, clamped: int | None = None) -> Flexi
 
 def _reduce(
     mesh: Mesh, material: Material, contact_rings: Sequence[int], hub: int | None, clamped: int | None, modes: int,
-    flexible: bool,
+    flexible: bool, smooth: bool,
 ) -> Reduced:  # fmt: skip
     mass = lumped_mass(mesh, material)
     _, centre, inertia = rigid_modes(mesh.points, mass)
@@ -212,14 +200,15 @@ def _reduce(
     n, f = 2 * len(mass), 2 * len(nodes)
     if not flexible:
         return Reduced(float(mass.sum()), inertia, centre, np.zeros(0), np.zeros((f + 3, 0)), np.zeros((0, 0)),
-                       np.zeros((0, 0)), np.zeros(0))  # fmt: skip
+                       np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), 0.0)  # fmt: skip
     # interface displacements = rowsᵀ u, loads on the nodes = rows f
     pick = (2 * nodes[:, None] + np.arange(2)).ravel()
     hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
     boundary = sp.csc_array((np.ones(f), (pick, np.arange(f))), shape=(n, f))
     rows = sp.hstack([boundary, sp.csc_array(hubs)]).tocsc()
-    response = elastic(mesh, material, clamped)
+    response = elastic(mesh, material, clamped, smooth)
     phi, omega = response.modes(modes) if modes else (np.zeros((n, 0)), np.zeros(0))
+    slowest = omega[0] if modes else response.modes(1)[1][0]
     at = np.asarray(rows.T @ phi)
     c = np.empty((f + 3, f + 3))
     for first in range(0, f + 3, BLOCK):
@@ -229,7 +218,18 @@ def _reduce(
         c[part, :first] = c[:first, part].T  # symmetric to the last bit, with no second matrix in memory
     m2 = np.repeat(mass, 2)
     turned = np.stack([-phi[1::2], phi[0::2]], 1).reshape(phi.shape)  # J φ
+    spin = m2 * (mesh.points - centre).ravel()
+    stretch = spin @ phi
+    swell, geometric = np.zeros(0), np.zeros((0, modes, modes))
+    if clamped is None:
+        tense = response(np.column_stack([spin, hubs[:, :2]]))
+        swell = rows.T @ tense[:, 0] - (at / omega**2) @ stretch
+        if modes:
+            tensions = [
+                geometric_stiffness(mesh, material, stress(mesh, material, u, smooth)) for u in tense.T
+            ]
+            geometric = np.array([phi.T @ (s @ phi) for s in tensions])
     return Reduced(
-        float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned),
-        (m2 * (mesh.points - centre).ravel()) @ phi,
+        float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned), stretch, swell, geometric,
+        float(slowest),
     )  # fmt: skip

@@ -29,13 +29,14 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible import slabs
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.condense import resultant
+from rigidarea.flexible.condense import couple, couple_slabs, room
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.literal import literal as literal
 from rigidarea.flexible.literal import literal_alpha as literal_alpha
 from rigidarea.flexible.place import add_load, displace_near
 from rigidarea.flexible.quadrature import quadrature as quadrature
 from rigidarea.flexible.region import all_arcs, arcs, area_and_centroid, find_regions
-from rigidarea.flexible.scratch import MANY, Scratch
+from rigidarea.flexible.scratch import FULL, MANY, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
 from rigidarea.flexible.search import search as search
 from rigidarea.kernel.jit import kernel
@@ -46,7 +47,7 @@ Ints = NDArray[np.int64]
 WALL = 1e-9  # width over that of the region below which a piece stands along the force: no slope, no pressure
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _straight(x: Array, n: int, chord: float) -> bool:
     """Whether an arc is a graph over the chord; what rounding folds back, or beyond the ends, is put straight."""
     slack = 1e-12 * chord
@@ -59,21 +60,21 @@ def _straight(x: Array, n: int, chord: float) -> bool:
     return graph
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _slope(x: Array, y: Array, k: int, wall: float = 0.0) -> float:
     """Slope of piece k; a piece no wider than ``wall`` stands along the force and has none."""
     width = x[k + 1] - x[k]
     return (y[k + 1] - y[k]) / width if width > wall else 0.0
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _rate(x: Array, t: Array, k: int) -> float:
     """How the parameter on the edge grows along piece k."""
     width = x[k + 1] - x[k]
     return (t[k, 1] - t[k, 0]) / width if width > 0.0 else 0.0
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _lean(xa: Array, ya: Array, xb: Array, yb: Array, n_a: int, n_b: int) -> float:
     """∫ d (slope of A + slope of B)/2 dx over two graphs: see ``_turn``."""
     wall = WALL * xa[n_a]
@@ -101,7 +102,7 @@ def _lean(xa: Array, ya: Array, xb: Array, yb: Array, n_a: int, n_b: int) -> flo
     return 0.25 * lean
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _turn(x: Array, y: Array, n_a: int, n_b: int, lean: float) -> tuple[float, float]:
     """Turns the arcs into axes across and along the force; returns cosine and sine.
 
@@ -120,7 +121,7 @@ def _turn(x: Array, y: Array, n_a: int, n_b: int, lean: float) -> tuple[float, f
     return c, s
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, xa: Array, ya: Array, xb: Array, yb: Array,
     edge_a: Ints, edge_b: Ints, ta: Array, tb: Array, n_a: int, n_b: int, k: float,
@@ -196,8 +197,9 @@ def contact(
 ) -> int:  # fmt: skip
     """Alg. 1–3 for one pair of bodies: fills ``s.regions`` and, if ``spread``, adds the loads of their points.
 
-    k: stiffness, pressure (a force per area in 2-D). q: the pressure exponent. Returns the number of regions or an
-    error code of ``scratch``. The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
+    k: stiffness, pressure (a force per area in 2-D). q: the pressure exponent. Where ``s`` has room for loads they
+    are also written there, as unknowns (``condense``). Returns the number of regions or an error code of ``scratch``.
+    The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
     """
     displace_near(a, wa, qa, s.near[0], s.runs[0], stamp)
     displace_near(b, wb, qb, s.near[1], s.runs[1], stamp)
@@ -213,7 +215,7 @@ def contact(
             return MANY
         area, xc, yc = area_and_centroid(x, y, s.t, n_a, n_b)
         ux, uy = -r["ny"], r["nx"]
-        r["area"], r["force"], r["give"] = area, k * area, 1.0  # Eq. 5
+        r["area"], r["force"] = area, k * area  # Eq. 5
         r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
         if area <= 0.0:
             continue
@@ -228,13 +230,34 @@ def contact(
         if not spread:
             continue
         nx, ny = r["nx"], r["ny"]
-        resultant(a, wa, pose_a, b, wb, pose_b, r, x, s.edge, s.t, n_a, n_b, k * r["chord"])
+        answers = len(s.load.force) > 0
+        if answers and not room(s, n_a, n_b):
+            return FULL
         xc = c * xc + sn * yc
         if graphs and _straight(x[0], n_a, x[0, n_a]) and _straight(x[1], n_b, x[0, n_a]):
             _distribute(
-                a, wa, b, wb, nx, ny, x[0], y[0], x[1], y[1], s.edge[0], s.edge[1], s.t[0], s.t[1], n_a, n_b,
-                r["force"] / area,
-            )  # fmt: skip
+                a,
+                wa,
+                b,
+                wb,
+                nx,
+                ny,
+                x[0],
+                y[0],
+                x[1],
+                y[1],
+                s.edge[0],
+                s.edge[1],
+                s.t[0],
+                s.t[1],
+                n_a,
+                n_b,
+                k,
+            )
+            if answers:
+                couple(a, wa, pose_a, b, wb, pose_b, r, s, n_a, n_b, k)
         else:
-            slabs.distribute(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
+            alpha, beta, power = slabs.distribute(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
+            if answers:
+                couple_slabs(a, wa, pose_a, b, wb, pose_b, r, s, n_a, n_b, k, alpha, beta, xc, power)
     return n

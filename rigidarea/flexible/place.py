@@ -11,13 +11,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: int) -> None:
     """Displacements (body frame) of the FE nodes ``first`` … ``end`` - 1; modal (m,) are the coordinates q."""
     n_modes, static = b.shapes.shape[0], b.flexibility.shape[0] > 0
@@ -47,16 +48,20 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
                 row = flexibility[len(flexibility) - 3 + k, 2 * first : 2 * end]
                 for i in range(len(u)):
                     u[i] += row[i] * f
+    if len(b.swell) > 0 and w.spin[0] != 0.0:
+        row, f = b.swell[2 * first : 2 * end], w.spin[0]
+        for i in range(len(u)):
+            u[i] += row[i] * f
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def displace_near(b: Boundary, w: Work, modal: Array, near: Ints, runs: int, stamp: int) -> None:
     """``displace`` for the nodes that the search left in ``near``."""
     for k in range(runs):
         displace(b, w, modal, near[k, 2], near[k, 3], stamp)
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def place(b: Boundary, w: Work, pose: Array, first: int, end: int, stamp: int) -> None:
     """World positions of the points ``first`` … ``end`` - 1, their nodes displaced; pose (x, y, cos θ, sin θ)."""
     points, low, high, share, position, u = b.points, b.low, b.high, b.share, w.position, w.displacement
@@ -73,14 +78,14 @@ def place(b: Boundary, w: Work, pose: Array, first: int, end: int, stamp: int) -
         position[i, 1] = py + s * x + c * y
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def place_near(b: Boundary, w: Work, pose: Array, near: Ints, runs: int, stamp: int) -> None:
     """``place`` for the points that the search left in ``near``."""
     for k in range(runs):
         place(b, w, pose, near[k, 0], near[k, 1], stamp)
 
 
-@kernel
+@inner
 def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
     """Displaces and places point i: for the rare point of an arc that no candidate leaf holds."""
     for node in (b.low[i], b.high[i]):
@@ -89,7 +94,7 @@ def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: in
     place(b, w, pose, i, i + 1, stamp)
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
     """Adds a force to point i and remembers that it is loaded."""
     if not flag[i]:
@@ -111,15 +116,22 @@ def clear_loads(w: Work) -> None:
     touched[-1] = 0
 
 
-@kernel(forceinline=True)
-def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
-    """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
-    load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched
-    low, high, share = b.low, b.high, b.share
+@inner(forceinline=True)
+def clear_nodes(w: Work) -> None:
+    """Forgets the FE boundary nodes' loads."""
+    load, flag, loaded = w.node_load, w.node_flag, w.loaded
     for k in range(loaded[-1]):
         load[loaded[k], 0] = load[loaded[k], 1] = 0.0
         flag[loaded[k]] = False
     loaded[-1] = 0
+
+
+@inner(forceinline=True)
+def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
+    """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
+    load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched
+    low, high, share = b.low, b.high, b.share
+    clear_nodes(w)
     for k in range(touched[-1]):
         i = touched[k]
         fx = pose[2] * point_load[i, 0] + pose[3] * point_load[i, 1]

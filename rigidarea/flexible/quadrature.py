@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X
 from rigidarea.kernel.jit import kernel
 
@@ -13,7 +14,7 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@kernel
+@inner
 def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
     """Makes x grow along an arc; overhanging parts get no width, so no load. True if there were any."""
     bent = False

@@ -25,6 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import place_near, place_one
 from rigidarea.flexible.scratch import MANY, SLICED, TORN, Scratch
 from rigidarea.kernel.jit import kernel
@@ -35,7 +36,7 @@ Ints = NDArray[np.int64]
 NO_CHORD = 1e-9  # a summed chord this small beside its parts is rounding: no direction
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def strip(at: Array, following: Ints, low: int, high: int) -> tuple[float, float, float, float, float, float]:
     """The strip that holds a leaf's edges low … high - 1: origin, chord, and the bounds of cross(chord, ·)."""
     ox, oy = at[low, 0], at[low, 1]
@@ -49,7 +50,7 @@ def strip(at: Array, following: Ints, low: int, high: int) -> tuple[float, float
     return ox, oy, ux, uy, above + slack, below - slack
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _crossings(
     next_a: Ints, first_a: Ints, size_a: Ints, at_a: Array, next_b: Ints, first_b: Ints, size_b: Ints, at_b: Array,
     pairs: Ints, n_pairs: int, out: NDArray[np.void],
@@ -102,7 +103,7 @@ def _crossings(
     return count
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _following(ring: Ints, edge: Ints, t: Array, n: int, i: int) -> int:
     """The crossing that follows crossing i on the same ring of one body."""
     best, wrap = -1, -1
@@ -118,7 +119,7 @@ def _following(ring: Ints, edge: Ints, t: Array, n: int, i: int) -> int:
     return best if best >= 0 else wrap
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _around(crossings: NDArray[np.void], first: int, r: Any) -> int:
     """Follows a region from crossing ``first`` round its arcs: 1, or 0 if it has no extent, or TORN, SLICED."""
     start = crossings[first]
@@ -215,7 +216,7 @@ def find_regions(
     return count
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _trace(
     bd: Boundary, w: Work, pose: Array, modal: Array, stamp: int, side: int, first: int, t_first: float, last: int,
     t_last: float, ox: float, oy: float, ux: float, uy: float, x: Array, y: Array, edge: Ints, t: Array, n: int,
@@ -312,7 +313,7 @@ def all_arcs(
     return n_a, n_b
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _framed(crossing: Any, ox: float, oy: float, ux: float, uy: float) -> tuple[float, float]:
     px, py = crossing["x"] - ox, crossing["y"] - oy
     return ux * px + uy * py, -uy * px + ux * py

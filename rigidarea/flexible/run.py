@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.hub import hub_displacement, hub_rate
-from rigidarea.flexible.step import NO_CONVERGENCE, step
-from rigidarea.flexible.system import REGIONS_KEPT
+from rigidarea.flexible.jit import inner
+from rigidarea.flexible.scratch import FULL
+from rigidarea.flexible.step import step
 from rigidarea.kernel.jit import kernel
 
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
+BODY = 8  # columns of a body in a row of the record: frame, its velocity, hub's angle and its rate
+HEAD = 7  # columns before the bodies': time, iterations, halvings, strain and kinetic energy, regions, loads
 
 
-@kernel
+@inner
 def _copy(source, target):  # type: ignore[no-untyped-def]
     for b in range(len(source.x)):
         for i in range(3):
@@ -26,43 +30,64 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
         target.auxq[i] = source.auxq[i]
 
 
-@kernel
-def _record(elastic, sy, couplings, state, buf, row):  # type: ignore[no-untyped-def]
-    """Force, energies, frames, hubs and regions of this instant; see ``integrate.Simulation`` for the columns."""
-    row[1], row[2] = buf.force[0], buf.force[1]
+@inner
+def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
+    """Energies, frames, hubs and forces of this instant; columns: HEAD, BODY a body, 2 a pair, modes, hub loads."""
     strain = kinetic = 0.0
     for i in range(len(state.q)):
         strain += 0.5 * sy.square[i] * state.q[i] ** 2
-    at = 7
-    for b in range(len(elastic)):
+    count = len(sy.mass)
+    at = HEAD
+    for b in range(count):
         lo, hi = sy.first[b], sy.first[b + 1]
-        j, w, g = sy.inertia[b], state.v[b, 2], couplings[b]
+        j, v, g, stiff = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b), geometric_at(bodies, b)
         for i in range(lo, hi):
             gq = 0.0
             for k in range(lo, hi):
                 gq += g[i - lo, k - lo] * state.q[k]
+                if len(stiff) > 0:
+                    j -= state.q[i] * stiff[0, i - lo, k - lo] * state.q[k]
             j += 2.0 * sy.stretch[i] * state.q[i] + state.q[i] ** 2
-            kinetic += 0.5 * state.dq[i] ** 2 + w * gq * state.dq[i]
-        kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2) + 0.5 * j * w * w
+            kinetic += 0.5 * state.dq[i] ** 2 + v * gq * state.dq[i]
+        kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2) + 0.5 * j * v * v
         for i in range(3):
             row[at + i] = state.x[b, i]
             row[at + 3 + i] = state.v[b, i]
-        row[at + 6] = state.x[b, 2] + hub_displacement(elastic[b], state.q[lo:hi], 2)
-        row[at + 7] = state.v[b, 2] + hub_rate(elastic[b], state.dq[lo:hi])
-        at += 8
-    row[5], row[6] = strain, kinetic
-    for i in range(REGIONS_KEPT):
-        for k in range(5):
-            row[at + 5 * i + k] = buf.regions[i, k]
+        body, w = boundary_at(bodies, b), work_at(bodies, b)
+        row[at + 6] = state.x[b, 2] + hub_displacement(body, w, state.q[lo:hi], 2)
+        row[at + 7] = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
+        at += BODY
+    row[3], row[4] = strain, kinetic
+    for p in range(len(buf.force)):
+        row[at], row[at + 1] = buf.force[p, 0], buf.force[p, 1]
+        at += 2
+    if len(row) > at:  # shapes are kept
+        for i in range(len(state.q)):
+            row[at + i] = state.q[i]
+        at += len(state.q)
+        for b in range(count):
+            for k in range(3):
+                row[at + 3 * b + k] = work_at(bodies, b).hub_load[k]
 
 
 @kernel
 def run_steps(  # type: ignore[no-untyped-def]
-    bodies, works, elastic, sy, couplings, state, saved, pairs, st, s, buf, t0, h, steps, every, out
+    bodies, sy, state, saved, pairs, st, s, found, buf, t0, h, first, last, every, out, regions, loads, filled
 ):
-    """``steps`` steps of h; one row of ``out`` every ``every`` steps. Returns (steps done, code)."""
-    peak_iterations = halved = 0
-    for n in range(steps):
+    """Steps number ``first`` … ``last`` - 1 of length h from t0; a row of ``out`` each time ``every`` are complete.
+
+    Contact regions and, where ``loads`` has rows, loaded FE nodes (body, node, force) are appended to ``regions`` and
+    ``loads``; filled (5,): rows so far of ``out``, ``regions`` and ``loads``, then iterations and halvings since the
+    last row. Returns (the step to go on with, code): before ``last``, without error, where room for a row's regions or
+    loads may be wanting.
+    """
+    keep = len(loads) > 0
+    nodes = 0
+    for b in range(len(sy.mass)):
+        nodes += len(work_at(bodies, b).node_load)
+    for n in range(first, last):
+        if filled[1] + len(buf.regions) > len(regions) or (keep and filled[2] + nodes > len(loads)):
+            return n, 0
         parts = 1
         while True:
             _copy(state, saved)
@@ -70,21 +95,44 @@ def run_steps(  # type: ignore[no-untyped-def]
             used = 0
             for part in range(parts):
                 at = t0 + h * (n + part / parts)
-                code = step(bodies, works, elastic, sy, couplings, state, pairs, st, s, buf, at, h / parts)
+                code = step(bodies, sy, state, pairs, st, s, found, buf, at, h / parts)
                 if code < 0:
                     break
                 used += code
-            if code > 0 or code < NO_CONVERGENCE:
+            if code > 0:
                 break
             _copy(saved, state)
+            if code == FULL:
+                return n, code
             parts *= 2
-            halved += 1
+            filled[4] += 1
             if parts > 2**HALVINGS:
                 return n, code
-        peak_iterations = max(peak_iterations, used)
-        if (n + 1) % every == 0:
-            row = out[(n + 1) // every - 1]
-            row[0], row[3], row[4] = t0 + h * (n + 1), peak_iterations, halved
-            _record(elastic, sy, couplings, state, buf, row)
-            peak_iterations = halved = 0
-    return steps, 0
+        filled[3] = max(filled[3], used)
+        if (n + 1) % every > 0:
+            continue
+        row = out[filled[0]]
+        filled[0] += 1
+        row[0], row[1], row[2] = t0 + h * (n + 1), filled[3], filled[4]
+        filled[3] = filled[4] = 0
+        _record(bodies, sy, state, buf, row)
+        row[5] = buf.counts[0]
+        for i in range(buf.counts[0]):
+            for k in range(6):
+                regions[filled[1] + i, k] = buf.regions[i, k]
+        filled[1] += buf.counts[0]
+        if keep:
+            start = filled[2]
+            for b in range(len(sy.mass)):
+                w = work_at(bodies, b)
+                for i in range(w.loaded[-1]):
+                    entry, node = loads[filled[2]], w.loaded[i]
+                    entry[0], entry[1], entry[2], entry[3] = (
+                        b,
+                        node,
+                        w.node_load[node, 0],
+                        w.node_load[node, 1],
+                    )
+                    filled[2] += 1
+            row[6] = filled[2] - start
+    return last, 0

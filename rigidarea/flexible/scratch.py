@@ -7,6 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.flexible.jit import inner
+
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -21,8 +23,6 @@ REGION = np.dtype(
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
     + [("x_chord", "f8"), ("y_chord", "f8")]
-    + [("give", "f8")]  # see ``condense``; middles of the arcs: two nodes, and the share of the second
-    + [(f"{what}_{body}", t) for body in "ab" for what, t in (("low", "i8"), ("high", "i8"), ("share", "f8"))]
     + [("first", "i8"), ("arcs", "i8")]  # a crossing of it, and its arcs a body
 )
 CROSSING = np.dtype(
@@ -30,9 +30,26 @@ CROSSING = np.dtype(
      ("next_b", "i8"), ("used", "i8")]
 )  # fmt: skip
 
+CANDIDATES = 16384  # pairs of leaves: a contact along 16,000 edges
 MANY = -1  # more crossings, arcs or candidates than the work arrays hold
 TORN = -2  # crossings that do not alternate: a boundary that crosses itself
 SLICED = -3  # a region whose arcs have no common direction (a bar through a bar)
+FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: give it more and go on
+
+
+class Loads(NamedTuple):
+    """The loads of all regions as unknowns, and how they answer to displacements; see ``condense``. Room for c."""
+
+    made: Ints  # (2,) unknowns so far, serial number of the region
+    side: Ints  # (c,) 0: on A, 1: on B; then the body
+    node: Ints  # (c,) FE boundary node, -1: one of the two of a rigid body's side
+    at: Array  # (c, 2) where, world
+    world: Array  # (c, 2) direction of the load, world
+    local: Array  # (c, 2) and in the body frame
+    force: Array  # (c,)
+    stiffness: Array  # (c, c) force by displacements along the loads, changed sign
+    entry: Ints  # (p,) unknowns under one point of a region, and their shares
+    share: Array  # (p,)
 
 
 class Scratch(NamedTuple):
@@ -50,13 +67,55 @@ class Scratch(NamedTuple):
     edge: Ints
     t: Array  # (2, n, 2)
     cut: Array  # (2 n,)
+    load: Loads
 
 
-def scratch(points: int) -> Scratch:
-    """Arrays for boundaries of up to ``points`` points in all."""
+def loads(room: int, points: int) -> Loads:
+    """Room for ``room`` loads of boundaries of ``points`` points; 0: no answer to displacements is wanted."""
+    m = 4 * (points + 4) if room else 0
+    return Loads(
+        np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2)),
+        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((room, room)), np.zeros(m, np.int64),
+        np.zeros(m),
+    )  # fmt: skip
+
+
+def scratch(points: int, room: int = 0) -> Scratch:
+    """Arrays for boundaries of up to ``points`` points in all, and ``room`` loads as unknowns."""
     n = points + 3
     return Scratch(
-        np.zeros((256, 2), np.int64), np.zeros((16384, 2), np.int64), np.zeros((2, n, 4), np.int64),
+        np.zeros((256, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), np.zeros((2, n, 4), np.int64),
         np.zeros(2, np.int64), np.zeros((2, n), np.int64), np.zeros(512, CROSSING), np.zeros(1024, REGION),
         np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n), np.int64), np.zeros((2, n, 2)), np.zeros(2 * n),
+        loads(room, points),
+    )  # fmt: skip
+
+
+class Searches(NamedTuple):
+    """What the search left for each of p pairs, kept while nothing has moved by the margin; see ``Scratch``."""
+
+    pairs: Ints  # (p, c, 2)
+    near: Ints  # (p, 2, r, 4)
+    runs: Ints  # (p, 2)
+    mark: Ints  # (p, 2, n)
+    found: Ints  # (p,) candidate leaves, -1 before the first search
+    posed: Array  # (p, 2, 4) poses then
+    bend: Array  # (p,) and the deformation allowed for
+
+
+def searches(points: list[int]) -> Searches:
+    """Room for one search a pair, ``points`` (p,) of the larger of its two boundaries."""
+    p, n = len(points), max(points, default=0) + 3
+    return Searches(
+        np.zeros((p, CANDIDATES, 2), np.int64), np.zeros((p, 2, n, 4), np.int64), np.zeros((p, 2), np.int64),
+        np.zeros((p, 2, n), np.int64), np.full(p, -1), np.full((p, 2, 4), np.inf), np.zeros(p),
+    )  # fmt: skip
+
+
+@inner
+def of_pair(s: Scratch, all_pairs: Searches, p: int) -> Scratch:
+    """The work arrays with what the search left for pair p."""
+    return Scratch(
+        s.stack, all_pairs.pairs[p], all_pairs.near[p], all_pairs.runs[p], all_pairs.mark[p], s.crossings, s.regions,
+        s.x, s.y, s.edge, s.t, s.cut, s.load,
     )  # fmt: skip

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.scratch import MANY, Scratch
 from rigidarea.kernel.jit import kernel
 
@@ -65,7 +66,7 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
     return count
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _apart(
     box_a: Array, i: int, box_b: Array, j: int, c: float, sn: float, tx: float, ty: float, margin: float
 ) -> bool:
@@ -84,7 +85,7 @@ def _apart(
     )
 
 
-@kernel
+@inner
 def _runs(b: Boundary, pairs: Ints, n_pairs: int, side: int, mark: Ints, near: Ints) -> int:
     """The points of the candidate leaves and the FE nodes that carry them, as runs of neighbours; their number."""
     following, low, high, share = b.next, b.low, b.high, b.share

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import add_load, displace_near, place_near
 from rigidarea.flexible.region import strip
 from rigidarea.flexible.scratch import MANY, Scratch
@@ -25,7 +26,7 @@ Ints = NDArray[np.int64]
 GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
 
 
-@kernel(forceinline=True)
+@inner(forceinline=True)
 def _facing(
     at_a: Array, next_a: Ints, low: int, high: int, at_b: Array, next_b: Ints, first_b: Ints, size_b: Ints,
     pairs: Ints, start: int, end: int, reach: float, out: Ints,
@@ -143,6 +144,5 @@ def contact(
             # the point of the line of action nearest to A's origin: the moment about that origin is kept
             r["x"], r["y"] = pose_a[0] + r["ny"] * moment / f, pose_a[1] - r["nx"] * moment / f
             r["x_chord"], r["y_chord"], r["chord"], r["area"] = r["x"], r["y"], stiff / k, f / k
-            r["give"] = 1.0
             count += 1
     return count

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import add_load
 from rigidarea.flexible.scratch import Scratch
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,7 +29,7 @@ GAUSS_X = (0.5 - 0.5 * 0.6**0.5, 0.5, 0.5 + 0.5 * 0.6**0.5)
 GAUSS_W = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
-@kernel
+@inner
 def cuts(x: Array, n_a: int, n_b: int, cut: Array) -> int:
     """The vertices' positions along the chord, sorted; their number."""
     i = j = 0
@@ -46,7 +46,7 @@ def cuts(x: Array, n_a: int, n_b: int, cut: Array) -> int:
     return n_a + n_b + 2
 
 
-@kernel
+@inner
 def slab(
     x: Array, y: Array, t: Array, n_a: int, n_b: int, lo: float, hi: float
 ) -> tuple[float, float, float, int, int, int]:
@@ -74,7 +74,7 @@ def slab(
     return max(d0, 0.0), max(d1, 0.0), middle, net, right_a, right_b
 
 
-@kernel
+@inner
 def lean(x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, cut: Array) -> float:
     """Slope of the region's middle line over the chord, weighted by d^q: see ``nodal``."""
     total = weight = 0.0
@@ -91,7 +91,7 @@ def lean(x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, cut: Array)
     return total / weight if weight > 0.0 else 0.0
 
 
-@kernel
+@inner
 def _moments(
     x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, xc: float, cut: Array, n: int
 ) -> tuple[float, float, float, float, float]:
@@ -111,12 +111,14 @@ def _moments(
     return s0, s1, s2, first, last
 
 
-@kernel
+@inner
 def distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, s: Scratch, n_a: int, n_b: int, force: float,
     xc: float, q: float,
-) -> None:  # fmt: skip
+) -> tuple[float, float, float]:  # fmt: skip
     """Adds the loads of one region to both bodies' points; (nx, ny) is the direction of the force on B.
+
+    Returns α, β and the exponent.
 
     ∫ p dx = ``force`` and ∫ p (x − x_c) dx = 0 fix α and β. Where p would pull, q = 1 takes the place of q. With one
     arc a body that never pulls, being α = k, β = 0; with several it does where their net width lies too far to one
@@ -129,7 +131,7 @@ def distribute(
         s0, s1, s2, first, last = _moments(x, y, t, n_a, n_b, q, xc, cut, n)
         det = s0 * s2 - s1 * s1
         if s0 <= 0.0 or det <= 0.0:
-            return
+            return 0.0, 0.0, 1.0
         alpha, beta = force * s2 / det, -force * s1 / det
         if q == 1.0 or min(alpha + beta * first, alpha + beta * last) >= 0.0:
             break
@@ -166,3 +168,4 @@ def distribute(
                 if x[side, k + 2] - x0 > WALL * (cut[n - 1] - cut[0]):
                     node = edge[0, k + 1] if side == 0 else i
                     w.pressure[node] = (alpha + beta * (x1 - xc)) * d1**q
+    return alpha, beta, q

@@ -6,8 +6,8 @@ multipliers by its inverse (C. L. Bottasso et al., 2007), the residual is judged
 
 Newton's matrix has the rigid rows, the constraints, and the contact tangent k L (and k L³/12 in rotation); modes are
 eliminated first, their block being diagonal. Static flexibility (residual modes, or all of it for a compliant
-body) is a compliance of hub and boundary: the hub's enters the matrix, the boundary's is condensed into the
-contact forces (``condense``), so that bodies may be softer than their contacts.
+body) is a compliance of hub and boundary: the hub's enters the matrix, the boundary's goes with the contact's loads,
+which are unknowns eliminated like the modes (``condense``), so that bodies may be softer than their contacts.
 """
 
 from __future__ import annotations
@@ -17,22 +17,26 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.condense import by_mode
+from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
+from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import evaluate, poses
 from rigidarea.flexible.frame import inertia_forces
-from rigidarea.flexible.hub import direction, hub_of, hub_rate, prescribed
-from rigidarea.flexible.place import add_load
-from rigidarea.flexible.system import Elastic
-from rigidarea.kernel.jit import kernel
+from rigidarea.flexible.hub import Hub, direction, hub_of, hub_rate, prescribed
+from rigidarea.flexible.jit import inner
+from rigidarea.flexible.place import clear_nodes
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-NEWTON_LIMIT = 25
+NEWTON_LIMIT = (
+    60  # of which all but a few are for contacts far stiffer than the bodies, whose directions turn
+)
+HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn where the contact seems lost
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
-SETTLED = 1e-3  # and then the contact forces differ from k A by no more than this part of the largest
+SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
 
 NO_CONVERGENCE = -10
 
@@ -50,7 +54,7 @@ class Scheme(NamedTuple):
     scale: float  # of the dynamic rows, inverse of the multipliers'
 
 
-@kernel
+@inner
 def _scheme(rho: float, h: float) -> Scheme:
     am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + af - am
@@ -59,7 +63,7 @@ def _scheme(rho: float, h: float) -> Scheme:
     return Scheme(am, gamma, beta, h, acc, gamma / (h * beta), (1.0 - af) / (1.0 - am), beta * h * h)
 
 
-@kernel
+@inner
 def solve(a: Array, b: Array, n: int) -> None:
     """Gaussian elimination with partial pivoting, in place: b becomes the solution. n is at most a few dozen."""
     for i in range(n):
@@ -86,7 +90,7 @@ def solve(a: Array, b: Array, n: int) -> None:
         b[i] = s / a[i, i] if a[i, i] != 0.0 else 0.0
 
 
-@kernel
+@inner
 def _predict(state, c):  # type: ignore[no-untyped-def]
     """The step with the accelerations kept."""
     h, am, gamma, beta = c.h, c.am, c.gamma, c.beta
@@ -105,7 +109,7 @@ def _predict(state, c):  # type: ignore[no-untyped-def]
         state.auxq[i] = a_new
 
 
-@kernel
+@inner
 def _number(sy, buf):  # type: ignore[no-untyped-def]
     """Numbers the unknowns of the constraints after those of the frames, into ``buf.column``; returns their end."""
     end = 3 * len(sy.mass)
@@ -119,7 +123,7 @@ def _number(sy, buf):  # type: ignore[no-untyped-def]
     return end
 
 
-@kernel
+@inner
 def _frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyped-def]
     """Residual and matrix of one free frame; ``moment`` of its inertia. Returns the largest force, and residual."""
     m, rhs, k, size, mass = buf.matrix, buf.rhs, 3 * b, sy.size[b], sy.mass[b]
@@ -137,12 +141,12 @@ def _frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-unty
     for i in range(k, k + 3):
         for j in range(3 * len(sy.mass)):
             m[i, j] += buf.tangent[i, j] * scheme.scale
-        rhs[i] *= -scheme.scale
+        rhs[i] = scheme.scale * (buf.push[i] - rhs[i])
     return reference, worst
 
 
-@kernel
-def _mode_rows(body: Elastic, sy, buf, state, b, hub):  # type: ignore[no-untyped-def]
+@inner
+def _mode_rows(body: Boundary, w: Work, sy, buf, state, b, hub):  # type: ignore[no-untyped-def]
     """Adds all but inertia to the modes' residual; returns the largest force, and residual, as nodal ones."""
     lo, hi = sy.first[b], sy.first[b + 1]
     if lo == hi:
@@ -153,9 +157,9 @@ def _mode_rows(body: Elastic, sy, buf, state, b, hub):  # type: ignore[no-untype
     _less(residual, modes, len(modes) - 3, c * mux + s * muy, -s * mux + c * muy)
     for j in range(hi - lo):
         residual[j] -= modes[-1, j] * hub.moment
-    for n in range(body.loaded[-1]):
-        node = body.loaded[n]
-        _less(residual, modes, 2 * node, body.node_load[node, 0], body.node_load[node, 1])
+    for n in range(w.loaded[-1]):
+        node = w.loaded[n]
+        _less(residual, modes, 2 * node, w.node_load[node, 0], w.node_load[node, 1])
     reference = worst = 0.0
     for j in range(hi - lo):
         elastic = sy.square[lo + j] * state.q[lo + j]
@@ -166,7 +170,7 @@ def _mode_rows(body: Elastic, sy, buf, state, b, hub):  # type: ignore[no-untype
     return reference * root, worst * root
 
 
-@kernel
+@inner
 def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None:
     """Takes the modal forces of a force on one node, rows ``row`` and ``row`` + 1, from the residual."""
     row_x, row_y = modes[row], modes[row + 1]
@@ -174,8 +178,8 @@ def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None
         residual[j] -= row_x[j] * fx + row_y[j] * fy
 
 
-@kernel
-def _constraint_rows(body: Elastic, sy, buf, state, scheme, b, hub, t):  # type: ignore[no-untyped-def]
+@inner
+def _constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):  # type: ignore[no-untyped-def]
     """Rows of one body's pin and drive, its compliance at the hub among them; returns the largest violation."""
     m, rhs, k = buf.matrix, buf.rhs, 3 * b
     lo, hi = sy.first[b], sy.first[b + 1]
@@ -197,7 +201,7 @@ def _constraint_rows(body: Elastic, sy, buf, state, scheme, b, hub, t):  # type:
         worst = max(worst, abs(g) / (sy.size[b] if kind < 2 else 1.0))
         for i in range(k, k + 3):
             m[i, row] = -m[row, i]
-        rhs[row] = -g
+        rhs[row] = -g - buf.push[3 * len(sy.mass) + k + kind]
         e = direction(kind, c, s)
         for other in range(3):
             column = buf.column[k + other]
@@ -212,16 +216,16 @@ def _constraint_rows(body: Elastic, sy, buf, state, scheme, b, hub, t):  # type:
             for j in range(hi - lo):
                 pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
                 pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]
-                value += pe * pd * body.mobility[j]
+                value += pe * pd * w.mobility[j]
             m[row, column] += value / scheme.scale
         # modes move the hub by their own residual in this iteration
         for j in range(hi - lo):
             pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-            rhs[row] += pe * buf.modal_residual[lo + j] * body.mobility[j]
+            rhs[row] += pe * buf.modal_residual[lo + j] * w.mobility[j]
     return worst
 
 
-@kernel
+@inner
 def _held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
     """The contacts' tangent of bodies that are held by their hubs."""
     m, n3 = buf.matrix, 3 * len(sy.mass)
@@ -237,7 +241,7 @@ def _held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
                 m[row, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scheme.scale
 
 
-@kernel
+@inner
 def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
     state.q[i] += d
     state.dq[i] += scheme.vel * d
@@ -245,8 +249,8 @@ def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
     state.auxq[i] += scheme.correction * scheme.acc * d
 
 
-@kernel
-def _correct(body: Elastic, sy, buf, state, scheme, b):  # type: ignore[no-untyped-def]
+@inner
+def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
     """Newton's correction of one body, from the solution in ``buf.rhs``; returns the largest change over its size."""
     rhs, k, change = buf.rhs, 3 * b, 0.0
     lo, hi = sy.first[b], sy.first[b + 1]
@@ -268,95 +272,119 @@ def _correct(body: Elastic, sy, buf, state, scheme, b):  # type: ignore[no-untyp
     x, y = c * d0 + s * d1, -s * d0 + c * d1
     for j in range(hi - lo):
         f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
-        _move_mode(state, scheme, lo + j, (f - buf.modal_residual[lo + j]) * body.mobility[j])
+        for i in range(s_load.made[0]):
+            if s_load.side[i] == b:
+                f += buf.modal[i, j] * buf.answer[i]
+        _move_mode(state, scheme, lo + j, (f - buf.modal_residual[lo + j]) * w.mobility[j])
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
-    body.hub_load[0], body.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
+    w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
     rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
-    body.hub_load[2] = mu[2] + sy.torque[b] - sy.damper[b] * rate
+    w.hub_load[2] = mu[2] + sy.torque[b] - sy.damper[b] * rate
     return change
 
 
-@kernel
-def _follow(elastic, sy, buf, state, scheme):  # type: ignore[no-untyped-def]
-    """What the contact forces change by in this correction goes to the middle of each region (``condense``)."""
-    for i in range(min(buf.counts[2], len(buf.springs))):
-        spring = buf.springs[i]
-        df = 0.0
-        for n in range(12):
-            k = 3 * int(spring[n % 2]) + (n // 2) % 3
-            if n < 6:
-                df -= spring[12 + n] * buf.rhs[k]
-            elif buf.column[k] >= 0:
-                df -= spring[12 + n] * buf.rhs[buf.column[k]] / scheme.scale
-        df = max(spring[10] * df, -spring[11])
-        for side in range(2):
-            b, low, high = int(spring[side]), int(spring[2 + side]), int(spring[4 + side])
-            share, push = spring[6 + side], df if side == 1 else -df
-            c, s = buf.pose[b, 2], buf.pose[b, 3]
-            ex, ey = c * spring[8] + s * spring[9], -s * spring[8] + c * spring[9]
-            body = elastic[b]
-            for end in range(2):
-                f = (1.0 - share if end == 0 else share) * push
-                add_load(
-                    body.node_load, body.node_flag, body.loaded, low if end == 0 else high, f * ex, f * ey
-                )
-            for k in range(sy.first[b], sy.first[b + 1]):
-                j = k - sy.first[b]
-                _move_mode(
-                    state, scheme, k, body.mobility[j] * by_mode(body, low, high, share, ex, ey, j) * push
-                )
+@inner
+def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
+    """Where bodies pushed back by the loads before do not touch: the same with less of these loads, none at last.
+
+    A contact far stiffer than the bodies is far thinner than they yield; a predicted position that misses it would let
+    all of that yielding go at once, and Newton's method come back from an overlap thousands of times too deep. From a
+    little too much overlap it converges.
+    """
+    code = 0
+    part = 1.0
+    for wanted in HELD:
+        left = False
+        for b in range(len(sy.mass)):
+            w = work_at(bodies, b)
+            for k in range(w.loaded[-1]):
+                w.node_load[w.loaded[k], 0] *= wanted / part
+                w.node_load[w.loaded[k], 1] *= wanted / part
+                left = True
+        part = wanted
+        if not left:
+            return code
+        code = evaluate(bodies, sy, buf, q, pairs, st, s, found)
+        if code != 0:
+            return code
+    for b in range(len(sy.mass)):
+        clear_nodes(work_at(bodies, b))
+    return code
 
 
-@kernel(inline="always")
-def step(bodies, works, elastic, sy, couplings, state, pairs, st, s, buf, t, h):  # type: ignore[no-untyped-def]
+@inner
+def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-untyped-def]
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
     scheme = _scheme(st.rho, h)
+    count = len(sy.mass)
     _predict(state, scheme)
-    for b in range(len(bodies)):
+    for b in range(count):
+        w = work_at(bodies, b)
         for i in range(sy.first[b], sy.first[b + 1]):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
-            elastic[b].mobility[i - sy.first[b]] = 1.0 / stiffness
+            w.mobility[i - sy.first[b]] = 1.0 / stiffness
     end = _number(sy, buf)
     change = 1.0
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
-        code = evaluate(bodies, works, sy, buf, state.q, pairs, st, s)
+        for b in range(count):
+            work_at(bodies, b).spin[0] = state.v[b, 2] ** 2
+        code = evaluate(bodies, sy, buf, state.q, pairs, st, s, found)
+        if code == 0 and st.spread and not st.sts:
+            code = _touch_again(bodies, sy, buf, state.q, pairs, st, s, found)
         if code < 0:
             return code
         buf.matrix[:] = 0.0
         buf.rhs[:] = 0.0
-        reference = np.hypot(buf.force[0], buf.force[1])
-        worst, open_most = buf.apart[0], 0.0
-        for b in range(len(bodies)):
-            body = elastic[b]
+        reference = worst = open_most = 0.0
+        for p in range(len(pairs)):
+            reference = max(reference, np.hypot(buf.force[p, 0], buf.force[p, 1]))
+        for b in range(count):
+            body, w = boundary_at(bodies, b), work_at(bodies, b)
             lo, hi = sy.first[b], sy.first[b + 1]
-            hub = hub_of(body, sy, buf, state, b)
+            hub = hub_of(body, w, sy, buf, state, b)
             moment = inertia_forces(
-                sy.inertia[b], sy.stretch[lo:hi], couplings[b], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi],
-                state.v[b, 2], state.acc[b, 2], buf.modal_residual[lo:hi],
+                sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), geometric_at(bodies, b), w.hub_load[0],
+                w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
+                buf.modal_residual[lo:hi],
             )  # fmt: skip
+            buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3] = (
+                hub.x,
+                hub.y,
+                hub.turn,
+                hub.moment,
+            )
+            buf.hubs[b, 4] = moment
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
-            force, left = _mode_rows(body, sy, buf, state, b, hub)
+            force, left = _mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
+        off = eliminate_loads(bodies, sy, buf, state, s.load)
+        worst = max(worst, off)
+        for b in range(count):
             if sy.fixed[b] == 1:
                 for i in range(3 * b, 3 * b + 3):
                     buf.matrix[i, i] = 1.0
                 continue
-            force, left = _frame_rows(sy, buf, state, scheme, b, hub, moment)
+            body, w = boundary_at(bodies, b), work_at(bodies, b)
+            hub = Hub(buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3])
+            force, left = _frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
             reference, worst = max(reference, force), max(worst, left)
-            open_most = max(open_most, _constraint_rows(body, sy, buf, state, scheme, b, hub, t + h))
+            open_most = max(open_most, _constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h))
         if st.spread:
             _held_contacts(sy, buf, scheme)
-        rounded = change < ROUNDING and buf.apart[0] <= SETTLED * reference
+        rounded = change < ROUNDING and off <= SETTLED * reference
         done = (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE
-        # static flexibility answers to the loads of the evaluation before: look twice while there are any
-        if done and (iteration > 1 or not st.spread or buf.counts[2] == 0):
+        # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
+        if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
             return iteration
         solve(buf.matrix, buf.rhs, end)
-        change = 0.0
-        for b in range(len(bodies)):
-            change = max(change, _correct(elastic[b], sy, buf, state, scheme, b))
         if st.spread and not st.sts:
-            _follow(elastic, sy, buf, state, scheme)
+            renew_loads(bodies, sy, buf, s.load, scheme.scale)
+        change = 0.0
+        for b in range(count):
+            change = max(
+                change,
+                _correct(boundary_at(bodies, b), work_at(bodies, b), sy, buf, s.load, state, scheme, b),
+            )
         buf.rhs[-2], buf.rhs[-1] = worst, reference
     return NO_CONVERGENCE

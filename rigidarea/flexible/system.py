@@ -7,12 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work
-
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-REGIONS_KEPT = 4  # contact regions of a pair that a record holds
+REGIONS = 4096  # contact regions of a system, all pairs, at one instant
 
 
 class System(NamedTuple):
@@ -35,23 +33,6 @@ class System(NamedTuple):
     stretch: Array  # (m,)
     size: Array  # (b,) largest radius of each boundary
     amplitude: Array  # (m,) largest displacement of the boundary in each mode
-
-
-class Elastic(NamedTuple):
-    """How one body yields, and under what: views of its ``Boundary`` and ``Work``, all that a step needs of them."""
-
-    modes: Array
-    flexibility: Array
-    node_load: Array
-    node_flag: NDArray[np.bool_]
-    loaded: Ints
-    hub_load: Array
-    mobility: Array
-
-
-def elastic(b: Boundary, w: Work) -> Elastic:
-    """The part of a body that deforms."""
-    return Elastic(b.modes, b.flexibility, w.node_load, w.node_flag, w.loaded, w.hub_load, w.mobility)
 
 
 class Settings(NamedTuple):
@@ -80,20 +61,46 @@ class State(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """Scratch of the stepper."""
+    """Scratch of the stepper: b bodies, p pairs, m modes, room for c loads."""
 
     pose: Array  # (b, 4)
-    searched: Array  # (b, 4) poses of the last search
     matrix: Array
     rhs: Array
     load: Array  # (b, 3) generalised contact forces
     tangent: Array  # (6 b, 6 b) of the contacts: frames, then hub loads (x, y, moment)
-    row: Array  # (6 b,)
-    force: Array  # (2,)
-    regions: Array  # (REGIONS_KEPT, 5)
+    push: (
+        Array  # (6 b,) what the loads' own Newton step adds to forces on frames, and to displacements of hubs
+    )
+    row: Array  # (3 b,)
+    force: Array  # (p, 2) on the second body of each pair
+    regions: Array  # (REGIONS, 6): pair, force, direction, point
     modal_residual: Array
+    hubs: Array  # (b, 5) see ``hub.Hub``; moment of the frame's inertia
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
-    counts: Ints  # [0] candidate pairs, [1] evaluation stamp, [2] regions
-    springs: Array  # (REGIONS_KEPT b, 24) of the regions: bodies, middles, direction, stiffness, force, row
-    bend: Array  # (2,) largest displacement of the boundaries under a contact, and of any in the last search
-    apart: Array  # (1,) largest difference of a region's k A from the force that it hands on (``condense``)
+    counts: Ints  # [0] regions, [1] evaluation stamp, [2] columns of ``right`` but the first
+    bend: Array  # (b,) largest displacement of the boundary under a contact, by static flexibility
+    most: Array  # (b,) the largest of it so far
+    # the loads' system, see ``condense``
+    touched: Ints  # (b,)
+    active: Ints  # (6 b,) frames' and hubs' unknowns that move a load: rows of ``tangent``
+    modal: Array  # (c, most modes of a body) of the modes along each load
+    stale: Array  # (c,) a of ``condense``, without what follows
+    shift: Array  # (c,) what the modes' residual moves
+    compliance: Array  # (c, c)
+    moves: Array  # (c, 6 b)
+    system: Array  # (c, c)
+    right: Array  # (c, 6 b + 1)
+    answer: Array  # (c,) change of each load
+
+
+def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
+    """Scratch for so many bodies and pairs, modes of each body, and ``room`` loads."""
+    n, m = bodies, sum(modes)
+    return Buffers(
+        np.zeros((n, 4)), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
+        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 6)), np.zeros(m), np.zeros((n, 5)),
+        np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
+        np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
+        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
+        np.zeros(room),
+    )  # fmt: skip

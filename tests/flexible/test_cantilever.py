@@ -96,17 +96,19 @@ def test_static_and_frequencies_against_timoshenko():
     beam = np.array([1.8751041, 4.6940911, 7.8547574]) ** 2 * np.sqrt(1e-6 / 12)
     assert timoshenko_cantilever(1.0, 1e-3, 1.0, 0.3, 1.0) == pytest.approx(beam, rel=2e-5)
     for study in cantilever_mesh((3, 6, 12)):
-        assert 1.8 < study.order < 2.2, study
-        assert study.error[-1] < 0.015
+        assert 1.6 < study.order < 2.6, (
+            study
+        )  # the clamped corners' share falls more slowly, with the other sign
+        assert study.error[-1] < 0.005
 
 
 def test_free_vibration_has_the_modes_frequency(mesh):
     """A clamped body's modes move: ten periods of the first, in phase and with its energy at ρ∞ = 1."""
     body = beam_body(mesh, MAT, 3)
     omega = body.frequency[0]
-    # 4 elements over the height: T3 is 6.5 % too stiff in bending (``cantilever_mesh``)
+    # 4 elements over the height (``cantilever_mesh``)
     exact = timoshenko_cantilever(LENGTH, HEIGHT, MAT.young, MAT.poisson, MAT.density)[0]
-    assert 1.0 < omega / exact < 1.08
+    assert 0.99 < omega / exact < 1.02
     sim = Simulation([body, ball(mesh)], [], rho=1.0)
     sim.state.q[0], sim.state.ddq[0], sim.state.auxq[0] = 1e-3, -(omega**2) * 1e-3, -(omega**2) * 1e-3
     n = 400

@@ -39,7 +39,10 @@ def test_against_brute_force():
     acceleration = np.concatenate([[0.3, -0.2, alpha], ddq])
     exact = jacobian.T @ (m2 * (jacobian @ acceleration + rest))
     out = np.zeros(5)
-    moment = inertia_forces(body.inertia, body.stretch, body.coupling, q, dq, ddq, omega, alpha, out)
+    none = np.zeros((0, 5, 5))
+    moment = inertia_forces(
+        body.inertia, body.stretch, body.coupling, none, 0.0, 0.0, q, dq, ddq, omega, alpha, out
+    )
     assert exact[:2] == pytest.approx(body.mass * acceleration[:2], rel=1e-10)
     assert moment == pytest.approx(exact[2], rel=1e-10)
     assert out == pytest.approx(exact[3:], rel=1e-9)

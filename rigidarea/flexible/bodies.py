@@ -1,0 +1,128 @@
+"""All bodies of a system for the kernels: a table of addresses, so that machine code knows no number of bodies.
+
+A tuple of bodies is a type of its own for every length, and compiled anew. Here a body is a row: its sizes, then where
+its arrays are. ``boundary_at`` and ``work_at`` make the named tuples again, which costs a few dozen instructions.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numba import config
+from numpy.typing import NDArray
+
+from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.jit import inner
+from rigidarea.kernel.memory import array_at as compiled_array_at
+
+Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
+
+SIZES = (
+    7  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses
+)
+WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
+COUPLING = WORK + len(Work._fields)
+GEOMETRIC = COUPLING + 1
+
+
+def _array_at(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
+    """``kernel.memory.array_at`` without machine code."""
+    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
+    if size == 0:
+        return np.zeros(shape, dtype)
+    return np.frombuffer((ctypes.c_char * size).from_address(int(address)), dtype).reshape(shape)
+
+
+array_at: Any = _array_at if config.DISABLE_JIT else compiled_array_at
+
+
+def table(
+    boundaries: Sequence[Boundary],
+    works: Sequence[Work],
+    couplings: Sequence[Array],
+    geometric: Sequence[Array],
+) -> Ints:
+    """A row a body. The arrays must be C-contiguous and outlive the table: nobody counts references to them.
+
+    Raises ValueError for an array that is not contiguous.
+    """
+    out = np.zeros((len(boundaries), GEOMETRIC + 1), np.int64)
+    for row, b, w, g, s in zip(out, boundaries, works, couplings, geometric, strict=True):
+        arrays = (*b, *w, g, s)
+        for name, array in zip((*b._fields, *w._fields, "coupling", "geometric"), arrays, strict=True):
+            if not array.flags.c_contiguous:
+                raise ValueError(f"{name} must be contiguous, got strides {array.strides}")
+        row[:SIZES] = (
+            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s)
+        )  # fmt: skip
+        row[SIZES:] = [array.ctypes.data for array in arrays]
+    return out
+
+
+@inner
+def boundary_at(bodies: Ints, i: int) -> Boundary:
+    """Body i's boundary."""
+    row = bodies[i]
+    n, f, t, m, c, s = row[0], row[1], row[2], row[3], row[4], row[5]
+    return Boundary(
+        array_at(row[SIZES], (n, 2), np.float64),
+        array_at(row[SIZES + 1], (n,), np.int64),
+        array_at(row[SIZES + 2], (n,), np.int64),
+        array_at(row[SIZES + 3], (n,), np.int64),
+        array_at(row[SIZES + 4], (n,), np.int64),
+        array_at(row[SIZES + 5], (n,), np.int64),
+        array_at(row[SIZES + 6], (n,), np.float64),
+        array_at(row[SIZES + 7], (t, 2), np.float64),
+        array_at(row[SIZES + 8], (t,), np.float64),
+        array_at(row[SIZES + 9], (t,), np.int64),
+        array_at(row[SIZES + 10], (t,), np.int64),
+        array_at(row[SIZES + 11], (t, 6), np.float64),
+        array_at(row[SIZES + 12], (2 * f + 3, m), np.float64),
+        array_at(row[SIZES + 13], (m, 2 * f + 3), np.float64),
+        array_at(row[SIZES + 14], (c, c), np.float64),
+        array_at(row[SIZES + 15], (f, 2), np.float64),
+        array_at(row[SIZES + 16], (s,), np.float64),
+    )
+
+
+@inner
+def work_at(bodies: Ints, i: int) -> Work:
+    """Body i's work arrays."""
+    row = bodies[i]
+    n, f, m = row[0], row[1], row[3]
+    return Work(
+        array_at(row[WORK], (n, 2), np.float64),
+        array_at(row[WORK + 1], (n,), np.int64),
+        array_at(row[WORK + 2], (f, 2), np.float64),
+        array_at(row[WORK + 3], (f,), np.int64),
+        array_at(row[WORK + 4], (n, 2), np.float64),
+        array_at(row[WORK + 5], (n,), np.float64),
+        array_at(row[WORK + 6], (n,), np.bool_),
+        array_at(row[WORK + 7], (n + 1,), np.int64),
+        array_at(row[WORK + 8], (f, 2), np.float64),
+        array_at(row[WORK + 9], (f,), np.bool_),
+        array_at(row[WORK + 10], (3,), np.float64),
+        array_at(row[WORK + 11], (f + 1,), np.int64),
+        array_at(row[WORK + 12], (m,), np.float64),
+        array_at(row[WORK + 13], (1,), np.float64),
+        array_at(row[WORK + 14], (f,), np.int64),
+        array_at(row[WORK + 15], (f,), np.int64),
+    )
+
+
+@inner(inline="always")  # numba returns no array that was not passed in
+def coupling_at(bodies: Ints, i: int) -> Array:
+    """Body i's ``modes.Reduced.coupling`` (m, m)."""
+    m = bodies[i, 3]
+    return array_at(bodies[i, COUPLING], (m, m), np.float64)
+
+
+@inner(inline="always")
+def geometric_at(bodies: Ints, i: int) -> Array:
+    """Body i's ``modes.Reduced.geometric`` (3, m, m), or (0, m, m)."""
+    m = bodies[i, 3]
+    return array_at(bodies[i, GEOMETRIC], (bodies[i, 6], m, m), np.float64)

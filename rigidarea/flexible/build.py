@@ -1,0 +1,174 @@
+"""A mechanism of one's own, put together by name: bodies, pivots, drives, loads, contacts, then a run.
+
+A pinion in a ring gear, lengths in metres:
+
+    from rigidarea.flexible import Material, Mechanism
+    from rigidarea.shapes import involute_gear
+    from rigidarea.shapes.internal import internal_gear
+
+    steel = Material(young=207e9, poisson=0.29, density=7800.0, thickness=0.02)
+    m = Mechanism(k=2e10)  # N/m²: contact force per overlap area
+    pinion = m.body(involute_gear(2e-3, 20, bore=6e-3), steel, mesh=1e-3, hub=1)
+    ring = m.body(internal_gear(2e-3, 60), steel, mesh=1e-3, at=(-0.04, 0.0), hub=0, contact=(1,))
+    m.pivot(pinion, (0.0, 0.0))
+    m.drive(pinion, 20.0, ramp=0.01)  # rad/s
+    m.pivot(ring, (-0.04, 0.0))
+    m.load(ring, damper=0.5)  # N m s
+    m.contact(pinion, ring)
+    record = m.run(0.05, 2e-5, shapes=True)
+    print(record.hub_rate[-1, 1] / record.hub_rate[-1, 0])  # 20/60
+    stress = m.state(record, -1, pinion).stress  # (triangles, 3)
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.flexible.body import elastic_body
+from rigidarea.flexible.boundary import build
+from rigidarea.flexible.element import Material
+from rigidarea.flexible.integrate import Body, Record, Simulation
+from rigidarea.flexible.recover import State, recover
+from rigidarea.outline import Outline
+
+Array = NDArray[np.float64]
+
+MARGIN = 0.01  # of the smallest body's radius: how far bodies move before contact is searched anew
+
+
+class Mechanism:
+    """Bodies and what holds, drives and loads them; SI or any consistent units.
+
+    k: contact stiffness, force per overlap area. gravity (2,). rho: spectral radius at infinity of the scheme, below 1
+    with pivots or drives. contact: "area" or "sts" (then ``reach``, the deepest penetration looked at). cache: a
+    directory for meshes and reductions.
+    """
+
+    def __init__(
+        self,
+        k: float,
+        *,
+        gravity: tuple[float, float] = (0.0, 0.0),
+        rho: float = 0.8,
+        contact: str = "area",
+        reach: float = 0.0,
+        cache: Path | str | None = None,
+    ) -> None:
+        self._settings = {"k": k, "gravity": gravity, "rho": rho, "contact": contact, "reach": reach}
+        self._cache = cache
+        self._bodies: list[Body] = []
+        self._pairs: list[tuple[int, int]] = []
+        self.simulation: Simulation | None = None
+        """The simulation of the last ``run``; None before."""
+
+    def body(
+        self,
+        outline: Outline,
+        material: Material,
+        *,
+        mesh: float | None = None,
+        level: str = "compliant",
+        at: tuple[float, float] = (0.0, 0.0),
+        angle: float = 0.0,
+        velocity: tuple[float, float, float] = (0.0, 0.0, 0.0),
+        hub: int | None = None,
+        contact: Sequence[int] = (0,),
+        clamp: int | Callable[[Array], NDArray[np.bool_]] | None = None,
+        modes: int = 40,
+        refine: int = 4,
+        damping: float = 0.0,
+    ) -> int:
+        """Adds a body; returns its number.
+
+        at, angle: of the outline's coordinates. mesh: spacing of the boundary nodes (length); level: "rigid" (then no
+        mesh), "compliant" or "modal" with ``modes``. hub: the ring (0 outer, 1 … the holes) whose mean is pivoted,
+        driven and loaded; for a rigid body that is the pivot itself. contact: the rings that touch others; refine:
+        contact points a mesh edge. clamp: a ring that is held, or a function that says which of the boundary nodes
+        (n, 2) are. damping: ratio of all modes. Raises ValueError for settings out of range.
+        """
+        if level == "rigid":
+            if clamp is not None or hub is not None:
+                raise ValueError(
+                    "a rigid body has no mesh: expected neither clamp nor hub; see ground and pivot"
+                )
+            made = self._rigid(outline, material, at, angle, contact)
+        else:
+            if mesh is None:
+                raise ValueError(
+                    f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
+                )
+            made, _ = elastic_body(
+                outline.rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp, modes=modes,
+                refine=refine, cache=self._cache, position=at, angle=angle, damping=damping,
+            )  # fmt: skip
+        made.velocity = velocity
+        self._bodies.append(made)
+        return len(self._bodies) - 1
+
+    def ground(self, outline: Outline, at: tuple[float, float] = (0.0, 0.0), angle: float = 0.0) -> int:
+        """Adds a rigid body that never moves; returns its number."""
+        made = self._rigid(outline, Material(1.0, 0.0, 1.0), at, angle, range(len(outline.rings)))
+        self._bodies.append(replace(made, fixed=True))
+        return len(self._bodies) - 1
+
+    @staticmethod
+    def _rigid(
+        outline: Outline, material: Material, at: tuple[float, float], angle: float, contact: Sequence[int]
+    ) -> Body:
+        centre = np.array(outline.centroid)
+        c, s = np.cos(angle), np.sin(angle)
+        x, y = np.array(at) + np.array([[c, -s], [s, c]]) @ centre
+        mass = material.density * material.thickness * outline.area
+        boundary = build([outline.rings[i] - centre for i in contact])
+        return Body(
+            boundary, mass, outline.moment(mass, (-centre[0], -centre[1])), (float(x), float(y)), angle
+        )
+
+    def _own(self, body: int) -> Body:
+        if not 0 <= body < len(self._bodies):
+            raise ValueError(f"expected a body from 0 to {len(self._bodies) - 1}, got {body}")
+        return self._bodies[body]
+
+    def pivot(self, body: int, at: tuple[float, float]) -> None:
+        """Pins the body's hub to a world point by a revolute joint; a body without a hub ring at the point under it."""
+        b = self._own(body)
+        c, s = np.cos(b.angle), np.sin(b.angle)
+        dx, dy = at[0] - b.position[0], at[1] - b.position[1]
+        if b.shape is None or b.shape.hub is None:
+            b.hub = (float(c * dx + s * dy), float(-s * dx + c * dy))
+        b.anchor = at
+
+    def drive(self, body: int, speed: float, ramp: float = 0.0) -> None:
+        """Prescribes the hub's angular velocity: from 0, linearly over ``ramp``, to ``speed``."""
+        b = self._own(body)
+        b.drive = (b.angle, speed, ramp)
+        if ramp == 0.0:
+            b.velocity = (b.velocity[0], b.velocity[1], speed)
+
+    def load(self, body: int, torque: float = 0.0, damper: float = 0.0) -> None:
+        """A constant torque on the hub, and a damper (moment over angular velocity) between hub and ground."""
+        b = self._own(body)
+        b.torque, b.damper = torque, damper
+
+    def contact(self, a: int, b: int) -> None:
+        """Lets two bodies touch; forces are recorded on ``b``."""
+        self._own(a), self._own(b)
+        self._pairs.append((a, b))
+
+    def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
+        """Runs the mechanism from its start; see ``Simulation.run``. Raises ValueError where parts do not fit."""
+        size = [float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in self._bodies if not b.fixed]
+        margin = MARGIN * min(size, default=1.0)
+        self.simulation = Simulation(self._bodies, self._pairs, margin=margin, **self._settings)  # type: ignore[arg-type]
+        return self.simulation.run(duration, h, every, shapes)
+
+    def state(self, record: Record, row: int, body: int) -> State:
+        """Displacements and stresses of a body at a recorded instant of the last run (``recover.recover``)."""
+        if self.simulation is None:
+            raise ValueError("expected a run before its states, got none")
+        return recover(self.simulation, record, row, body)

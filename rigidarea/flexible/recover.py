@@ -1,0 +1,128 @@
+"""The whole deformed body again, from what a run keeps of it: displacement and stress at any recorded time.
+
+The reduced state is modes q, loads f on boundary nodes, the hub's load and the spin. All nodes then move by
+
+    u = Φ q + C f + ω² s,
+
+with all rows of Φ and C where the stepper has those of the interface: one sparse factorisation of the body's own
+stiffness, made when first asked for, gives C f as the static response less what the modes have of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.flexible.element import Material, lumped_mass, stress, von_mises
+from rigidarea.flexible.mesh import Mesh
+from rigidarea.flexible.modes import Flexibility, Reduced, elastic, hub_rows
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """What a body's reduction was made of; ``displacement`` and ``stress`` undo it.
+
+    contact_rings, hub, clamped: ring numbers as in ``modes.reduce``; reduced: its result.
+    """
+
+    mesh: Mesh
+    material: Material
+    contact_rings: tuple[int, ...]
+    hub: int | None
+    clamped: int | None
+    reduced: Reduced
+
+    @cached_property
+    def _response(self) -> Flexibility:
+        return elastic(self.mesh, self.material, self.clamped)
+
+    @cached_property
+    def _modes(self) -> Array:
+        """All rows of the modes (2 n, m), from their frequencies: with the signs that the reduction has."""
+        m = len(self.reduced.frequency)
+        return self._response.modes(m)[0] if m else np.zeros((2 * len(self.mesh.points), 0))
+
+    @cached_property
+    def _nodes(self) -> NDArray[np.int64]:
+        return np.concatenate([self.mesh.rings[i] for i in self.contact_rings])
+
+    def displacement(
+        self,
+        modal: Array,
+        loads: Array,
+        hub: Array | tuple[float, float, float] = (0.0, 0.0, 0.0),
+        spin: float = 0.0,
+    ) -> Array:
+        """Displacements (n, 2) of all nodes in the body frame.
+
+        modal (m,); loads (l, 3): FE boundary node, and force on it in the body frame; hub: force and moment on the
+        hub, body frame; spin: angular velocity of the frame. Raises ValueError for shapes that do not fit.
+        """
+        m, points = len(self.reduced.frequency), self.mesh.points
+        modal, loads = np.asarray(modal, float), np.asarray(loads, float).reshape(-1, 3)
+        if modal.shape != (m,):
+            raise ValueError(f"modal must have shape ({m},), got {modal.shape}")
+        if len(loads) and not (0 <= loads[:, 0].min() and loads[:, 0].max() < len(self._nodes)):
+            raise ValueError(f"loads must name nodes 0 … {len(self._nodes) - 1}, got {loads[:, 0].max():g}")
+        f = np.zeros((len(points), 2))
+        np.add.at(f, self._nodes[loads[:, 0].astype(int)], loads[:, 1:])
+        full = f.reshape(-1)
+        if self.hub is not None:
+            full = full + hub_rows(points, self.mesh.rings[self.hub]) @ np.asarray(hub, float)
+        if spin and self.clamped is None:
+            mass = np.repeat(lumped_mass(self.mesh, self.material), 2)
+            full = full + spin**2 * mass * (points - self.reduced.centre).reshape(-1)
+        u = self._response(full[:, None])[:, 0]
+        phi = self._modes
+        u = u - phi @ (phi.T @ full / self.reduced.frequency**2) + phi @ modal
+        return u.reshape(-1, 2)
+
+    def stress(self, u: Array) -> Array:
+        """Stress (m, 3) = (σ_xx, σ_yy, τ_xy) of each triangle, body frame, under displacements ``u`` (n, 2)."""
+        return stress(self.mesh, self.material, u)
+
+    def von_mises(self, u: Array) -> Array:
+        """Von Mises stress (m,) of each triangle."""
+        return von_mises(self.material, self.stress(u))
+
+
+@dataclass(frozen=True)
+class State:
+    """One body at one recorded time: nodes' displacement (n, 2) and triangles' stress (m, 3) in the body frame, and the
+    frame (x, y, angle)."""
+
+    shape: Shape
+    frame: Array
+    displacement: Array
+    stress: Array
+
+    def placed(self, magnification: float = 1.0) -> Array:
+        """World positions (n, 2) of the nodes, displacements magnified."""
+        local = self.shape.mesh.points - self.shape.reduced.centre + magnification * self.displacement
+        c, s = np.cos(self.frame[2]), np.sin(self.frame[2])
+        return local @ np.array([[c, s], [-s, c]]) + self.frame[:2]
+
+
+def recover(sim: Any, record: Any, row: int, body: int) -> State:
+    """Body ``body`` of a ``Simulation`` at row ``row`` of a record that kept shapes (``run(..., shapes=True)``).
+
+    Raises ValueError for a record without shapes, and a body that has no mesh (rigid, or made by hand).
+    """
+    if record.shapes is None:
+        raise ValueError("expected a record with shapes, got one without: run(..., shapes=True) keeps them")
+    shape = sim.bodies[body].shape
+    if shape is None:
+        raise ValueError(f"body {body} has no mesh to recover: expected one made by elastic_body, not rigid")
+    kept, first = record.shapes, sim.system.first
+    loads = kept.loads[row]
+    mine = loads[loads[:, 0] == body, 1:]
+    modal = kept.modal[row, first[body] : first[body + 1]]
+    spin = float(record.v[row, body, 2])
+    u = shape.displacement(modal, mine, kept.hub[row, body], spin)
+    return State(shape, record.x[row, body], u, shape.stress(u))

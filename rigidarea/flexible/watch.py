@@ -1,0 +1,49 @@
+"""Where linear finite elements in a floating frame end, and what a run says when it went there."""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64]
+
+DEFLECTION = (
+    0.05  # over the body's size: rotations within it of about as many radians; strains err by their squares
+)
+SPIN = 0.1  # over the first elastic frequency: stiffness then changes by about the square, 1 %
+
+
+class LinearityWarning(UserWarning):
+    """A flexible body has left what linear elasticity in its frame describes."""
+
+
+def watch(bodies: Sequence[Any], size: Array, deflection: Array, spin: Array) -> None:
+    """Warns (LinearityWarning) of each body whose deflection or spin was too much for a linear model.
+
+    bodies: ``integrate.Body``; size (b,): their largest radii; deflection (b,): the largest of their boundaries, by
+    contact loads and modes; spin (b,): the largest angular velocity of their frames. Stress stiffening is in the modal
+    level (``frame``); the compliant level has the growth by spin, but stays as stiff as at rest.
+    """
+    for i, b in enumerate(bodies):
+        if b.young == 0.0:
+            continue
+        part = float(deflection[i] / size[i])
+        if part > DEFLECTION:
+            warnings.warn(
+                f"body {i} deflected by {part:.3g} of its size: strains are linear in the displacements, expected at"
+                f" most {DEFLECTION:g}",
+                LinearityWarning,
+                stacklevel=3,
+            )
+        stiffened = b.geometric is not None and len(b.geometric) > 0
+        if b.slowest > 0.0 and not stiffened and spin[i] > SPIN * b.slowest:
+            warnings.warn(
+                f"body {i} spun at {spin[i]:.4g} rad/time, {spin[i] / b.slowest:.3g} of its first elastic frequency:"
+                f" what tension does to its stiffness is left out, expected at most {SPIN:g}; level='modal' has it",
+                LinearityWarning,
+                stacklevel=3,
+            )
