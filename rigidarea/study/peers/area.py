@@ -11,9 +11,15 @@ import shapely
 
 import rigidarea
 
-from ..scene import Body, Circle, Polygon, Scene, Segment
+from ..scene import Array, Body, Circle, Polygon, Scene, Segment
 from .base import Run, Settings, has_curves, rigid_only
 from .chipmunk import SpaceRun, add_joints, make_body, surface
+
+try:
+    from ...kernel.constants import SUBSTEPS  # type: ignore[import-not-found]
+except ImportError:
+    SUBSTEPS = 1
+"""Substeps of a frame at the defaults; where `contact.step` says how many it took, that counts."""
 
 STEPPING = ("steps", "tolerance", "phase")
 """Settings that say how the space is stepped."""
@@ -72,19 +78,26 @@ class FrameRun(SpaceRun):
     def __init__(
         self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, settings: Settings
     ) -> None:
-        super().__init__(scene, space, bodies, settings.get("steps", 1))
-        self.contact, self.frame = contact, scene.frame
+        super().__init__(scene, space, bodies, settings.get("steps", SUBSTEPS))
+        self.contact, self.frame, self.failed = contact, scene.frame, False
         self.wanted = {name: settings[name] for name in ("steps", "tolerance") if name in settings}
 
     def advance(self, frames: int) -> None:
-        """Frames of the scene's length; a contact that fails leaves states that are not finite."""
+        """Frames of the scene's length; once a contact has failed, none any more."""
+        if self.failed:
+            return
         try:
             taken = self.contact.step(self.frame, frames, **self.wanted)
         except rigidarea.SimulationError:
-            for body in self.bodies:
-                body.position = (math.nan, math.nan)
+            self.failed = True
             return
-        self.steps = math.ceil(taken / frames)
+        if taken is not None:
+            self.steps = math.ceil(taken / frames)
+
+    def state(self) -> Array:
+        """States (n_body, 6); no numbers once a contact has failed."""
+        states = super().state()
+        return np.full_like(states, np.nan) if self.failed else states
 
     def contacts(self) -> int:
         """Pairs of shapes that touch."""
