@@ -15,12 +15,6 @@ from ..scene import Array, Body, Circle, Polygon, Scene, Segment
 from .base import Run, Settings, has_curves, rigid_only
 from .chipmunk import SpaceRun, add_joints, make_body, surface
 
-try:
-    from ...kernel.constants import SUBSTEPS  # type: ignore[import-not-found]
-except ImportError:
-    SUBSTEPS = 1
-"""Substeps of a frame at the defaults; where `contact.step` says how many it took, that counts."""
-
 STEPPING = ("steps", "tolerance", "phase")
 """Settings that say how the space is stepped."""
 BUILDING = ("stiffness", "sampling", "iterations")
@@ -78,7 +72,7 @@ class FrameRun(SpaceRun):
     def __init__(
         self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, settings: Settings
     ) -> None:
-        super().__init__(scene, space, bodies, settings.get("steps", SUBSTEPS))
+        super().__init__(scene, space, bodies, settings.get("steps", 1))
         self.contact, self.frame, self.failed = contact, scene.frame, False
         self.wanted = {name: settings[name] for name in ("steps", "tolerance") if name in settings}
 
@@ -87,12 +81,9 @@ class FrameRun(SpaceRun):
         if self.failed:
             return
         try:
-            taken = self.contact.step(self.frame, frames, **self.wanted)
+            self.steps = self.contact.step(self.frame, frames, **self.wanted)
         except rigidarea.SimulationError:
             self.failed = True
-            return
-        if taken is not None:
-            self.steps = math.ceil(taken / frames)
 
     def state(self) -> Array:
         """States (n_body, 6); no numbers once a contact has failed."""
