@@ -11,7 +11,7 @@ import shapely
 
 import rigidarea
 
-from ..scene import Body, Circle, Polygon, Scene, Segment
+from ..scene import Array, Body, Circle, Polygon, Scene, Segment
 from .base import Run, Settings, has_curves, rigid_only
 from .chipmunk import SpaceRun, add_joints, make_body, surface
 
@@ -73,18 +73,22 @@ class FrameRun(SpaceRun):
         self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, settings: Settings
     ) -> None:
         super().__init__(scene, space, bodies, settings.get("steps", 1))
-        self.contact, self.frame = contact, scene.frame
+        self.contact, self.frame, self.failed = contact, scene.frame, False
         self.wanted = {name: settings[name] for name in ("steps", "tolerance") if name in settings}
 
     def advance(self, frames: int) -> None:
-        """Frames of the scene's length; a contact that fails leaves states that are not finite."""
-        try:
-            taken = self.contact.step(self.frame, frames, **self.wanted)
-        except rigidarea.SimulationError:
-            for body in self.bodies:
-                body.position = (math.nan, math.nan)
+        """Frames of the scene's length; once a contact has failed, none any more."""
+        if self.failed:
             return
-        self.steps = math.ceil(taken / frames)
+        try:
+            self.steps = self.contact.step(self.frame, frames, **self.wanted)
+        except rigidarea.SimulationError:
+            self.failed = True
+
+    def state(self) -> Array:
+        """States (n_body, 6); no numbers once a contact has failed."""
+        states = super().state()
+        return np.full_like(states, np.nan) if self.failed else states
 
     def contacts(self) -> int:
         """Pairs of shapes that touch."""
