@@ -21,6 +21,8 @@ COMMANDS = {
     "chart": "accuracy against speed",
     "atlas": "stability, where methods fail",
     "compare": "rigid, compliant and modal beside each other",
+    "run": "an existing pymunk program, area contact attached to every space it makes",
+    "compat": "pymunk's own examples and tests with area contact attached",
 }
 STUDIES = ("bench", "chart", "atlas", "compare")
 
@@ -49,6 +51,16 @@ def parser(command: str | None) -> argparse.ArgumentParser:
 
             demo.add_arguments(own)
             own.set_defaults(run=demo.run)
+        elif name == command == "run":
+            from .compat import run as program
+
+            program.add_arguments(own)
+            own.set_defaults(run=program.run)
+        elif name == command == "compat":
+            from .compat import command as compat
+
+            compat.add_arguments(own)
+            own.set_defaults(run=compat.run)
         elif name == command == "case":
             from . import cases
 
