@@ -184,7 +184,8 @@ def run_example(name: str, engine: str, frames: int = FRAMES) -> dict[str, Any]:
         told: dict[str, Any] = {"error": f"the process ended with {done.returncode}", "facts": []}
         if os.path.exists(file):
             told = json.loads(Path(file).read_text())
-        return {**told, "stderr": done.stderr}
+        said = [line for line in done.stderr.splitlines() if not line.startswith("rigidarea: compiling")]
+        return {**told, "stderr": "\n".join(said)}
 
 
 def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:

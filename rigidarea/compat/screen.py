@@ -119,6 +119,8 @@ class Screen:
                 "delay": self._wait,
                 "set_timer": self._set_timer,
             },
+            # looking for a system's fonts takes seconds, and warns where there are none
+            pygame.font: {"SysFont": lambda name, size, *more, **named: pygame.font.Font(None, size)},
             pygame.key: {"get_pressed": lambda: Keys(self._down), "get_mods": self._modifiers},
             pygame.mouse: {
                 "get_pos": lambda: self._mouse,
