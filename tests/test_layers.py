@@ -17,7 +17,7 @@ KERNELS = sorted((PACKAGE / "kernel").glob("*.py"))
 CORE = {"pymunk", "numpy", "numba", "llvmlite", "shapely", "cffi", "_cffi_backend"}
 EXTRAS = (
     *("scipy", "matplotlib", "pygame", "imageio", "b2d", "pyb2d3", "dask", "distributed", "skfem"),
-    *("svgelements", "contourpy", "PIL", "tomli_w", "gymnasium", "pdoc"),
+    *("svgelements", "contourpy", "PIL", "tomli_w", "gymnasium"),
 )
 
 

@@ -41,7 +41,6 @@ from its shapes' densities unless it has `mass` and `moment`. Nothing in a file 
 
 from __future__ import annotations
 
-import math
 import os
 import tomllib
 from dataclasses import dataclass, field
@@ -55,6 +54,7 @@ from ..outline import Outline
 from .geojson import parse_json
 from .joints import COMMON, JOINTS, LENGTH, POINT
 from .limits import LIMITS, Limits, check, read, text
+from .values import Values
 
 FORMAT = 1
 TYPES = {
@@ -66,8 +66,6 @@ SHAPES = ("outline", "circle", "box", "poly", "segment")
 SPACE = ("gravity", "damping", "iterations", "collision_slop", "sleep_time_threshold", "idle_speed_threshold")
 CONTACT = ("stiffness", "penetration", "law", "length", "direction", "exponent", "rest_speed", "integration")
 SURFACE = ("density", "friction", "elasticity")
-#: Numbers beyond this are refused: a moment goes with the fourth power of a length, times a density.
-LARGEST = 1e50
 #: TOML's parser is Python: a file of the largest size would take it minutes.
 TOML_BYTES = 2**20
 
@@ -125,12 +123,11 @@ def _check_depth(found: Any, limits: Limits) -> None:
         todo += [(item, depth + 1) for item in inner if isinstance(item, dict | list)]
 
 
-class _Reader:
+class _Reader(Values):
     """Turns plain data into a scene; every message names the place."""
 
     def __init__(self, limits: Limits) -> None:
-        self.limits = limits
-        self.points = 0
+        super().__init__(limits)
         self.outlines: dict[str, Outline] = {}
         self.materials: dict[str, dict[str, float]] = {}
         self.densities: dict[pymunk.Shape, float] = {}
@@ -369,60 +366,3 @@ class _Reader:
             if not isinstance(name, str) or not name or name in joints:
                 raise ValueError(f"{place}.name: expected a name that no other joint has, got {name!r:.40}")
             joints[name] = joint
-
-    # --- values ---
-
-    def table(self, found: Any, place: str, known: tuple[str, ...] | None = None) -> dict[str, Any]:
-        if not isinstance(found, dict):
-            raise ValueError(f"{place}: expected a table, got {found!r:.40}")
-        unknown = [key for key in found if known is not None and key not in known]
-        if unknown:
-            raise ValueError(f"{place}: expected some of {', '.join(known or ())}, got {unknown[0]!r:.40}")
-        check(len(found), self.limits.parts, f"entries in {place}")
-        return found
-
-    def rows(self, found: Any, place: str) -> list[Any]:
-        if not isinstance(found, list):
-            raise ValueError(f"{place}: expected a list, got {found!r:.40}")
-        return found
-
-    def number(
-        self, found: Any, place: str, low: float | None = None, above: bool = False, infinite: bool = False
-    ) -> float:
-        wanted = "a finite number" if not infinite else 'a number or "inf"'
-        if low is not None:
-            wanted += f" {'>' if above else '>='} {low:g}"
-        value = math.inf if infinite and found == "inf" else found
-        if isinstance(value, bool) or not isinstance(value, int | float):
-            raise ValueError(f"{place}: expected {wanted}, got {found!r:.40}")
-        try:
-            value = float(value)
-        except OverflowError:
-            value = math.nan
-        finite = abs(value) <= LARGEST or (infinite and value == math.inf)
-        if not finite or (low is not None and (value < low or (above and value == low))):
-            raise ValueError(f"{place}: expected {wanted}, got {str(found)[:40]}")
-        return value
-
-    def whole(self, found: Any, place: str) -> int:
-        if isinstance(found, bool) or not isinstance(found, int) or not 0 <= found < 2**32:
-            raise ValueError(f"{place}: expected a whole number from 0 to 2^32 - 1, got {str(found)[:40]!r}")
-        return found
-
-    def truth(self, found: Any, place: str) -> bool:
-        if not isinstance(found, bool):
-            raise ValueError(f"{place}: expected true or false, got {found!r:.40}")
-        return found
-
-    def point(self, found: Any, place: str) -> tuple[float, float]:
-        if not isinstance(found, list) or len(found) != 2:
-            raise ValueError(f"{place}: expected [x, y], got {found!r:.40}")
-        return self.number(found[0], f"{place}[0]"), self.number(found[1], f"{place}[1]")
-
-    def ring(self, found: Any, place: str, least: int = 3) -> list[tuple[float, float]]:
-        points = self.rows(found, place)
-        self.points += len(points)
-        check(self.points, self.limits.points, "points")
-        if len(points) < least:
-            raise ValueError(f"{place}: expected at least {least} points, got {len(points)}")
-        return [self.point(point, f"{place}[{i}]") for i, point in enumerate(points)]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
+import traceback
 from pathlib import Path
 from typing import Any
 
@@ -66,7 +67,11 @@ def run(arguments: argparse.Namespace) -> int:
             sys.stderr if arguments.json == "-" else sys.stdout
         )  # what the program prints must not mix with JSON
         stack.enter_context(contextlib.redirect_stdout(out))
-        host.run(script, arguments.arguments)
+        try:
+            host.run(script, arguments.arguments)
+        except Exception:  # the program's own: told as Python would tell it
+            traceback.print_exc()
+            return 1
     row = summary(host)
     settings = {
         "script": str(script),

@@ -63,6 +63,13 @@ def test_frames_and_the_other_engine(tmp_path):
     assert rows["frames"] == "5" and rows["engine"] == '"pymunk"'
 
 
+def test_a_programs_own_error_is_told_as_its_own(tmp_path):
+    (tmp_path / "game.py").write_text("import pymunk\nraise ValueError('my own')\n")
+    done = command(tmp_path, "game.py")
+    assert done.returncode == 1
+    assert "game.py" in done.stderr and done.stderr.strip().endswith("ValueError: my own")
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
