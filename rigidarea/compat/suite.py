@@ -27,7 +27,9 @@ MODES = ("pymunk", "area", "area frames")
 TIME_LIMIT = 300.0
 
 #: Why another answer than pymunk's is right: test (class.method) -> reason. What is not in here is not explained.
-REASONS: dict[str, str] = {}
+REASONS: dict[str, str] = {
+    "UnitTestSpace.testCopyMethods": "it wants no global pre_solve in a fresh space; area contact is one",
+}
 
 
 def _attach_everywhere(frames: bool) -> None:

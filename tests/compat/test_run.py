@@ -28,12 +28,12 @@ assert abs(body.position.y - 15) < 2, body.position  # it lies on the segment, i
 """
 
 
-def command(folder: Path, *words: str) -> subprocess.CompletedProcess[str]:
+def command(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-m", "rigidarea", "run", *words],
         capture_output=True,
         text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
         timeout=300,
         cwd=folder,
     )
@@ -61,6 +61,29 @@ def test_frames_and_the_other_engine(tmp_path):
     assert "its own words []" in done.stdout
     rows = dict(line.split(None, 1) for line in done.stdout.splitlines()[1:])
     assert rows["frames"] == "5" and rows["engine"] == '"pymunk"'
+
+
+def test_its_own_window_ends_after_the_frames_asked_for(tmp_path):
+    pytest.importorskip("pygame")
+    (tmp_path / "game.py").write_text(
+        "import pygame, pymunk\n"
+        "pygame.init()\n"
+        "screen, clock = pygame.display.set_mode((100, 80)), pygame.time.Clock()\n"
+        "space = pymunk.Space()\n"
+        "space.gravity = 0, 900\n"
+        "body = pymunk.Body(1, 1)\n"
+        "space.add(body, pymunk.Circle(body, 5))\n"
+        "while True:\n"
+        "    space.step(1 / 60)\n"
+        "    pygame.display.flip()\n"
+        "    print(type(clock).__name__, clock.tick(200) > 0)\n"
+    )
+    done = command(
+        tmp_path, "--window", "--frames", "6", "--json", "told.json", "game.py", SDL_VIDEODRIVER="dummy"
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "told.json").read_text())["results"]["frames"] == 6
+    assert "Clock True" in done.stdout  # pygame's own clock, which takes its time
 
 
 def test_a_programs_own_error_is_told_as_its_own(tmp_path):
