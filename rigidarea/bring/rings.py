@@ -10,8 +10,10 @@ from numpy.typing import NDArray
 
 from ..outline import Outline
 from .limits import Limits, check
+from .values import LARGEST
 
 Ring = NDArray[np.float64]
+Indices = NDArray[np.int64]
 
 
 def outlines_of_polygons(
@@ -44,6 +46,8 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
     for i, ring in enumerate(rings):
         if len(ring) < 3:
             continue
+        if not (np.abs(ring) <= LARGEST).all():
+            raise ValueError(f"ring {i}: expected finite coordinates of at most {LARGEST:g}")
         polygon = shapely.Polygon(ring)
         extent = float(np.max(np.ptp(ring, axis=0)))
         if shapely.convex_hull(polygon).area <= 1e-12 * extent**2:
@@ -53,20 +57,18 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
                 f"ring {i}: {shapely.is_valid_reason(polygon)}; expected a ring that does not cross itself"
             )
         solid.append(polygon)
-    tree = shapely.STRtree(solid)
-    crossing = (
-        tree.query([p.exterior for p in solid], predicate="crosses") if solid else np.zeros((2, 0), int)
-    )
-    for a, b in crossing.T:
-        if a != b and not shapely.touches(solid[a].exterior, solid[b].exterior):
+    inner, outer = _overlapping_boxes(solid, limits)
+    edges = np.array([polygon.exterior for polygon in solid], object)
+    areas = np.array(solid, object)
+    for i, j in zip(inner, outer):
+        if shapely.crosses(edges[i], areas[j]) and not shapely.touches(edges[i], edges[j]):
             raise ValueError(
-                f"rings {min(a, b)} and {max(a, b)} cross; expected rings apart or within each other"
+                f"rings {min(i, j)} and {max(i, j)} cross; expected rings apart or within each other"
             )
-    inside = tree.query(solid, predicate="covered_by") if solid else np.zeros((2, 0), int)
     parents: list[list[int]] = [[] for _ in solid]
-    for a, b in inside.T:
-        if a != b:
-            parents[a].append(int(b))
+    for i, j in zip(inner, outer):
+        if shapely.covered_by(areas[i], areas[j]):
+            parents[i].append(int(j))
     # a ring within an even number of others is an outer one; its holes are the rings one deeper that it holds
     holes: dict[int, list[int]] = {i: [] for i, over in enumerate(parents) if len(over) % 2 == 0}
     for i, over in enumerate(parents):
@@ -78,6 +80,22 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
     return [
         shapely.Polygon(solid[i].exterior, [solid[j].exterior for j in inner]) for i, inner in holes.items()
     ]
+
+
+def _overlapping_boxes(solid: Sequence[shapely.Polygon], limits: Limits) -> tuple[Indices, Indices]:
+    """Pairs (i, j), i != j, of polygons whose boxes overlap. Of 1e5 rings within each other there are 1e10: too many."""
+    if not solid:
+        return np.zeros(0, int), np.zeros(0, int)
+    tree, found, total = shapely.STRtree(solid), [], 0
+    for first in range(0, len(solid), 64):
+        pairs = tree.query(solid[first : first + 64])
+        pairs[0] += first
+        pairs = pairs[:, pairs[0] != pairs[1]]
+        total += pairs.shape[1]
+        check(total, limits.parts, "pairs of rings whose boxes overlap")
+        found.append(pairs)
+    inner, outer = np.concatenate(found, axis=1)
+    return inner, outer
 
 
 def curve_tolerance(tolerance: float | None, bounds: tuple[float, float, float, float]) -> float:

@@ -17,6 +17,8 @@ from .rings import Ring, curve_tolerance, outlines_of_polygons, polygons_of_ring
 if TYPE_CHECKING:
     from svgelements import Path
 
+#: svgelements is Python: a drawing of this size may take it half a minute.
+SVG_BYTES = 2 * 2**20
 #: Things that can make a small file a large drawing, or reach beyond the file.
 REFUSED = re.compile(r"<\s*!\s*(DOCTYPE|ENTITY)|<\s*(\w+:)?(use|script|foreignObject)\b", re.IGNORECASE)
 
@@ -42,7 +44,7 @@ def outlines_from_svg(
     from svgelements import SVG, Shape
     from svgelements import Path as SvgPath
 
-    content = text(read(source, limits), str(source))
+    content = text(read(source, limits._replace(bytes=min(limits.bytes, SVG_BYTES))), str(source))
     refused = REFUSED.search(content)
     if refused:
         raise ValueError(f"{source}: expected a plain drawing, got {refused.group()!r}")
@@ -50,19 +52,27 @@ def outlines_from_svg(
     depth = _depth(content)
     if depth > limits.depth:
         raise ValueError(f"{source}: expected at most {limits.depth} elements within each other, got {depth}")
+    made: list[Outline] = []
     try:
         drawing = SVG.parse(io.StringIO(content), reify=True)
-    except Exception as error:  # the parser knows no error of its own: XML's, and whatever odd values lead to
-        raise ValueError(
-            f"{source}: expected an SVG drawing: {type(error).__name__}: {error}"[:300]
+        if not isinstance(drawing, SVG):
+            raise ValueError(f"{source}: expected an SVG drawing, got one without an <svg> around it")
+        for element in drawing.elements():
+            if isinstance(element, Shape):
+                path: Any = abs(SvgPath(element))
+                made += _outlines_of(path, scale, flip, tolerance, limits)
+                check(len(made), limits.parts, "outlines")
+    except ValueError as error:
+        raise (
+            error if "expected" in str(error) or "ring" in str(error) else _no_drawing(source, error)
         ) from None
-    made: list[Outline] = []
-    for element in drawing.elements():
-        if isinstance(element, Shape):
-            path: Any = abs(SvgPath(element))
-            made += _outlines_of(path, scale, flip, tolerance, limits)
-            check(len(made), limits.parts, "outlines")
+    except Exception as error:  # the parser knows no error of its own: XML's, and whatever odd values lead to
+        raise _no_drawing(source, error) from None
     return made
+
+
+def _no_drawing(source: object, error: Exception) -> ValueError:
+    return ValueError(f"{source}: expected an SVG drawing: {type(error).__name__}: {error}"[:300])
 
 
 def _depth(content: str) -> int:

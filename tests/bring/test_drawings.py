@@ -2,6 +2,7 @@
 
 import json
 import math
+import random
 import time
 
 import numpy as np
@@ -75,6 +76,10 @@ def test_finer_tolerance_is_closer(tmp_path):
         ("<g/>" * 60, "at most 50 elements"),
         (f'<path d="M0,0 {"L1,1 L0,2 " * 400}"/>', "at most 500 points"),
         ('<circle r="1e300"/>', "finite"),
+        (
+            '<path d="' + "".join(f"M{i},{i} H{99 - i} V{99 - i} H{i} Z" for i in range(20)) + '"/>',
+            "pairs of rings",
+        ),
         (f"<!-- {'x' * 30_000} -->", "at most 20000 bytes"),
     ],
 )
@@ -82,6 +87,48 @@ def test_hostile_drawings_are_refused(body, message, tmp_path):
     pytest.importorskip("svgelements")
     with pytest.raises(ValueError, match=message):
         bring.outlines_from_svg(svg(tmp_path, body), limits=LIMITED)
+
+
+def test_damaged_drawings_end_in_outlines_or_a_value_error(tmp_path):
+    pytest.importorskip("svgelements")
+    body = (
+        '<g transform="rotate(30) scale(2,3) skewX(10)"><path d="M0,0 C 3,-2 7,-2 10,0 S 13 7 10 10 Q 7,12 5,10 T 0,10'
+        ' A 6 7 0 0 1 0 0 z m 3 3 l 2 0 0 2z"/><rect x="1" y="2" width="3" height="4" rx="1"/>'
+        '<ellipse cx="3" cy="3" rx="2" ry="1"/><polyline points="0,0 1,1 2,0"/><line x1="0" x2="3"/></g>'
+    )
+    chance = random.Random(2)
+    file = svg(tmp_path, body)
+    assert len(bring.outlines_from_svg(file)) == 4
+    whole = file.read_text()
+    tokens = [
+        "1e999",
+        "-1",
+        "NaN",
+        "<",
+        ">",
+        "z",
+        "M",
+        "A",
+        "1e308",
+        "%",
+        "url(#a)",
+        " ",
+        "1e-320",
+        "</svg>",
+        "C",
+    ]
+    made = refused = 0
+    for _ in range(600):
+        at = chance.randrange(len(whole))
+        file.write_text(whole[:at] + chance.choice(tokens) + whole[at + chance.randrange(6) :])
+        try:
+            outlines = bring.outlines_from_svg(file)
+        except ValueError:
+            refused += 1
+            continue
+        made += 1
+        assert all(math.isfinite(o.area) and o.area > 0 for o in outlines)
+    assert made > 100 and refused > 100
 
 
 def test_entities_are_refused_before_they_unfold(tmp_path):
