@@ -83,7 +83,7 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
 
 
 def _overlapping_boxes(solid: Sequence[shapely.Polygon], limits: Limits) -> tuple[Indices, Indices]:
-    """Pairs (i, j), i != j, of polygons whose boxes overlap. Of 1e5 rings within each other there are 1e10: too many."""
+    """Pairs (i, j), i != j, of polygons whose boxes overlap. Of 1e5 nested rings there are 1e10: refused."""
     if not solid:
         return np.zeros(0, int), np.zeros(0, int)
     tree, found, total = shapely.STRtree(solid), [], 0

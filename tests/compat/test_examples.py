@@ -39,7 +39,6 @@ BROKEN: set[str] = {
     "threaded_space",
     "using_sprites",
     "using_sprites_pyglet",
-    "camera",
     "point_query",
 }
 
