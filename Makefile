@@ -3,14 +3,14 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: run test test-all lint studies constraints clean
+.PHONY: run test test-all lint studies reference constraints clean
 .DEFAULT_GOAL := run
 
 # The build backend is pinned too: no build isolation, so pip fetches nothing that constraints.txt does not name.
 .venv/.installed: pyproject.toml constraints.txt
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
-	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,dev]'
+	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,dev]'
 	touch $@
 
 run: .venv/.installed
@@ -35,6 +35,12 @@ studies: .venv/.installed
 	$(BIN)/python -m rigidarea compare --out $(OUT)/compare --docs docs
 	$(BIN)/python -m rigidarea demo all --no-film --out $(OUT)/gallery
 	cp $(OUT)/gallery/*.png docs/
+
+# Rewrites docs/api.md from the docstrings, and the two pages about pymunk's own examples and tests.
+reference: .venv/.installed
+	$(BIN)/python -m rigidarea reference --docs docs
+	$(BIN)/python -m rigidarea compat tests --docs docs
+	$(BIN)/python -m rigidarea compat examples --docs docs
 
 # Rewrites constraints.txt from what is installed now (after a deliberate upgrade).
 constraints: .venv/.installed

@@ -21,6 +21,9 @@ COMMANDS = {
     "chart": "accuracy against speed",
     "atlas": "stability, where methods fail",
     "compare": "rigid, compliant and modal beside each other",
+    "run": "an existing pymunk program, area contact attached to every space it makes",
+    "reference": "the API reference, written from the docstrings",
+    "compat": "pymunk's own examples and tests with area contact attached",
 }
 STUDIES = ("bench", "chart", "atlas", "compare")
 
@@ -49,6 +52,21 @@ def parser(command: str | None) -> argparse.ArgumentParser:
 
             demo.add_arguments(own)
             own.set_defaults(run=demo.run)
+        elif name == command == "run":
+            from .compat import run as program
+
+            program.add_arguments(own)
+            own.set_defaults(run=program.run)
+        elif name == command == "reference":
+            from . import reference
+
+            reference.add_arguments(own)
+            own.set_defaults(run=reference.run)
+        elif name == command == "compat":
+            from .compat import command as compat
+
+            compat.add_arguments(own)
+            own.set_defaults(run=compat.run)
         elif name == command == "case":
             from . import cases
 
@@ -87,10 +105,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
     except KeyboardInterrupt:
-        print(
-            f"rigidarea {arguments.command}: stopped; what was finished is in {arguments.out}",
-            file=sys.stderr,
-        )
+        kept = f"; what was finished is in {arguments.out}" if hasattr(arguments, "out") else ""
+        print(f"rigidarea {arguments.command}: stopped{kept}", file=sys.stderr)
         return 130
     return int(code or 0)
 

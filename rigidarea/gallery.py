@@ -1,6 +1,6 @@
 """Game scenes, run and measured: what a demo is, the two engines that run it, and the numbers of a run.
 
-A demo is a module of the package `demos` with a function `build() -> Scene`. It says what is in the space and
+A demo is a module of `rigidarea.demos` with a function `build() -> Scene`. It says what is in the space and
 how it is to be looked at; it names no engine. `Run` attaches area contact to it, or hands it to Chipmunk's own
 response, and steps it frame by frame. Drawing (`rigidarea.draw`) looks at a run and changes nothing in it.
 """
@@ -110,7 +110,7 @@ def load(name: str) -> Scene:
     """Build the demo called `name`. ValueError lists the known ones."""
     if name not in NAMES:
         raise ValueError(f"unknown demo {name!r}; expected one of {', '.join(NAMES)}, or all")
-    scene: Scene = importlib.import_module(f"demos.{name}").build()
+    scene: Scene = importlib.import_module(f".demos.{name}", __package__).build()
     return scene
 
 
@@ -325,7 +325,7 @@ class Run:
 
 
 def play(name: str) -> int:
-    """Open a demo in a window (`python -m demos.NAME`); returns the exit code."""
+    """Open a demo in a window (`python demos/NAME.py`); returns the exit code."""
     from .draw.window import show
 
     show(Run(load(name)))

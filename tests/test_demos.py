@@ -3,8 +3,11 @@
 import json
 import math
 import os
+import runpy
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pymunk
@@ -19,6 +22,8 @@ pygame = pytest.importorskip("pygame")
 from rigidarea.__main__ import main  # noqa: E402
 from rigidarea.draw import canvas, demo, film, window  # noqa: E402
 from rigidarea.draw.picture import SIZE, Picture  # noqa: E402
+
+SCRIPTS = Path(__file__).parent.parent / "demos"
 
 
 def moving(scene: Scene, kind: int = pymunk.Body.DYNAMIC) -> pymunk.Body:
@@ -109,7 +114,7 @@ def test_gears_mean_ratio_to_four_digits():
 
 
 def test_geneva_indexes_by_60_degrees_within_its_clearance():
-    from demos import geneva as drive
+    from rigidarea.demos import geneva as drive
     from rigidarea.shapes import geneva
 
     parts = geneva(drive.SLOTS, drive.CENTRES, drive.PIN, drive.CLEARANCE)
@@ -222,6 +227,54 @@ def test_window_drags_and_closes(monkeypatch):
     assert run.done == 12  # paused once space was hit
     assert crate.position.y > before + 0.2
     assert len(run.space.constraints) == joints
+
+
+def test_window_ends_after_its_frames(monkeypatch):
+    monkeypatch.setenv("SDL_VIDEODRIVER", "dummy")
+    run = Run(load("cradle"))
+    window.show(run, frames=3)
+    assert run.done == 3 and not pygame.display.get_init()
+    seen = []
+    monkeypatch.setattr(window, "show", lambda run, frames: seen.append((run.scene.name, frames)))
+    assert main(["demo", "cradle", "--window", "--frames", "4"]) == 0
+    assert seen == [("cradle", 4)]
+
+
+# --- the scripts ---
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_a_script_a_scene(name, monkeypatch):
+    played = []
+    monkeypatch.setattr("rigidarea.gallery.play", lambda name: played.append(name) or 0)
+    with pytest.raises(SystemExit) as end:
+        runpy.run_path(str(SCRIPTS / f"{name}.py"), run_name="__main__")
+    assert played == [name] and end.value.code == 0
+
+
+def test_the_wheel_has_one_package():
+    told = tomllib.loads((SCRIPTS.parent / "pyproject.toml").read_text())
+    assert told["tool"]["hatch"]["build"]["targets"]["wheel"]["packages"] == ["rigidarea"]
+
+
+def test_the_game_to_copy_catches_stars():
+    program = f"""
+import json
+from rigidarea.compat.host import Host, seed_everything
+seed_everything(1)
+host = Host("area", 500)
+host.run({str(SCRIPTS / "game.py")!r})
+(space,) = host.spaces
+bucket = next(b for b in space.bodies if b.body_type == b.KINEMATIC)
+print(json.dumps([[*(star.position - bucket.position)] for star in space.bodies if star is not bucket]))
+"""
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, timeout=300)
+    assert done.returncode == 0 and not done.stderr, done.stderr
+    stars = np.array(json.loads(done.stdout.splitlines()[-1]))
+    inside = stars[(np.abs(stars[:, 0]) < 45) & (stars[:, 1] > -40)]
+    assert len(inside) >= 1
+    assert (inside[:, 1] < 30).all()  # none of them has sunk into the bottom, whose top is at 30
+    assert len((SCRIPTS / "game.py").read_text().splitlines()) < 75
 
 
 # --- the command ---

@@ -15,7 +15,10 @@ PACKAGE = ROOT / "rigidarea"
 KERNELS = sorted((PACKAGE / "kernel").glob("*.py"))
 #: What `import rigidarea` may bring with it; cffi and llvmlite come with pymunk and numba.
 CORE = {"pymunk", "numpy", "numba", "llvmlite", "shapely", "cffi", "_cffi_backend"}
-EXTRAS = ("scipy", "matplotlib", "pygame", "imageio", "b2d", "pyb2d3", "dask", "distributed", "skfem")
+EXTRAS = (
+    *("scipy", "matplotlib", "pygame", "imageio", "b2d", "pyb2d3", "dask", "distributed", "skfem"),
+    *("svgelements", "contourpy", "PIL", "tomli_w", "gymnasium"),
+)
 
 
 def name_of(path: Path) -> str:
@@ -92,6 +95,12 @@ def test_the_core_needs_four_libraries() -> None:
     others = {n.partition(".")[0] for n in reached({"rigidarea"}) if not is_standard(n)} - {"rigidarea"}
     assert others <= CORE
     assert {"pymunk", "numpy", "numba", "shapely"} <= others  # the walk gets there
+
+
+def test_what_users_bring_is_read_by_libraries_that_are_imported_when_needed() -> None:
+    """`from rigidarea import bring` works without its extra; scene files in JSON need nothing of it."""
+    others = {n.partition(".")[0] for n in reached({"rigidarea.bring"}) if not is_standard(n)} - {"rigidarea"}
+    assert others <= CORE
 
 
 def test_importing_the_core_imports_no_extras() -> None:

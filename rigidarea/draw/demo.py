@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         from .window import show
 
         for name in names:
-            show(Run(load(name), arguments.engine))
+            show(Run(load(name), arguments.engine), arguments.frames)
         return 0
     rows = []
     for i, name in enumerate(names):

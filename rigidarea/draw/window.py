@@ -16,8 +16,11 @@ from .picture import FINE, SIZE, Picture
 PULL = 30.0
 
 
-def show(run: Run) -> None:
-    """Open the window and step the run until it is closed. OSError where there is no display."""
+def show(run: Run, frames: int | None = None) -> None:
+    """Open the window and step the run until it is closed, or for that many frames.
+
+    OSError where there is no display.
+    """
     try:
         pygame.display.init()
         screen = pygame.display.set_mode(SIZE)
@@ -30,7 +33,7 @@ def show(run: Run) -> None:
         raise OSError("no window can be opened here: there is no display; without --window files are written")
     pygame.display.set_caption(f"rigidarea: {run.scene.title}")
     picture, clock, hand, paused = Picture(run), pygame.time.Clock(), Hand(run), False
-    while True:
+    while frames is None or run.done < frames:
         for event in pygame.event.get():
             if event.type == pygame.QUIT or (event.type == pygame.KEYDOWN and event.key == pygame.K_ESCAPE):
                 pygame.display.quit()
@@ -49,6 +52,7 @@ def show(run: Run) -> None:
         screen.blit(picture.draw(), (0, 0))
         pygame.display.flip()
         clock.tick(60)
+    pygame.display.quit()
 
 
 class Hand:

@@ -2,7 +2,8 @@
 
 numba's cache notices when the file of a function changes, not when a file that it calls into does. So the cache
 lives in a folder named after a hash of all our sources that compile anything: a new version never runs an old
-version's machine code, and an install that cannot be written to needs no writing.
+version's machine code, and an install that cannot be written to needs no writing. What is in the folder, and whose it
+is: `cache`.
 """
 
 from __future__ import annotations
@@ -10,53 +11,45 @@ from __future__ import annotations
 import ctypes
 import functools
 import hashlib
-import os
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numba
+from numba.core import caching
+
+from . import cache
 
 
 @functools.lru_cache(maxsize=1)
 def cache_folder() -> str:
-    """Where the machine code is kept: under NUMBA_CACHE_DIR, the user's cache folder, or the temporary one."""
-    digest = hashlib.sha256(numba.__version__.encode())
+    """Where the machine code is kept: see `cache.folder`."""
+    digest = hashlib.sha256(numba.__version__.encode() + cache.FORMAT)
     root = Path(__file__).parent.parent
     for source in sorted(root.rglob("*.py")):
         text = source.read_bytes()
         if b"jit import" in text:  # the others hold no machine code
             digest.update(source.relative_to(root).as_posix().encode() + text)
-    homes = [
-        numba.config.CACHE_DIR,
-        os.environ.get("XDG_CACHE_HOME"),
-        os.path.join(os.path.expanduser("~"), ".cache"),
-        os.path.join(tempfile.gettempdir(), f"rigidarea-{os.getuid() if hasattr(os, 'getuid') else 'user'}"),
-    ]
-    for home in filter(None, homes):
-        folder = os.path.join(home, "rigidarea", digest.hexdigest()[:16])
-        try:
-            os.makedirs(folder, exist_ok=True)
-        except OSError:
-            continue
-        if os.access(folder, os.W_OK):
-            return folder
-    return tempfile.mkdtemp(prefix="rigidarea-")  # nothing can be kept
+    cache.notice.folder = cache.folder(digest.hexdigest()[:16])
+    return cache.notice.folder
 
 
-def cached(compiler: Callable[..., Any]) -> Callable[..., Any]:
-    """`compiler` (numba.njit, numba.cfunc(signature)) with cache=True, kept in `cache_folder`."""
+def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[..., Any]:
+    """`compiler` (numba.njit, numba.cfunc(signature)) with cache=True, kept in `cache_folder` in checked files.
+
+    at_once: it compiles when it decorates, not at the first call.
+    """
 
     def compile_cached(function: Any = None, **options: Any) -> Any:
         if function is None:
             return functools.partial(compile_cached, **options)
-        before = numba.config.CACHE_DIR
-        numba.config.CACHE_DIR = cache_folder()
+        before = numba.config.CACHE_DIR, caching.IndexDataCacheFile
+        numba.config.CACHE_DIR, caching.IndexDataCacheFile = cache_folder(), cache.CheckedFile
         try:
-            return compiler(cache=True, **options)(function)
+            decorate = functools.partial(compiler(cache=True, **options), function)
+            return cache.notice.eagerly(decorate) if at_once else decorate()
         finally:
-            numba.config.CACHE_DIR = before
+            numba.config.CACHE_DIR, caching.IndexDataCacheFile = before
 
     return compile_cached
 
@@ -82,4 +75,5 @@ def callback(signature: Any) -> Any:
         from .memory import prototype
 
         return lambda function: _Interpreted(function, prototype(signature))
-    return functools.partial(cached(functools.partial(numba.cfunc, signature)), _nrt=False, error_model="numpy")
+    compiler = cached(functools.partial(numba.cfunc, signature), at_once=True)
+    return functools.partial(compiler, _nrt=False, error_model="numpy")

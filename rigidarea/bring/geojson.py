@@ -1,0 +1,111 @@
+"""Outlines from GeoJSON (RFC 7946): polygons and multipolygons, wherever in a file they are."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from typing import Any
+
+import shapely
+
+from ..outline import Outline
+from .limits import LIMITS, Limits, check, read, text
+from .rings import outlines_of_polygons
+
+GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
+
+
+def outlines_from_geojson(
+    source: str | os.PathLike[str] | dict[str, Any],
+    *,
+    scale: float = 1.0,
+    tolerance: float = 0.0,
+    limits: Limits = LIMITS,
+) -> list[Outline]:
+    """One outline for every polygon of a GeoJSON file, or of an object already parsed, in its order.
+
+    Coordinates are taken as plane lengths and multiplied by `scale` (longitudes and latitudes have to be projected
+    first); a third one is dropped. tolerance: largest distance of a point that may be dropped (length, after scale).
+    Points and lines are passed over.
+
+    Raises ValueError for what is no GeoJSON, for coordinates that are not finite, for polygons that cross themselves,
+    and for more than `limits` allow.
+    """
+    if isinstance(source, dict):
+        found = source
+    else:
+        found = parse_json(text(read(source, limits), str(source)), str(source))
+    polygons: list[shapely.Polygon] = []
+    points = [0]
+    _walk(found, polygons, points, scale, 0, limits)
+    return outlines_of_polygons(polygons, tolerance, limits)
+
+
+def parse_json(content: str, what: str) -> Any:
+    """JSON without NaN and Infinity. ValueError, with the place, for anything else, however deep or long."""
+
+    def refuse(name: str) -> None:
+        raise ValueError(f"{what}: expected finite numbers, got {name}")
+
+    try:
+        return json.loads(content, parse_constant=refuse)
+    except ValueError as error:  # JSONDecodeError, a number of too many digits, and our own
+        raise ValueError(
+            str(error) if "expected" in str(error) else f"{what}: expected JSON: {error}"
+        ) from None
+    except RecursionError:
+        raise ValueError(f"{what}: expected less than about a thousand lists within each other") from None
+
+
+def _walk(
+    found: Any, polygons: list[shapely.Polygon], points: list[int], scale: float, depth: int, limits: Limits
+) -> None:
+    if depth > limits.depth:
+        raise ValueError(f"expected at most {limits.depth} collections within each other")
+    if not isinstance(found, dict) or not isinstance(found.get("type"), str):
+        raise ValueError(f"expected a GeoJSON object with a type, got {found!r:.80}")
+    kind = found["type"]
+    if kind in GROUPS:
+        for part in _list(found.get(GROUPS[kind]), GROUPS[kind]):
+            _walk(part, polygons, points, scale, depth + 1, limits)
+    elif kind == "Feature":
+        if found.get("geometry") is not None:
+            _walk(found["geometry"], polygons, points, scale, depth + 1, limits)
+    elif kind in ("Polygon", "MultiPolygon"):
+        parts = _list(found.get("coordinates"), "coordinates")
+        for rings in [parts] if kind == "Polygon" else parts:
+            check(len(polygons) + 1, limits.parts, "polygons")
+            placed = [_ring(ring, points, scale, limits) for ring in _list(rings, "a polygon's rings")]
+            if not placed:
+                raise ValueError("expected a polygon with at least one ring, got none")
+            polygons.append(shapely.Polygon(placed[0], placed[1:]))
+    elif kind not in ("Point", "MultiPoint", "LineString", "MultiLineString"):
+        raise ValueError(f"expected a type of GeoJSON, got {kind!r:.80}")
+
+
+def _list(found: Any, what: str) -> list[Any]:
+    if not isinstance(found, list):
+        raise ValueError(f"expected {what} as a list, got {found!r:.80}")
+    return found
+
+
+def _ring(found: Any, points: list[int], scale: float, limits: Limits) -> list[tuple[float, float]]:
+    ring = _list(found, "a ring")
+    points[0] += len(ring)
+    check(points[0], limits.points, "points")
+    if len(ring) < 4:
+        raise ValueError(f"expected a ring of at least 4 points, the last one the first, got {len(ring)}")
+    placed = []
+    for point in ring:
+        ok = isinstance(point, list) and len(point) >= 2
+        if not ok or not all(isinstance(c, int | float) and not isinstance(c, bool) for c in point[:2]):
+            raise ValueError(f"expected a point as [x, y], got {point!r:.80}")
+        try:
+            x, y = scale * point[0], scale * point[1]
+        except OverflowError:
+            raise ValueError("expected finite coordinates, got a whole number beyond them") from None
+        if not (math.isfinite(x) and math.isfinite(y)):
+            raise ValueError(f"expected finite coordinates, got {point!r:.80}")
+        placed.append((x, y))
+    return placed

@@ -1,0 +1,105 @@
+"""Outlines from pictures: the edge of what is opaque."""
+
+from __future__ import annotations
+
+import io
+import itertools
+import os
+from typing import Any
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+
+from ..outline import Outline
+from .limits import LIMITS, Limits, check, read
+from .rings import curve_tolerance, outlines_of_polygons
+
+
+def outlines_from_image(
+    source: str | os.PathLike[str],
+    *,
+    threshold: float = 0.5,
+    scale: float = 1.0,
+    flip: bool = False,
+    tolerance: float | None = None,
+    limits: Limits = LIMITS,
+) -> list[Outline]:
+    """Outlines of a picture file's opaque parts, largest first; see `outlines_from_mask`.
+
+    A picture without an alpha channel is taken by its brightness: what is darker than the threshold is solid.
+    Raises ValueError for what Pillow cannot read, and for more pixels than `limits` allow (asked before decoding).
+    """
+    from PIL import Image, UnidentifiedImageError
+
+    data = read(source, limits)
+    try:
+        with Image.open(io.BytesIO(data)) as picture:
+            width, height = picture.size
+            check(width * height, limits.pixels, "pixels")
+            if picture.mode in ("RGBA", "LA", "PA") or "transparency" in picture.info:
+                mask = np.asarray(picture.convert("RGBA"))[:, :, 3] / 255.0
+            else:
+                mask = 1.0 - np.asarray(picture.convert("L")) / 255.0
+    except (UnidentifiedImageError, OSError, SyntaxError, Image.DecompressionBombError) as error:
+        raise ValueError(f"{source}: expected a picture: {error}") from None
+    return outlines_from_mask(
+        mask, threshold=threshold, scale=scale, flip=flip, tolerance=tolerance, limits=limits
+    )
+
+
+def outlines_from_mask(
+    mask: ArrayLike,
+    *,
+    threshold: float = 0.5,
+    scale: float = 1.0,
+    flip: bool = False,
+    tolerance: float | None = None,
+    limits: Limits = LIMITS,
+) -> list[Outline]:
+    """Outlines of where a mask (rows, columns), 0 to 1, is above the threshold, holes included, largest first.
+
+    The edge is the contour of the mask between pixels' centres, so soft edges give places finer than a pixel; beyond
+    the picture nothing is solid. Coordinates: pixel (row i, column j) covers [j, j + 1] x [i, i + 1] times `scale`
+    (length a pixel); y points down, or up with `flip`. tolerance: largest distance of a contour point that is dropped
+    (length; None: half a pixel). Solids smaller than one pixel are dropped as specks.
+
+    Raises ValueError for other shapes, values that are not finite, a threshold outside 0 to 1, too many pixels.
+    """
+    from contourpy import FillType, contour_generator
+
+    given = np.asarray(mask, dtype=np.float64)
+    if given.ndim != 2 or 0 in given.shape:
+        raise ValueError(f"mask must have shape (rows, columns), got {given.shape}")
+    check(given.size, limits.pixels, "pixels")
+    if not np.isfinite(given).all():
+        raise ValueError("mask must be finite, got NaN or infinity")
+    if not 0 < threshold < 1:
+        raise ValueError(f"threshold must be between 0 and 1, got {threshold!r}")
+    if not 0 < scale < np.inf:
+        raise ValueError(f"scale must be a finite number > 0, got {scale!r}")
+    rows, columns = given.shape
+    allowed = 0.5 * scale if tolerance is None else curve_tolerance(tolerance, (0, 0, columns, rows))
+    padded = np.pad(given, 1)
+    contours: Any = contour_generator(z=padded, fill_type=FillType.OuterOffset)
+    points, offsets = contours.filled(threshold, max(float(padded.max()), threshold) + 1.0)
+    check(sum(map(len, points)), limits.points, "points")
+    check(len(points), limits.parts, "solids")
+    polygons = []
+    for ring_points, ring_offsets in zip(points, offsets):
+        placed = scale * (ring_points - 0.5)  # a pixel's value is at its centre; one row of padding
+        if flip:
+            placed = placed * (1.0, -1.0)
+        rings = [placed[a:b] for a, b in itertools.pairwise(ring_offsets)]
+        polygon = shapely.Polygon(rings[0], rings[1:])
+        polygons += [part for part in _parts(polygon) if part.area >= scale**2]
+    polygons.sort(key=lambda polygon: -polygon.area)
+    return outlines_of_polygons(polygons, allowed, limits)
+
+
+def _parts(polygon: shapely.Polygon) -> list[shapely.Polygon]:
+    """A contour may touch itself in a point (pixels that meet in a corner): the valid parts that it is made of."""
+    if shapely.is_valid(polygon):
+        return [polygon]
+    mended = shapely.make_valid(polygon)
+    return [part for part in shapely.get_parts(mended) if isinstance(part, shapely.Polygon)]

@@ -1,0 +1,55 @@
+"""How much a file may hold, and how it is read so that it cannot hold more."""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+from typing import NamedTuple
+
+
+class Limits(NamedTuple):
+    """What is read at most. Each is far above what a scene needs, and far below what a machine bears."""
+
+    bytes: int = 16 * 2**20
+    """Size of a file."""
+    depth: int = 32
+    """Lists and tables within each other."""
+    points: int = 1_000_000
+    """Points of all outlines together."""
+    parts: int = 100_000
+    """Bodies, shapes, joints, rings, elements: of each."""
+    pixels: int = 16 * 2**20
+    """Pixels of a picture."""
+
+
+LIMITS = Limits()
+
+
+def read(source: str | os.PathLike[str], limits: Limits) -> bytes:
+    """A file's content. ValueError for one that is too large, or no regular file (a pipe may never end)."""
+    path = Path(source)
+    with path.open("rb") as file:
+        state = os.fstat(file.fileno())
+        if not stat.S_ISREG(state.st_mode):
+            raise ValueError(f"expected a regular file, got {str(path)!r}")
+        data = file.read(limits.bytes + 1)
+    if len(data) > limits.bytes:
+        raise ValueError(f"{path}: expected at most {limits.bytes} bytes, got {state.st_size}")
+    return data
+
+
+def text(data: bytes, what: str) -> str:
+    """The bytes as UTF-8, a mark at the start dropped. ValueError where they are something else."""
+    try:
+        return data.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise ValueError(
+            f"{what}: expected UTF-8 text, got byte {data[error.start]:#x} at {error.start}"
+        ) from None
+
+
+def check(count: int, most: int, what: str) -> None:
+    """ValueError if there are too many."""
+    if count > most:
+        raise ValueError(f"expected at most {most} {what}, got {count}")

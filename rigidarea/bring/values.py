@@ -1,0 +1,82 @@
+"""Values of a scene file, each checked where it is read; every message names its place in the file."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .limits import Limits, check
+
+LARGEST = 1e50
+"""Numbers beyond this are refused: a moment goes with the fourth power of a length, times a density."""
+
+
+class Values:
+    """Reads values out of plain data. All methods raise ValueError with the place, what was expected, what came."""
+
+    def __init__(self, limits: Limits) -> None:
+        self.limits = limits
+        self.points = 0
+        """Points of rings so far."""
+
+    def table(self, found: Any, place: str, known: tuple[str, ...] | None = None) -> dict[str, Any]:
+        """A table, all of whose keys are known (None: any)."""
+        if not isinstance(found, dict):
+            raise ValueError(f"{place}: expected a table, got {found!r:.40}")
+        unknown = [key for key in found if known is not None and key not in known]
+        if unknown:
+            raise ValueError(f"{place}: expected some of {', '.join(known or ())}, got {unknown[0]!r:.40}")
+        check(len(found), self.limits.parts, f"entries in {place}")
+        return found
+
+    def rows(self, found: Any, place: str) -> list[Any]:
+        """A list."""
+        if not isinstance(found, list):
+            raise ValueError(f"{place}: expected a list, got {found!r:.40}")
+        return found
+
+    def number(
+        self, found: Any, place: str, low: float | None = None, above: bool = False, infinite: bool = False
+    ) -> float:
+        """A number >= low (or > low: above); infinite: the word "inf" is one too."""
+        wanted = "a finite number" if not infinite else 'a number or "inf"'
+        if low is not None:
+            wanted += f" {'>' if above else '>='} {low:g}"
+        value = math.inf if infinite and found == "inf" else found
+        if isinstance(value, bool) or not isinstance(value, int | float):
+            raise ValueError(f"{place}: expected {wanted}, got {found!r:.40}")
+        try:
+            value = float(value)
+        except OverflowError:
+            value = math.nan
+        finite = abs(value) <= LARGEST or (infinite and value == math.inf)
+        if not finite or (low is not None and (value < low or (above and value == low))):
+            raise ValueError(f"{place}: expected {wanted}, got {str(found)[:40]}")
+        return value
+
+    def whole(self, found: Any, place: str) -> int:
+        """A whole number as Chipmunk keeps them: 0 to 2^32 - 1."""
+        if isinstance(found, bool) or not isinstance(found, int) or not 0 <= found < 2**32:
+            raise ValueError(f"{place}: expected a whole number from 0 to 2^32 - 1, got {str(found)[:40]!r}")
+        return found
+
+    def truth(self, found: Any, place: str) -> bool:
+        """true or false."""
+        if not isinstance(found, bool):
+            raise ValueError(f"{place}: expected true or false, got {found!r:.40}")
+        return found
+
+    def point(self, found: Any, place: str) -> tuple[float, float]:
+        """[x, y]."""
+        if not isinstance(found, list) or len(found) != 2:
+            raise ValueError(f"{place}: expected [x, y], got {found!r:.40}")
+        return self.number(found[0], f"{place}[0]"), self.number(found[1], f"{place}[1]")
+
+    def ring(self, found: Any, place: str, least: int = 3) -> list[tuple[float, float]]:
+        """A list of points, counted against the limit."""
+        points = self.rows(found, place)
+        self.points += len(points)
+        check(self.points, self.limits.points, "points")
+        if len(points) < least:
+            raise ValueError(f"{place}: expected at least {least} points, got {len(points)}")
+        return [self.point(point, f"{place}[{i}]") for i, point in enumerate(points)]

@@ -1,0 +1,198 @@
+"""The command `compat`: pymunk's own examples and tests with area contact, as tables."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import tempfile
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+import pymunk
+
+from ..report import envelope, output_arguments, write_json
+from . import suite
+from .examples import EXAMPLES, FRAMES, compare
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `rigidarea compat`."""
+    parser.add_argument("what", choices=("examples", "tests"), help="pymunk's examples, or its tests")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="some of the examples (default: all)")
+    parser.add_argument(
+        "--docs", type=Path, metavar="DIR", help="rewrite pymunk-examples.md or pymunk-tests.md here"
+    )
+    output_arguments(parser, Path("out") / "compat")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run `rigidarea compat`; exit code 1 if anything is wrong natively: then the table means nothing."""
+    if arguments.what == "tests":
+        if arguments.names:
+            raise ValueError(f"compat tests takes no names, got {' '.join(arguments.names)}")
+        return _tests(arguments)
+    unknown = [name for name in arguments.names if name not in EXAMPLES]
+    if unknown:
+        raise ValueError(f"unknown example {unknown[0]!r}; expected one of {', '.join(EXAMPLES)}")
+    if arguments.names and arguments.docs:
+        raise ValueError("--docs wants all examples: leave the names out")
+    rows = []
+    names = arguments.names or list(EXAMPLES)
+    for i, name in enumerate(names):
+        print(f"[{i + 1}/{len(names)}] {name}", file=sys.stderr, flush=True)
+        rows.append(compare(name))
+    write_json(
+        envelope("compat examples", {"frames": FRAMES, "names": names}, rows, summary=summary(rows)),
+        arguments.json,
+    )
+    if arguments.json != "-":
+        print("\n".join(examples_table(rows)))
+        print(_sentence(summary(rows)))
+    if arguments.docs:
+        _write(arguments.docs / "pymunk-examples.md", examples_page(rows))
+    return int(any(row["native_wrong"] for row in rows))
+
+
+def summary(rows: list[dict[str, Any]]) -> dict[str, Any]:
+    """How many behave as meant, and the ratios of frame times: median and worst."""
+    stepping = [row for row in rows if row["steps_time"]]
+    told: dict[str, Any] = {
+        "examples": len(rows),
+        "that_step": len(stepping),
+        "as_meant": sum(row["right"] for row in stepping),
+    }
+    for key in ("step_over_native", "frame_over_native"):
+        ratios = [row[key] for row in stepping if row[key] is not None]
+        told[f"{key}_median"] = median(ratios) if ratios else None
+        told[f"{key}_worst"] = max(ratios) if ratios else None
+    return told
+
+
+def _sentence(told: dict[str, Any]) -> str:
+    def number(key: str) -> str:
+        return "-" if told[key] is None else f"{told[key]:.2f}"
+
+    return (
+        f"{told['as_meant']} of the {told['that_step']} that step a space behave as their authors meant. Time over "
+        f"native: `space.step` median {number('step_over_native_median')}, worst {number('step_over_native_worst')}; "
+        f"whole frames median {number('frame_over_native_median')}, worst {number('frame_over_native_worst')}."
+    )
+
+
+def examples_table(rows: list[dict[str, Any]]) -> list[str]:
+    """Markdown lines, one an example."""
+
+    def number(value: float | None) -> str:
+        return "" if value is None else f"{value:.2f}"
+
+    lines = [
+        "| example | bodies | as meant | step, ms | step over native | frame over native | what is not |",
+        "|---|---:|---|---:|---:|---:|---|",
+    ]
+    for row in rows:
+        meant = "yes" if row["right"] else "no"
+        if not row["steps_time"]:
+            meant = "draws only" if row["right"] else "no"
+        wrong = "; ".join([*row["wrong"], *(f"NATIVELY: {text}" for text in row["native_wrong"])])
+        lines.append(
+            f"| {row['example']} | {row['bodies'] or 0} | {meant} | {number(row['step_ms'])} | "
+            f"{number(row['step_over_native'])} | {number(row['frame_over_native'])} | {_cell(wrong)} |"
+        )
+    return lines
+
+
+def examples_page(rows: list[dict[str, Any]]) -> str:
+    """docs/pymunk-examples.md."""
+    head = f"""# pymunk's examples, unedited
+
+Each example of pymunk {pymunk.version} is run from where pymunk installed it, headless, for {FRAMES} frames with
+scripted input and seeded `random`: natively, and with `rigidarea.attach` on every space before its first
+`space.step`. The steps are the example's own. `python -m rigidarea compat examples --docs docs` renews this page.
+
+An example behaves *as meant* if two to five facts written down from reading it hold (`rigidarea/compat/facts.py`:
+the tower stands, the arrow sticks, the ball stays in the court; all hold natively), and if beside the native run
+nothing is raised or printed on standard error, no body is farther out than the native run's box by its diagonal,
+none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
+off than twice natively plus a pixel, as many bodies rest (up to a tenth), and callbacks come as often (up to a
+factor of two). Times are processor time, median over frames: `space.step` alone, and the example's whole frame with
+its drawing.
+
+{_sentence(summary(rows))}
+"""
+    return head + "\n" + "\n".join(examples_table(rows)) + "\n"
+
+
+def _cell(text: str) -> str:
+    return text.replace("|", "\\|").replace("\n", " ")
+
+
+def _tests(arguments: argparse.Namespace) -> int:
+    results = {}
+    with tempfile.TemporaryDirectory(prefix="rigidarea-suite-") as folder:
+        for mode in suite.MODES:
+            print(f"pymunk's tests, {mode}", file=sys.stderr, flush=True)
+            results[mode] = suite.run_suite(mode, folder)
+    counts = {
+        mode: {"tests": len(rows), "passed": sum(row["passed"] for row in rows)}
+        for mode, rows in results.items()
+    }
+    failed = failures(results)
+    write_json(envelope("compat tests", {}, failed, summary=counts), arguments.json)
+    page = tests_page(counts, failed)
+    if arguments.json != "-":
+        print(page)
+    if arguments.docs:
+        _write(arguments.docs / "pymunk-tests.md", page)
+    return 0
+
+
+def failures(results: dict[str, list[dict[str, Any]]]) -> list[dict[str, Any]]:
+    """A row for every test that fails in any mode: `test`, `reason`, each mode's message ("" if it passed)."""
+    messages: dict[str, dict[str, str]] = {}
+    for mode, rows in results.items():
+        for row in rows:
+            if not row["passed"]:
+                messages.setdefault(row["test"], {})[mode] = row["message"] or "failed"
+    return [
+        {
+            "test": test,
+            "reason": suite.REASONS.get(test, ""),
+            **{mode.replace(" ", "_"): found.get(mode, "") for mode in results},
+        }
+        for test, found in sorted(messages.items())
+    ]
+
+
+def tests_page(counts: dict[str, dict[str, int]], failed: list[dict[str, Any]]) -> str:
+    """docs/pymunk-tests.md."""
+    names = {
+        "pymunk": "natively",
+        "area": "attached, stepped by `Space.step`",
+        "area frames": "attached, every `Space.step` a `contact.step`",
+    }
+    lines = [
+        "# pymunk's own tests",
+        "",
+        f"The tests of pymunk {pymunk.version} (doctests left out), natively and with area contact attached to every",
+        "space when it is made. `python -m rigidarea compat tests --docs docs` renews this page.",
+        "",
+        "| how | passed | of |",
+        "|---|---:|---:|",
+        *(f"| {names[mode]} | {c['passed']} | {c['tests']} |" for mode, c in counts.items()),
+        "",
+        "Every test that fails in one of them, and why another answer than pymunk's is right, where it is:",
+        "",
+        "| test | natively | `Space.step` | `contact.step` | why |",
+        "|---|---|---|---|---|",
+    ]
+    for row in failed:
+        cells = [_cell(row[key]) for key in ("pymunk", "area", "area_frames", "reason")]
+        lines.append(f"| {row['test']} | {' | '.join(cells)} |")
+    return "\n".join(lines) + "\n"
+
+
+def _write(path: Path, text: str) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text)
+    print(f"written: {path}", file=sys.stderr)

@@ -1,0 +1,175 @@
+"""pymunk's own tests, natively and with area contact attached to every space that they make.
+
+The tests come with the installed pymunk and are run from there (doctests left out). A test that kills its process
+counts as failed, and the rest is run in a new one.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+import unittest
+import weakref
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pymunk
+
+from ..contact import attach, attached
+
+MODES = ("pymunk", "area", "area frames")
+"""Native; attached, stepped by `Space.step`; attached, every `Space.step` turned into a `contact.step`."""
+
+#: Seconds after which a process is given up.
+TIME_LIMIT = 300.0
+
+#: Why another answer than pymunk's is right: test (class.method) -> reason. What is not in here is not explained.
+REASONS: dict[str, str] = {
+    "UnitTestSpace.testCopyMethods": "it wants no global pre_solve in a fresh space; area contact is one",
+}
+
+
+def _attach_everywhere(frames: bool) -> None:
+    """From now on every space of this process is attached when it is made; frames: and stepped by contact.step."""
+    Space: Any = pymunk.Space
+    make, restore, step = Space.__init__, Space.__setstate__, Space.step
+    restoring: weakref.WeakSet[pymunk.Space] = weakref.WeakSet()
+    inside: set[int] = set()
+
+    def made(space: pymunk.Space, *arguments: Any, **named: Any) -> None:
+        make(space, *arguments, **named)
+        if space not in restoring and not inside:
+            inside.add(0)  # area contact makes spaces of its own, to find its way about pymunk's memory
+            try:
+                attach(space)
+            finally:
+                inside.discard(0)
+
+    def restored(space: pymunk.Space, state: Any) -> None:
+        restoring.add(space)  # a copy brings its contact along
+        try:
+            restore(space, state)
+        finally:
+            restoring.discard(space)
+
+    def stepped(space: pymunk.Space, dt: float) -> None:
+        contact = attached(space) if frames and dt > 0 and id(space) not in inside else None
+        if contact is None:
+            step(space, dt)
+            return
+        inside.add(id(space))
+        try:
+            contact.step(dt)
+        finally:
+            inside.discard(id(space))
+
+    Space.__init__ = made
+    Space.__setstate__ = restored
+    Space.step = stepped
+
+
+def modules() -> list[str]:
+    """pymunk's test modules."""
+    folder = Path(pymunk.__file__).parent / "tests"
+    return [f"pymunk.tests.{path.stem}" for path in sorted(folder.glob("test_*.py"))]
+
+
+def _tests(names: Sequence[str]) -> list[unittest.TestCase]:
+    """Every test of the modules, in a fixed order."""
+    found: list[unittest.TestCase] = []
+
+    def walk(suite: Any) -> None:
+        for test in suite:
+            if isinstance(test, unittest.TestSuite):
+                walk(test)
+            else:
+                found.append(test)
+
+    walk(unittest.TestLoader().loadTestsFromNames(names))
+    return found
+
+
+def name_of(test: unittest.TestCase) -> str:
+    """class.method, by which a test is listed."""
+    return ".".join(test.id().split(".")[-2:])
+
+
+def work(mode: str, names: Sequence[str], first: int, file: str) -> None:
+    """Run the tests from number `first` on in this process; a line of JSON to `file` before and after each."""
+    if mode != "pymunk":
+        _attach_everywhere(frames=mode == "area frames")
+    with open(file, "a") as out:
+
+        def say(**told: Any) -> None:
+            out.write(json.dumps(told) + "\n")
+            out.flush()
+
+        for number, test in enumerate(_tests(names)):
+            if number < first:
+                continue
+            say(number=number, name=name_of(test))
+            result = unittest.TestResult()
+            test.run(result)
+            trouble = [text for _, text in result.failures + result.errors]
+            say(
+                number=number,
+                passed=not trouble,
+                skipped=bool(result.skipped),
+                # without addresses, which differ from run to run
+                message=re.sub(r" at 0x[0-9a-f]+", "", trouble[0].strip().splitlines()[-1])[:200]
+                if trouble
+                else "",
+            )
+        say(number=-1)
+
+
+def run_suite(mode: str, folder: str | Path, names: Sequence[str] | None = None) -> list[dict[str, Any]]:
+    """One row a test: `test`, `passed`, `skipped`, `message`.
+
+    folder: where notes may be kept. names: test modules, all of pymunk's by default.
+
+    Raises ValueError for an unknown mode.
+    """
+    if mode not in MODES:
+        raise ValueError(f"mode must be one of {', '.join(MODES)}, got {mode!r}")
+    rows: list[dict[str, Any]] = []
+    names = list(modules() if names is None else names)
+    first = 0
+    home = str(Path(__file__).parents[2])
+    paths = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
+    while True:
+        file = Path(folder) / f"suite-{mode.replace(' ', '-')}-{first}.jsonl"
+        file.unlink(missing_ok=True)
+        program = (
+            f"from rigidarea.compat.suite import work; work({mode!r}, {names!r}, {first}, {str(file)!r})"
+        )
+        try:
+            ended = subprocess.run(
+                [sys.executable, "-W", "ignore", "-c", program],
+                cwd=folder,
+                env={**os.environ, "PYTHONPATH": paths},
+                capture_output=True,
+                text=True,
+                timeout=TIME_LIMIT,
+            ).returncode
+            how = f"the process ended with {ended}"
+        except subprocess.TimeoutExpired:
+            how = f"not finished after {TIME_LIMIT:g} s"
+        told = [json.loads(line) for line in file.read_text().splitlines()] if file.exists() else []
+        file.unlink(missing_ok=True)
+        if not told:
+            raise RuntimeError(f"pymunk's tests could not be started: {how}")
+        called = {line["number"]: line["name"] for line in told if "name" in line}
+        for line in told:
+            if "passed" in line:
+                kept = {key: line[key] for key in ("passed", "skipped", "message")}
+                rows.append({"test": called[line["number"]], **kept})
+        if told[-1]["number"] == -1:
+            return rows
+        number = told[-1]["number"]
+        rows.append({"test": called[number], "passed": False, "skipped": False, "message": how})
+        first = number + 1

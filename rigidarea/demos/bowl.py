@@ -1,0 +1,121 @@
+"""Concave pieces, some with holes, fill a concave bowl: no convex decomposition anywhere."""
+
+import math
+import random
+
+import numpy as np
+import pymunk
+
+from .. import Outline
+from ..gallery import Headline, Scene, add_body, static_body
+from ..outline import arc_points
+from ..shapes import ring, rounded_polygon
+
+RADIUS, WALL = 5.0, 0.4
+"""Of the bowl, inside, and of its wall (m)."""
+TOLERANCE = 2e-3
+"""Largest sagitta of a chord (m)."""
+COLUMNS, ROWS, PITCH = 5, 8, 1.75
+"""How the pieces hang above the bowl before they fall; distance of neighbours (m)."""
+DENSITY, FRICTION, ELASTICITY = 1.0, 0.35, 0.1
+G = 9.81
+
+
+def bowl() -> Outline:
+    """Half a ring, its rim at height 0."""
+    inner = arc_points((0, 0), RADIUS, math.pi, math.pi, TOLERANCE)
+    outer = arc_points((0, 0), RADIUS + WALL, 2 * math.pi, -math.pi, TOLERANCE)
+    return Outline(np.concatenate((inner, outer)))
+
+
+def c_shape(radius: float, width: float, opening: float) -> Outline:
+    """A ring with a mouth of `opening` radians, ends cut square."""
+    start, sweep = opening / 2, 2 * math.pi - opening
+    outside = arc_points((0, 0), radius, start, sweep, TOLERANCE)
+    inside = arc_points((0, 0), radius - width, start + sweep, -sweep, TOLERANCE)
+    return Outline(np.concatenate((outside, inside)))
+
+
+def star(points: int, outer: float, inner: float) -> Outline:
+    """A star with rounded tips and creases."""
+    angle = math.pi * np.arange(2 * points) / points + math.pi / 2
+    radius = np.where(np.arange(2 * points) % 2 == 0, outer, inner)
+    return rounded_polygon(
+        radius[:, None] * np.column_stack((np.cos(angle), np.sin(angle))), 0.04, tolerance=TOLERANCE
+    )
+
+
+def pieces() -> list[Outline]:
+    """What falls: U, L, star, C, ring, plate with two holes."""
+    u = [
+        (-0.55, -0.5),
+        (0.55, -0.5),
+        (0.55, 0.5),
+        (0.3, 0.5),
+        (0.3, -0.22),
+        (-0.3, -0.22),
+        (-0.3, 0.5),
+        (-0.55, 0.5),
+    ]
+    l = [(-0.4, -0.55), (0.45, -0.55), (0.45, -0.27), (-0.12, -0.27), (-0.12, 0.55), (-0.4, 0.55)]
+    plate = [(-0.62, -0.34), (0.62, -0.34), (0.62, 0.34), (-0.62, 0.34)]
+    windows = [[(x - 0.2, -0.18), (x + 0.2, -0.18), (x + 0.2, 0.18), (x - 0.2, 0.18)] for x in (-0.29, 0.29)]
+    return [
+        Outline(u),
+        Outline(l),
+        star(5, 0.65, 0.3),
+        c_shape(0.55, 0.24, 1.5),
+        ring(0.27, 0.5, tolerance=TOLERANCE),
+        Outline(plate, holes=windows),
+    ]
+
+
+def build() -> Scene:
+    """40 pieces in a loose column above the bowl, turned at random (seeded)."""
+    space = pymunk.Space()
+    space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
+    space.gravity = (0, -G)
+    static_body(space, bowl(), friction=FRICTION, elasticity=ELASTICITY)
+    chance = random.Random(7)
+    kinds = pieces()
+    bodies, colors = [], {}
+    for i in range(COLUMNS * ROWS):
+        row, column = divmod(i, COLUMNS)
+        kind = chance.randrange(len(kinds))
+        x = (column - (COLUMNS - 1) / 2) * PITCH + chance.uniform(-0.1, 0.1)
+        body = add_body(
+            space,
+            kinds[kind],
+            (x, -1.5 + row * PITCH),
+            density=DENSITY,
+            angle=chance.uniform(-math.pi, math.pi),
+            friction=FRICTION,
+            elasticity=ELASTICITY,
+        )
+        bodies.append(body)
+        colors[body] = kind
+
+    def kept() -> float:
+        """How many pieces are in the bowl, heap included."""
+        inside = 0
+        for body in bodies:
+            x, y = body.position
+            inside += math.hypot(x, y) < RADIUS if y < 0 else abs(x) < RADIUS + WALL
+        return float(inside)
+
+    top = -1.5 + ROWS * PITCH
+    return Scene(
+        name="bowl",
+        title="Concave pieces in a bowl",
+        shows="U, L, star, C, ring and plate with windows: contact by their true outlines, holes included.",
+        space=space,
+        view=(-8.5, -5.8, 8.5, 3.4),
+        headline=Headline("pieces_in_bowl", kept, float(len(bodies))),
+        chipmunk="every piece and the bowl cut into convex pieces",
+        attach={"law": "energy", "penetration": 4e-3},
+        frames=330,
+        energy_scale=sum(body.mass for body in bodies) * G * top / 2,
+        force=60.0,
+        force_px=30,
+        colors=colors,
+    )

@@ -1,0 +1,171 @@
+"""A gymnasium environment in which contact is the task: a peg goes into a slot that is hardly wider than it.
+
+    import gymnasium, rigidarea.gym
+    env = gymnasium.make("rigidarea/PegInSlot-v0", render_mode="rgb_array")
+
+Needs `pip install 'rigidarea[gym]'`. Lengths in cm, forces in N, time in s, seen from above: there is no gravity.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import gymnasium
+import numpy as np
+import pymunk
+from gymnasium import spaces
+from numpy.typing import NDArray
+
+from .contact import attach
+from .outline import Outline
+
+PEG = (2.0, 6.0)
+"""Width and length of the peg (cm); it points down its own -y."""
+DEPTH = 4.0
+"""Of the slot (cm)."""
+REACH = 12.0
+"""The peg's middle may go this far from the slot's mouth (cm)."""
+FORCE = 0.5
+"""What an action of 1 pushes with (N)."""
+TURN, TORQUE = 2.0, 2.0
+"""The angular velocity that an action of 1 asks for (1/s), and the torque with which it is held to it (N cm)."""
+MASS = 0.1
+"""Of the peg (kg: N s²/m; forces are taken per cm by the factor 100)."""
+DRAG = 4.0
+"""The table's: velocity is lost with this rate (1/s)."""
+SINKING = 1e-3
+"""How deep the largest force may press a face of the peg's width into a wall, over that width."""
+FRAME = 1 / 30
+"""One action (s)."""
+SUCCESS = 0.95
+"""Share of the slot's depth that counts as in."""
+
+
+class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
+    """Push and turn a peg into a slot.
+
+    Action: (3,) in -1 to 1, force along x and y in the world, angular velocity wanted. Observation: (7,) float32, x
+    and y of the peg's middle relative to the slot's mouth (over REACH), sine and cosine of its angle, velocity (over
+    REACH a second), angular velocity (over a turn a second). Reward: how much nearer the peg's tip came to the slot's
+    bottom (cm), and 10 when it is in. The episode ends then, or when the peg leaves its reach; it is cut off after
+    `max_steps`.
+
+    clearance: slot's width less the peg's (cm, > 0). friction: of the pair (>= 0).
+    Raises ValueError for these out of range, and for an unknown render mode.
+    """
+
+    metadata = {"render_modes": ["rgb_array"], "render_fps": round(1 / FRAME)}  # noqa: RUF012 - gymnasium's own form
+
+    def __init__(
+        self,
+        render_mode: str | None = None,
+        *,
+        clearance: float = 0.05,
+        friction: float = 0.2,
+        max_steps: int = 300,
+    ) -> None:
+        if render_mode not in (None, "rgb_array"):
+            raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
+        if not (isinstance(clearance, int | float) and 0 < clearance < PEG[0]):
+            raise ValueError(f"clearance must be between 0 and {PEG[0]:g}, got {clearance!r}")
+        if not (isinstance(friction, int | float) and 0 <= friction < math.inf):
+            raise ValueError(f"friction must be a finite number >= 0, got {friction!r}")
+        if isinstance(max_steps, bool) or not isinstance(max_steps, int) or max_steps < 1:
+            raise ValueError(f"max_steps must be a whole number >= 1, got {max_steps!r}")
+        self.render_mode = render_mode
+        self.clearance, self.friction, self.max_steps = float(clearance), float(friction), max_steps
+        self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
+        # the episode ends at the reach, but speed has no bound of its own
+        self.observation_space = spaces.Box(-np.inf, np.inf, (7,), np.float32)
+        half, wide = (PEG[0] + self.clearance) / 2, 2 * REACH
+        block = [(-wide, 0), (-wide, -DEPTH - 3), (wide, -DEPTH - 3), (wide, 0)]
+        self.slot = Outline([*block, (half, 0), (half, -DEPTH), (-half, -DEPTH), (-half, 0)])
+        w, h = PEG[0] / 2, PEG[1] / 2
+        chamfer = 0.1 * w  # without one the corners catch
+        tip = [(-w, chamfer - h), (chamfer - w, -h), (w - chamfer, -h), (w, chamfer - h)]
+        self.peg = Outline([*tip, (w, h), (-w, h)])
+        self._done_steps = 0
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """A peg somewhere above the block, turned by up to 30 degrees; the same for the same seed."""
+        super().reset(seed=seed)
+        space = pymunk.Space()
+        space.damping = math.exp(-DRAG)
+        space.add(self.slot.add_to(space.static_body, friction=math.sqrt(self.friction)))
+        self._body = self.peg.body(mass=MASS)
+        self._body.angle = float(self.np_random.uniform(-math.pi / 6, math.pi / 6))
+        self._body.position = float(self.np_random.uniform(-3, 3)), float(self.np_random.uniform(5, 7))
+        self._wrist = pymunk.SimpleMotor(space.static_body, self._body, 0.0)
+        self._wrist.max_force = 100 * TORQUE
+        space.add(self._body, self.peg.add_to(self._body, friction=math.sqrt(self.friction)), self._wrist)
+        self._space = space
+        # F = k A: 100 for kg cm/s² a newton
+        self._contact = attach(space, stiffness=100 * FORCE / (SINKING * PEG[0] ** 2))
+        self._done_steps = 0
+        self._far = self._distance()
+        return self._observation(), self._info()
+
+    def step(
+        self, action: NDArray[np.float32]
+    ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """One action for FRAME seconds. ValueError for another shape, and for values that are not finite."""
+        given = np.asarray(action, dtype=np.float64)
+        if given.shape != (3,) or not np.isfinite(given).all():
+            raise ValueError(f"action must be 3 finite numbers, got {action!r:.80}")
+        push = np.clip(given, -1.0, 1.0)
+        # the peg is the only body that moves, so gravity is the hand; a force would act in the first substep alone
+        self._space.gravity = tuple((100 * FORCE / MASS * push[:2]).tolist())
+        self._wrist.rate = -TURN * float(push[2])
+        self._contact.step(FRAME)
+        self._done_steps += 1
+        before, self._far = self._far, self._distance()
+        info = self._info()
+        reward = before - self._far + 10.0 * info["is_success"]
+        lost = self._body.position.length > REACH
+        cut = self._done_steps >= self.max_steps
+        return self._observation(), float(reward), bool(info["is_success"] or lost), cut, info
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """The picture of now, (300, 400, 3) uint8, if the render mode is rgb_array."""
+        if self.render_mode is None:
+            return None
+        import pygame
+
+        surface = pygame.Surface((400, 300))
+        surface.fill((252, 252, 250))
+        scale = 400 / (2 * REACH)
+
+        def place(x: float, y: float) -> tuple[float, float]:
+            return 200 + scale * x, 190 - scale * y
+
+        pygame.draw.polygon(surface, (176, 181, 188), [place(x, y) for x, y in self.slot.rings[0].tolist()])
+        corners = [self._body.local_to_world(tuple(point)) for point in self.peg.rings[0].tolist()]
+        pygame.draw.polygon(surface, (230, 159, 0), [place(*corner) for corner in corners])
+        pixels: NDArray[np.uint8] = pygame.surfarray.array3d(surface).swapaxes(0, 1).copy()
+        return pixels
+
+    def _tip(self) -> pymunk.Vec2d:
+        return self._body.local_to_world((0, -PEG[1] / 2))
+
+    def _distance(self) -> float:
+        return self._tip().get_distance((0, -DEPTH))
+
+    def _info(self) -> dict[str, Any]:
+        tip = self._tip()
+        inside = abs(tip.x) < (PEG[0] + self.clearance) / 2
+        depth = max(0.0, min(-tip.y / DEPTH, 1.0)) if inside else 0.0
+        return {"depth": depth, "is_success": depth >= SUCCESS, "regions": len(self._contact.regions)}
+
+    def _observation(self) -> NDArray[np.float32]:
+        body = self._body
+        x, y = body.position / REACH
+        vx, vy = body.velocity / REACH
+        turn = body.angular_velocity / math.tau
+        return np.array([x, y, math.sin(body.angle), math.cos(body.angle), vx, vy, turn], np.float32)
+
+
+if "rigidarea/PegInSlot-v0" not in gymnasium.registry:
+    gymnasium.register("rigidarea/PegInSlot-v0", entry_point="rigidarea.gym:PegInSlot")

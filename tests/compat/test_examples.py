@@ -1,0 +1,148 @@
+"""pymunk's examples: the facts hold natively, the judge sees what is wrong, attached runs are compared."""
+
+import copy
+import math
+from pathlib import Path
+
+import pymunk.examples
+import pytest
+
+from rigidarea.compat import command
+from rigidarea.compat.examples import EXAMPLES, STEPPING, compare, judge, run_example
+
+pytest.importorskip("pygame")
+
+#: Few seconds each, and between them a window, keys and mouse, none of it, a callback, pyglet.
+FAST = ("basic_test", "constraints", "damped_rotary_spring_pointer", "platformer", "using_sprites_pyglet")
+
+#: Does not behave as meant with one area step in a `space.step` of 1/60 s. Whoever mends one takes it out.
+BROKEN: set[str] = {
+    "arrows",
+    "balls_and_lines",
+    "bouncing_balls",
+    "box2d_pyramid",
+    "box2d_vertical_stack",
+    "breakout",
+    "colors",
+    "colors_pyglet_batch",
+    "contact_and_no_flipy",
+    "contact_with_friction",
+    "copy_and_pickle",
+    "damped_rotary_spring_pointer",
+    "deformable",
+    "flipper",
+    "index_video",
+    "platformer",
+    "playground",
+    "slide_and_pinjoint",
+    "tank",
+    "threaded_space",
+    "using_sprites",
+    "using_sprites_pyglet",
+    "point_query",
+}
+
+
+def test_every_example_of_the_installed_pymunk_is_listed():
+    folder = Path(pymunk.examples.__file__).parent
+    helpers = {"__init__", "__main__", "shapes_for_draw_demos"}
+    assert {path.stem for path in folder.glob("*.py")} - helpers == set(EXAMPLES)
+
+
+@pytest.mark.parametrize("name", FAST)
+def test_facts_hold_natively(name):
+    told = run_example(name, "pymunk")
+    assert told["error"] is None and told["stderr"] == "" and told["frames"] == 300
+    assert told["facts"]
+    assert [fact for fact in told["facts"] if not fact["holds"]] == []
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted(set(STEPPING) - set(FAST)))
+def test_facts_hold_natively_slow(name):
+    test_facts_hold_natively(name)
+
+
+@pytest.mark.parametrize("name", ["basic_test", "constraints"])
+def test_behaves_attached(name):
+    row = compare(name)
+    assert row["native_wrong"] == [] and row["wrong"] == []
+    assert row["step_over_native"] > 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", STEPPING)
+def test_behaves_attached_slow(name):
+    row = compare(name)
+    assert row["native_wrong"] == []
+    if name in BROKEN and row["wrong"]:
+        pytest.xfail("; ".join(row["wrong"])[:300])
+    assert row["wrong"] == []
+
+
+def calm() -> dict:
+    return {
+        "error": None,
+        "stderr": "",
+        "facts": [{"name": "stands", "holds": True, "measured": "1"}],
+        "finite": True,
+        "box": [0, 0, 300, 400],
+        "fastest": 400.0,
+        "resting": 0.9,
+        "joint_error": 0.5,
+        "calls": {"begin": 10, "pre_solve": 200, "post_solve": 0, "separate": 10},
+    }
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"error": "ValueError: no"}, "ValueError: no"),
+        ({"stderr": "x\nAssertionError\n"}, "on standard error: AssertionError"),
+        ({"facts": [{"name": "stands", "holds": False, "measured": "0"}]}, "stands: 0"),
+        ({"finite": False}, "not finite"),
+        ({"box": [0, -600, 300, 400]}, "600 outside the native run's box of 500"),
+        ({"fastest": 1000.0}, "fastest body 1000, natively 400"),
+        ({"joint_error": 2.5}, "joints off by 2.5, natively 0.5"),
+        ({"resting": 0.7}, "70% at rest, natively 90%"),
+        (
+            {"calls": {"begin": 10, "pre_solve": 900, "post_solve": 0, "separate": 10}},
+            "pre_solve called 900 times",
+        ),
+        (
+            {"calls": {"begin": 10, "pre_solve": 0, "post_solve": 0, "separate": 10}},
+            "pre_solve called 0 times",
+        ),
+    ],
+)
+def test_the_judge_sees(change, message):
+    assert judge(calm(), calm()) == []
+    (said,) = judge(calm(), {**copy.deepcopy(calm()), **change})
+    assert message in said
+
+
+def test_what_a_judge_forgives():
+    own = calm()
+    own.update(box=[-100, -100, 400, 500], fastest=600.0, resting=0.81, joint_error=1.5)
+    own["calls"] = {"begin": 30, "pre_solve": 390, "post_solve": 20, "separate": 0}
+    assert judge(calm(), own) == []
+
+
+def test_the_page_says_what_is_not_as_meant():
+    row = {
+        "example": "tower", "steps_time": True, "bodies": 3, "facts": 2, "right": False, "wrong": ["falls | over"],
+        "native_wrong": [], "step_ms": 0.5, "step_over_native": 3.0, "frame_ms": 1.0, "frame_over_native": 1.5,
+    }  # fmt: skip
+    good = {**row, "example": "arrow", "right": True, "wrong": [], "step_over_native": 1.0}
+    page = command.examples_page([row, good])
+    assert "| tower | 3 | no | 0.50 | 3.00 | 1.50 | falls \\| over |" in page
+    assert "1 of the 2 that step a space" in page and "median 2.00, worst 3.00" in page
+    assert math.isclose(command.summary([row, good])["step_over_native_median"], 2.0)
+
+
+def test_unknown_names_are_refused(capsys):
+    from rigidarea.__main__ import main
+
+    with pytest.raises(SystemExit):
+        main(["compat", "examples", "nope"])
+    assert "unknown example 'nope'" in capsys.readouterr().err

@@ -1,0 +1,110 @@
+"""`rigidarea run`: the command, as a user calls it."""
+
+import json
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from rigidarea.__main__ import main
+
+ROOT = Path(__file__).parents[2]
+
+PROGRAM = """
+import sys
+import pymunk
+print("its own words", sys.argv[1:])
+space = pymunk.Space()
+space.gravity = 0, -900
+space.add(pymunk.Segment(space.static_body, (-100, 0), (100, 0), 5))
+body = pymunk.Body(1, 100)
+body.position = 0, 40
+space.add(body, pymunk.Poly.create_box(body, (20, 20)))
+for _ in range(40):
+    space.step(1 / 60)
+assert abs(body.position.y - 15) < 2, body.position  # it lies on the segment, in either engine
+"""
+
+
+def command(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run(
+        [sys.executable, "-m", "rigidarea", "run", *words],
+        capture_output=True,
+        text=True,
+        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
+        timeout=300,
+        cwd=folder,
+    )
+
+
+def test_json_alone_on_standard_output_and_a_film(tmp_path):
+    imageio = pytest.importorskip("imageio.v2")
+    pytest.importorskip("pygame")
+    (tmp_path / "game.py").write_text(PROGRAM)
+    done = command(tmp_path, "--json", "-", "--film", "film", "game.py", "--fast", "7")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
+    assert told["command"] == "run" and told["settings"]["arguments"] == ["--fast", "7"]
+    assert told["results"]["frames"] == 40 and told["results"]["engine"] == "area"
+    assert "its own words ['--fast', '7']" in done.stderr
+    pictures = imageio.mimread(tmp_path / told["results"]["film"], memtest=False)
+    assert len(pictures) == 20
+    assert (abs(pictures[0].astype(int) - pictures[-1].astype(int)) > 60).any()  # something moved
+
+
+def test_frames_and_the_other_engine(tmp_path):
+    (tmp_path / "game.py").write_text(PROGRAM)
+    done = command(tmp_path, "--engine", "pymunk", "--frames", "5", "game.py")
+    assert done.returncode == 0, done.stderr
+    assert "its own words []" in done.stdout
+    rows = dict(line.split(None, 1) for line in done.stdout.splitlines()[1:])
+    assert rows["frames"] == "5" and rows["engine"] == '"pymunk"'
+
+
+def test_its_own_window_ends_after_the_frames_asked_for(tmp_path):
+    pytest.importorskip("pygame")
+    (tmp_path / "game.py").write_text(
+        "import pygame, pymunk\n"
+        "pygame.init()\n"
+        "screen, clock = pygame.display.set_mode((100, 80)), pygame.time.Clock()\n"
+        "space = pymunk.Space()\n"
+        "space.gravity = 0, 900\n"
+        "body = pymunk.Body(1, 1)\n"
+        "space.add(body, pymunk.Circle(body, 5))\n"
+        "while True:\n"
+        "    space.step(1 / 60)\n"
+        "    pygame.display.flip()\n"
+        "    print(type(clock).__name__, clock.tick(200) > 0)\n"
+    )
+    done = command(
+        tmp_path, "--window", "--frames", "6", "--json", "told.json", "game.py", SDL_VIDEODRIVER="dummy"
+    )
+    assert done.returncode == 0, done.stderr
+    assert json.loads((tmp_path / "told.json").read_text())["results"]["frames"] == 6
+    assert "Clock True" in done.stdout  # pygame's own clock, which takes its time
+
+
+def test_a_programs_own_error_is_told_as_its_own(tmp_path):
+    (tmp_path / "game.py").write_text("import pymunk\nraise ValueError('my own')\n")
+    done = command(tmp_path, "game.py")
+    assert done.returncode == 1
+    assert "game.py" in done.stderr and done.stderr.strip().endswith("ValueError: my own")
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["run"], "SCRIPT"),
+        (["run", "nothing.py"], "expected a Python file, got 'nothing.py'"),
+        (["run", "--frames", "0", "x.py"], "whole number of at least 1, got '0'"),
+        (["run", "--window", "--film", "f", "x.py"], "leave --window out"),
+        (["run", "--engine", "box2d", "x.py"], "choose from"),
+    ],
+)
+def test_bad_input_exits_2(words, message, capsys):
+    with pytest.raises(SystemExit) as exit:
+        main(words)
+    assert exit.value.code == 2
+    assert message in capsys.readouterr().err
