@@ -183,7 +183,7 @@ def _arbiter() -> dict[str, int]:
     return found
 
 
-#: Where a joint keeps its impulse (bytes), and how many numbers that is: chipmunk_structs.h. Checked by `_accumulators`.
+#: Where a joint keeps its impulse (bytes), and how many numbers that is (chipmunk_structs.h); `kinds_of_joints` checks.
 _IMPULSES = {
     "PinJoint": (200, 1),
     "SlideJoint": (208, 1),
@@ -249,9 +249,7 @@ def _space_and_constraint() -> dict[str, int]:
         raise LayoutError("iterations: expected at the start of Chipmunk's space")
     found = {
         "space_gravity": _find(memory, "gravity", [51.5, 52.5]),
-        "space_bodies": _find_array(
-            space._space, "bodies", [address_of(one._body), address_of(two._body)]
-        ),
+        "space_bodies": _find_array(space._space, "bodies", [address_of(one._body), address_of(two._body)]),
         "space_constraints": _find_array(space._space, "constraints", [address_of(joint._constraint)]),
     }
     handler = pymunk.Space.on_collision

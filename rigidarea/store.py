@@ -50,14 +50,29 @@ _ARRAYS = [
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
-    *("body_position", "body_angle", "body_cog", "body_transform", "body_velocity", "body_spin", "body_force"),
+    *(
+        "body_position",
+        "body_angle",
+        "body_cog",
+        "body_transform",
+        "body_velocity",
+        "body_spin",
+        "body_force",
+    ),
     *("body_torque", "body_inverse_mass", "body_inverse_moment", "body_position_func", "body_velocity_func"),
     *("position_func", "velocity_func", "body_shapes"),
     *("shape_surface_velocity", "shape_elasticity", "shape_type", "shape_filter", "shape_body", "shape_next"),
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_body_a"),
     *("arbiter_count", "arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_state"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
-    *("handler_pre_solve", "no_pre_solve", "space_gravity", "space_bodies", "space_constraints", "space_handlers"),
+    *(
+        "handler_pre_solve",
+        "no_pre_solve",
+        "space_gravity",
+        "space_bodies",
+        "space_constraints",
+        "space_handlers",
+    ),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
 
@@ -86,12 +101,15 @@ STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
     + [(f"{name}_n", "i8") for name in _ARRAYS]
     + [(name, "i8") for name in OFFSETS]
-    + [(name, Law.__annotations__[name] == "int" and "i8" or "f8") for name in Law._fields]
+    + [(name, (Law.__annotations__[name] == "int" and "i8") or "f8") for name in Law._fields]
     + [
         ("stiffness_given", "i8"),
         ("explicit", "i8"),  # 1: one symplectic Euler step a frame, Chipmunk's own positions and joints
         ("substeps", "i8"),  # of a frame
-        ("tolerance", "f8"),  # error of place allowed in a frame, over a body's smallest extent; 0: none asked
+        (
+            "tolerance",
+            "f8",
+        ),  # error of place allowed in a frame, over a body's smallest extent; 0: none asked
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
@@ -235,7 +253,15 @@ def load_tables(s: Any) -> Tables:
 def load_law(s: Any) -> Law:
     """The force law of the space whose state record is s."""
     return Law(
-        s.stiffness, s.penetration, s.gravity, s.law, s.length, s.direction, s.exponent, s.rest_speed, s.followed
+        s.stiffness,
+        s.penetration,
+        s.gravity,
+        s.law,
+        s.length,
+        s.direction,
+        s.exponent,
+        s.rest_speed,
+        s.followed,
     )
 
 

@@ -208,9 +208,7 @@ class AreaContact:
         for ident, shape in self._shapes.items():
             kind = shape.collision_type
             self._store.tables.shapes[rows[ident]]["heard"] = (kind in alone) + 2 * (kind in pairs)
-        entries = ffi.cast(
-            "unsigned int **", address_of(space._space) + int(self._state["space_handlers"])
-        )
+        entries = ffi.cast("unsigned int **", address_of(space._space) + int(self._state["space_handlers"]))
         self._state["handler_count"] = int(entries[0][0])
 
     def refresh(self, shape: pymunk.Shape) -> None:

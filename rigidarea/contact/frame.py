@@ -17,8 +17,8 @@ from numba import types
 from ..chipmunk import function
 from ..kernel.constants import FAR_SWEEPS, MOST_SUBSTEPS
 from ..kernel.jit import callback, kernel
-from ..kernel.memory import array_at
 from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.memory import array_at
 from ..kernel.solve import (
     accelerate,
     adapt_stiffness,
@@ -229,7 +229,9 @@ def _join(s: Any, h: float) -> int:
     start = 0
     total = 0
     while True:
-        status, start, joined = join(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
+        status, start, joined = join(
+            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start
+        )
         total += joined
         if status == DONE:
             return total

@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 from numba import types
 
+from ..chipmunk import function
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
 from ..kernel.tables import ANEW, APART, BODIES, Tables
 from ..store import JOINT, KINDS, STATE, row_of_body
-from ..chipmunk import function
 
 _user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 _call_user = caller(types.void(types.uintp, types.uintp))

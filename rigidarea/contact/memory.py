@@ -41,7 +41,9 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         while len(rows) > store.tables.counters[FREE_REGIONS]:
             store.grow_regions()
         tables = store.tables
-        number = int(new_pair(tables, int(store.slots[shapes[a]._hashid]), int(store.slots[shapes[b]._hashid])))
+        number = int(
+            new_pair(tables, int(store.slots[shapes[a]._hashid]), int(store.slots[shapes[b]._hashid]))
+        )
         pair = tables.pairs[number]
         for name in ("side_a", "side_b", "stiffness", "friction", "elasticity", "verdict"):
             pair[name] = old[name]

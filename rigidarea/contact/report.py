@@ -57,7 +57,9 @@ def total_energy(space: pymunk.Space, store: Store) -> float:
     for body in space.bodies:
         if body.body_type == pymunk.Body.DYNAMIC:
             center = body.local_to_world(body.center_of_gravity)
-            total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(center)
+            total += 0.5 * body.mass * body.velocity.dot(body.velocity) - body.mass * space.gravity.dot(
+                center
+            )
             if math.isfinite(body.moment):
                 total += 0.5 * body.moment * body.angular_velocity**2
     return total + float(stored(store.pool, store.tables, store.work, load_law(store.state[0])))

@@ -51,7 +51,7 @@ def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, floa
 
 @kernel
 def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
-    """Whether a shape that moves has left its box, or comes from outside of it within the last h. All boxes are renewed."""
+    """Whether a shape that moves has left its box, or came from outside of it within the last h. Renews all boxes."""
     gone = False
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
@@ -130,7 +130,9 @@ def search(pool: Pool, tables: Tables, time: float) -> int:
             if other.low_y > one.high_y or other.high_y < one.low_y or one.body == other.body:
                 continue
             it = tables.bodies[other.body]
-            if not (me.mobile or it.mobile) or (me.joined and it.joined and kept_apart(tables, one.body, other.body)):
+            if not (me.mobile or it.mobile) or (
+                me.joined and it.joined and kept_apart(tables, one.body, other.body)
+            ):
                 continue
             if one.sensor or other.sensor or not passes(one, other):
                 continue

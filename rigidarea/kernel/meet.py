@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .constants import LOOK, MOST_ARRIVED, NO_CHORD, REST_KICKS
+from .constants import LOOK, MOST_ARRIVED, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .jit import kernel
 from .overlap import A_EDGE, OVERFLOW, Relative, Work
@@ -336,7 +336,18 @@ def _size(body: Any) -> float:
 
 @kernel
 def _enter(
-    pool: Pool, work: Work, law: Law, pair: Any, region: Any, face: float, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+    pool: Pool,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    face: float,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
 ) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
     k = pair.stiffness
@@ -616,6 +627,8 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.tangent_stiffness = 0.0
         region.first_speed = 0.0
         region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, gain / inverse))
-        region.back = (u * ahead - region.depth + region.rest_depth) / h  # the closing speed that is left to it
+        region.back = (
+            u * ahead - region.depth + region.rest_depth
+        ) / h  # the closing speed that is left to it
     pair.head = kept
     return DONE

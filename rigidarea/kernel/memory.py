@@ -65,7 +65,8 @@ _CTYPES = {
 
 def prototype(signature: Any) -> Any:
     """The ctypes function type of a numba signature of pointers and scalars."""
-    return ctypes.CFUNCTYPE(_CTYPES[signature.return_type], *(_CTYPES[a] for a in signature.args))
+    kinds: list[Any] = [_CTYPES[kind] for kind in (signature.return_type, *signature.args)]
+    return ctypes.CFUNCTYPE(*kinds)
 
 
 def caller(signature: Any) -> Any:
@@ -92,7 +93,11 @@ def caller(signature: Any) -> Any:
             result = builder.call(pointer, given)
             return context.get_dummy_value() if signature.return_type == types.void else result
 
-        kinds = arguments[0].types if len(arguments) == 1 and isinstance(arguments[0], types.BaseTuple) else arguments
+        kinds = (
+            arguments[0].types
+            if len(arguments) == 1 and isinstance(arguments[0], types.BaseTuple)
+            else arguments
+        )
         return signature.return_type(types.uintp, types.StarArgTuple.from_types(tuple(kinds))), codegen
 
     return call

@@ -68,7 +68,10 @@ ROW = record(
         ("l1", "f8"),
         ("l2", "f8"),
         ("lt", "f8"),
-        ("g1", "f8"),  # what the last visit has changed, and the direction of the search so far (`solve.accelerate`)
+        (
+            "g1",
+            "f8",
+        ),  # what the last visit has changed, and the direction of the search so far (`solve.accelerate`)
         ("g2", "f8"),
         ("gt", "f8"),
         ("p1", "f8"),
@@ -108,7 +111,9 @@ def _ends(row: Any, r: Any) -> None:
 
 
 @kernel
-def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float) -> None:
+def _struck(
+    row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float
+) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;

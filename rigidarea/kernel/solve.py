@@ -172,7 +172,9 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float) -> bool:
 
 
 @kernel
-def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int) -> tuple[int, int]:
+def gather(
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
+) -> tuple[int, int]:
     """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
     counters = tables.counters
     for i in range(start, counters[NEAR]):

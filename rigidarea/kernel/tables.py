@@ -63,7 +63,10 @@ SHAPE = record(
         ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
         ("body", "i4"),  # row of its body
         ("sensor", "i4"),
-        ("heard", "i4"),  # callbacks of the user's: 1 for its type with any other, 2 for its type with one other
+        (
+            "heard",
+            "i4",
+        ),  # callbacks of the user's: 1 for its type with any other, 2 for its type with one other
         ("extent", "f8"),  # its smallest extent (length)
         ("half_x", "f8"),  # half of its outline's bounding box, body axes (length)
         ("half_y", "f8"),
@@ -111,7 +114,10 @@ PAIR = record(
         ("least", "f8"),  # of its load: the weight of the lighter body
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be at the depth allowed (length^2)
-        ("order", "f8"),  # where it comes in a sweep: its height at the last search, then how far off the middle
+        (
+            "order",
+            "f8",
+        ),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
     ],
 )
@@ -129,7 +135,10 @@ REGION = record(
         ("mode", "i4"),
         ("born", "i4"),  # 1: first seen in this substep
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
-        ("put", "i4"),  # 1: an overlap that was put there by hand, while it is deeper than any load would press it
+        (
+            "put",
+            "i4",
+        ),  # 1: an overlap that was put there by hand, while it is deeper than any load would press it
         ("opened", "i4"),  # 1 once the bodies have moved apart within this impact
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
