@@ -51,7 +51,7 @@ def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, floa
 
 @kernel
 def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
-    """Whether a shape that moves has left its box, or came from outside of it within the last h. Renews all boxes."""
+    """Whether a shape that moves leaves its box, h before now or h after it. Renews all boxes."""
     gone = False
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
@@ -65,13 +65,13 @@ def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
         shape.bottom = low_y
         shape.right = high_x
         shape.top = high_y
-        dx = h * body.vx
-        dy = h * body.vy
+        dx = h * abs(body.vx)
+        dy = h * abs(body.vy)
         if (
-            low_x - max(0.0, dx) < shape.low_x
-            or low_y - max(0.0, dy) < shape.low_y
-            or high_x - min(0.0, dx) > shape.high_x
-            or high_y - min(0.0, dy) > shape.high_y
+            low_x - dx < shape.low_x
+            or low_y - dy < shape.low_y
+            or high_x + dx > shape.high_x
+            or high_y + dy > shape.high_y
         ):
             gone = True
     return gone

@@ -35,6 +35,8 @@ LEAST_RESTITUTION = 0.01
 NO_CHORD = 1e-6
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
 LOOK = 0.5
+#: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
+HIT = 0.05
 #: Room around a shape's box, as a fraction of its size, before pairs are searched again.
 MARGIN = 0.1
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box

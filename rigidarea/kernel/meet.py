@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .constants import LOOK, MOST_ARRIVED, REST_KICKS
+from .constants import HIT, LOOK, MOST_ARRIVED, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .jit import kernel
 from .overlap import A_EDGE, OVERFLOW, Relative, Work
@@ -238,6 +238,14 @@ def inverse_mass(r: Any, a: Any, b: Any) -> float:
     )
 
 
+@kernel(inline="always")
+def region_stiffness(law: Law, k: float, chord: float) -> float:
+    """dF/ddelta of a region (design 2.3)."""
+    if law.law == LAW_AREA:
+        return k * chord
+    return k * chord * chord / law.length
+
+
 @kernel
 def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
@@ -321,17 +329,38 @@ def _touch(
     return come
 
 
-@kernel
-def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
-    """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
-    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
-    return bool(r.depth - before > MOST_ARRIVED * h * speed + 0.01 * min(_size(a), _size(b)))
+@kernel(inline="always")
+def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
+    """First touch slower than this is rest (length/time): what pushes gives that much in a few steps."""
+    if law.rest_speed >= 0.0:
+        return law.rest_speed
+    return REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(rate2))
 
 
 @kernel(inline="always")
 def _size(body: Any) -> float:
     """The smallest extent of a body that moves (length)."""
     return body.extent if body.mobile else np.inf
+
+
+@kernel
+def _hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now."""
+    u = closing(r, a, b, 1.0)
+    if u * h <= max(r.depth, HIT * min(_size(a), _size(b))):
+        return False
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
+    pushed = max(
+        law.gravity, abs(closing(r, a, b, 0.0) - u) / h
+    )  # in a stack both fall alike: gravity counts
+    return bool(u > REST_KICKS * pushed * h and phase2 > law.followed)
+
+
+@kernel
+def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
+    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
+    return bool(r.depth - before > MOST_ARRIVED * h * speed + 0.01 * min(_size(a), _size(b)))
 
 
 @kernel
@@ -365,9 +394,7 @@ def _enter(
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
-    slow = law.rest_speed
-    if slow < 0.0:
-        slow = REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(stiffness * inverse))
+    slow = _slow(law, gain, stiffness * inverse, h)
     region.first_speed = max(u, 0.0)
     region.opened = 0
     if u <= slow:
@@ -376,14 +403,6 @@ def _enter(
         region.first_speed = 0.0
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
-
-
-@kernel(inline="always")
-def region_stiffness(law: Law, k: float, chord: float) -> float:
-    """dF/ddelta of a region (design 2.3)."""
-    if law.law == LAW_AREA:
-        return k * chord
-    return k * chord * chord / law.length
 
 
 @kernel
@@ -526,6 +545,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.spring = 0.0
             region.tangent_stiffness = 0.0
             region.back = 0.0
+        elif region.mode != IMPACT and _hit(law, region, a, b, h):
+            region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
             region.mode = REST
     free_regions(regions, counters, old)
@@ -603,9 +624,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if stiffness * inverse * h * h <= law.followed:
             continue  # the steps follow it
         gain = max(0.0, u - closing(region, a, b, 1.0)) / h
-        slow = law.rest_speed
-        if slow < 0.0:
-            slow = REST_KICKS * gain * max(h, 1.0 / math.sqrt(stiffness * inverse))
+        slow = _slow(law, gain, stiffness * inverse, h)
         if min(1.0, pair.elasticity) * u > 0.0 and u > slow:
             continue
         counters[FREE_REGION] = region.next
