@@ -37,7 +37,7 @@ class AreaContact:
 
     def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
         self._settings = settings
-        self._memory: Memory = {}
+        self._memory: Memory | None = None
         self._install(space)
 
     # --- attaching ---
@@ -80,9 +80,9 @@ class AreaContact:
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         self._end = weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
         self._register()
-        if self._memory:
+        if self._memory is not None:
             recall(self._store, space, self._memory)
-            self._memory = {}
+            self._memory = None
         self.energy()  # compiled now, not when it is asked for
 
     def _hide(self, space: pymunk.Space) -> None:

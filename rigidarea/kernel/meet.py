@@ -390,7 +390,7 @@ def _enter(
         region.mode = IMPACT
     else:
         region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
-        region.put = region.mode == REST and _jumped_in(region, 0.0, a, b, h)
+        region.placed = region.mode == REST and _jumped_in(region, 0.0, a, b, h)
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
@@ -524,13 +524,13 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         )
         region.born = 1 if born else 0
         if born:
-            region.put = 0
+            region.placed = 0
         else:
             before = region.depth
-            region.put = region.put and patch.depth > 10.0 * region.rest_depth
-            if not region.put and patch.depth > 2.0 * before:
+            region.placed = region.placed and patch.depth > 10.0 * region.rest_depth
+            if not region.placed and patch.depth > 2.0 * before:
                 region.depth = patch.depth
-                region.put = _jumped_in(region, before, a, b, h)
+                region.placed = _jumped_in(region, before, a, b, h)
         if back > 0.0:
             ax, ay = _centre(a, pose_a)
             bx, by = _centre(b, pose_b)
@@ -634,7 +634,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.pair = p
         region.stamp = counters[SUBSTEP]
         region.past = 0
-        region.put = 0
+        region.placed = 0
         region.born = 1
         region.mode = NEARING
         region.opened = 0

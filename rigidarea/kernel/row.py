@@ -230,7 +230,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             least = min(a.extent, b.extent)
         if theta > 0.0:
             slowest = elastic / (RELEASE_SPEED * least)
-            c = slowest if r.put else max(c, slowest)
+            c = slowest if r.placed else max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         gamma = h * c * row.alpha

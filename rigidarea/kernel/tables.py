@@ -136,7 +136,7 @@ REGION = record(
         ("born", "i4"),  # 1: first seen in this substep
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
         (
-            "put",
+            "placed",
             "i4",
         ),  # 1: an overlap that was put there by hand, while it is deeper than any load would press it
         ("opened", "i4"),  # 1 once the bodies have moved apart within this impact
