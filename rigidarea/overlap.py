@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
+import threading
 from collections.abc import Sequence
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from typing import Any
 
 import numpy as np
 
 from .arcs import sampled
 from .kernel.direction import chord_direction
-from .kernel.overlap import Work, enlarged, new_work
+from .kernel.overlap import Work, enlarged, fits, new_work
 from .kernel.place import Pose, overlap_of_outlines, push_out
 from .kernel.pool import Pool, pack
 from .outline import DEFAULT_TOLERANCE, Outline
@@ -22,9 +24,54 @@ OVERLAP = np.dtype(
         ("centroid", "f8", 2),  # (length)
         ("direction", "f8", 2),  # unit, from A to B: the way the force pushes B
         ("chord", "f8"),  # (length); 0 where the boundaries do not cross
-        ("polygon", "O"),  # (n, 2) counter-clockwise outer boundary of the region, arcs sampled (length)
+        # RegionPolygon: an array (n, 2), made when it is looked at, of the counter-clockwise outer boundary of the
+        # region, arcs sampled (length)
+        ("polygon", "O"),
     ]
 )
+
+
+_scratch = threading.local()
+
+
+class RegionPolygon(Sequence[np.ndarray]):
+    """The boundary of a region as points (n, 2), worked out the first time that somebody looks.
+
+    Reads like the array that `numpy.asarray` makes of it: length, indices, slices, iteration. Arcs are sampled to
+    `DEFAULT_TOLERANCE` times the root of the region's area.
+    """
+
+    def __init__(
+        self,
+        corners: np.ndarray,
+        bows: np.ndarray | None,
+        pose: Pose,
+        middle: tuple[float, float],
+        tolerance: float,
+    ) -> None:
+        self._made_of = corners, bows, pose, middle, tolerance
+
+    @cached_property
+    def points(self) -> np.ndarray:
+        """float64 (n, 2), world (length)."""
+        corners, bows, pose, middle, tolerance = self._made_of
+        if bows is not None:
+            bows = np.where(bows[:, 2:] == 0, 0.0, bows)  # no centre is written for no radius
+            corners = sampled(corners, bows, tolerance)
+        return (corners + middle) @ np.array([[pose.c, pose.s], [-pose.s, pose.c]]) + (pose.x, pose.y)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
+        points = self.points if dtype is None else self.points.astype(dtype, copy=False)
+        return points.copy() if copy else points
+
+    def __len__(self) -> int:
+        return len(self.points)
+
+    def __getitem__(self, index: Any) -> Any:
+        return self.points[index]
+
+    def __repr__(self) -> str:
+        return repr(self.points)
 
 
 @lru_cache(maxsize=64)
@@ -33,10 +80,12 @@ def _packed(a: Outline, b: Outline) -> Pool:
 
 
 def _pose(place: Sequence[float], name: str) -> Pose:
-    values = np.asarray(place, dtype=float)
-    if values.shape != (3,) or not np.isfinite(values).all():
+    try:
+        x, y, angle = map(float, place)
+    except (TypeError, ValueError):
+        x = y = angle = math.nan
+    if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(angle)):
         raise ValueError(f"{name} must be finite (x, y, angle), got {place!r}")
-    x, y, angle = map(float, values)
     return Pose(x, y, math.cos(angle), math.sin(angle))
 
 
@@ -57,29 +106,34 @@ def overlap(
     a, b = _pose(place_a, "place_a"), _pose(place_b, "place_b")
     pool = _packed(outline_a, outline_b)
     points, rings = len(pool.points), len(pool.rings)
-    work: Work = new_work(points, 64, rings)
-    while (n := overlap_of_outlines(pool, 0, a, 1, b, work)[0]) < 0:
-        work = enlarged(work, points, rings)
-    turn = np.array([[a.c, a.s], [-a.s, a.c]])  # rows of A's frame times this: world
-    head = pool.heads[0]
-    middle = np.array([head["x"], head["y"]])
+    work: Work | None = getattr(_scratch, "work", None)
+    if work is None or not fits(work, points, rings):
+        work = _scratch.work = new_work(max(points, 256), 64, max(rings, 16))
+    n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
+    while n < 0:
+        work = _scratch.work = enlarged(work, max(points, 256), max(rings, 16))
+        n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
     out = np.zeros(n, OVERLAP)
+    if n == 0:
+        return out
+    head = pool.heads[0]
+    at_x, at_y = float(head["x"]), float(head["y"])
     for row, loop in zip(out, work.loops[:n]):
-        chord = math.hypot(loop["chord_x"], loop["chord_y"])
-        direction = chord_direction(loop["chord_x"], loop["chord_y"], loop["area"])
-        if direction == (0.0, 0.0):
+        start, stop, area, x, y, chord_x, chord_y, _, _, _, arcs = loop.tolist()
+        chord = math.hypot(chord_x, chord_y)
+        nx, ny = chord_direction(chord_x, chord_y, area)
+        if nx == 0.0 and ny == 0.0:
             chord = 0.0
-            direction = push_out(pool, 0, 1, overlap_of_outlines(pool, 0, a, 1, b, work)[1])
-        row["area"] = loop["area"]
-        row["centroid"] = (np.array([loop["x"], loop["y"]]) + middle) @ turn + (a.x, a.y)
-        row["direction"] = np.array(direction) @ turn
-        row["chord"] = chord
-        span = slice(loop["start"], loop["stop"])
-        corners = work.polygon[span]
-        if loop["arcs"]:
-            bows = np.where(
-                work.bows[span, 2:] == 0, 0.0, work.bows[span]
-            )  # no centre is written for no radius
-            corners = sampled(corners, bows, DEFAULT_TOLERANCE * math.sqrt(loop["area"]))
-        row["polygon"] = (corners + middle) @ turn + (a.x, a.y)
+            nx, ny = push_out(pool, 0, 1, rel)
+        x, y = x + at_x, y + at_y
+        span = slice(start, stop)
+        corners = work.polygon[span].copy()
+        bows = work.bows[span].copy() if arcs else None
+        row[()] = (
+            area,
+            (a.x + a.c * x - a.s * y, a.y + a.s * x + a.c * y),
+            (a.c * nx - a.s * ny, a.s * nx + a.c * ny),
+            chord,
+            RegionPolygon(corners, bows, a, (at_x, at_y), DEFAULT_TOLERANCE * math.sqrt(area)),
+        )
     return out

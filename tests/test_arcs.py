@@ -457,3 +457,18 @@ def test_the_public_overlap_samples_its_polygon() -> None:
     for row in rows:
         assert shapely.Polygon(row["polygon"]).area == pytest.approx(row["area"], rel=1e-3)
         assert math.hypot(*row["direction"]) == pytest.approx(1)
+
+
+def test_extent_knows_arcs(kernel: Any) -> None:
+    extent = kernel_module("extent").extent
+    a, b = KINDS["rounded L"], KINDS["disc"]
+    _, work, (loops, _) = loops_of(kernel, a, b, (0.3, 0.2, 1.0))
+    both = placed(a, (0, 0, 0)).intersection(placed(b, (0.3, 0.2, 1.0)))
+    middle = np.array(both.centroid.coords[0]) - (loops["x"][0], loops["y"][0])
+    assert len(loops) == 1
+    for t in np.linspace(0, TAU, 9):
+        n = np.array([math.cos(t), math.sin(t)])
+        along = (shapely.get_coordinates(both) - middle) @ n
+        k = loops[0]
+        got = extent(work.polygon, work.bows, int(k["start"]), int(k["stop"]), bool(k["arcs"]), *n)
+        assert got == pytest.approx((along.min(), along.max()), abs=1e-6)

@@ -5,16 +5,15 @@ from __future__ import annotations
 import numpy as np
 
 from .jit import kernel
-from .work import A_EDGE, B_EDGE, Relative, Work, measure
+from .work import A_EDGE, B_EDGE, Relative, measure
 
 
 @kernel
 def clip(
-    qa: np.ndarray, a0: int, na: int, qb: np.ndarray, b0: int, nb: int, rel: Relative, work: Work, noise: float
+    qa: np.ndarray, a0: int, na: int, qb: np.ndarray, b0: int, nb: int, rel: Relative,
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
 ) -> int:  # fmt: skip
     """Two small convex outlines: B, points qb[b0:b0+nb], clipped by the edges of A. Labels go along with vertices."""
-    p = work.polygon
-    label = work.label
     n = nb
     src = 0
     dst = len(label) // 2
@@ -68,6 +67,8 @@ def clip(
             src, dst = dst, src
         ex = fx
         ey = fy
-    if measure(work, 0, src, src + n, False, noise) == 0 or work.loops[0].area < 0.0:  # negative: rounding
+    if (
+        measure(p, label, bows, loops, 0, src, src + n, False, noise) == 0 or loops[0].area < 0.0
+    ):  # negative: rounding
         return 0
     return 1

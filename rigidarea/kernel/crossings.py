@@ -16,6 +16,9 @@ from .pool import LEAF, Pool
 from .predicates import order_exact, side
 from .work import A_EDGE, OVERFLOW, Relative, Work, noise_of, placed
 
+#: Of two outlines with arcs and so few pairs of edges all are tried: two rounded boxes have 64.
+FEW = 128
+
 
 @kernel(inline="always")
 def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
@@ -104,6 +107,12 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
     ha = pa.heads[ia]
     hb = pb.heads[ib]
     pad = noise_of(ha.radius, hb.radius, rel)
+    if (ha.arcs or hb.arcs) and ha.count * hb.count <= FEW:
+        return cross_curved_leaves(
+            pa.points, pa.following, pa.arcs, ha.point, ha.point + ha.count, pa.boxes, ha.box + 1,
+            pb.points, pb.following, pb.arcs, hb.point, hb.point + hb.count, rel, pad,
+            work.cross, work.param, work.spot, 0,
+        )  # fmt: skip
     stack = work.stack
     stack[0, 0] = 1
     stack[0, 1] = 1
@@ -123,7 +132,11 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
             a1 = ha.point + min(a0 + LEAF, ha.count)
             b1 = hb.point + min(b0 + LEAF, hb.count)
             if ha.arcs or hb.arcs:
-                n = cross_curved_leaves(pa, ha.point + a0, a1, pb, hb.point + b0, b1, rel, pad, work, n)
+                n = cross_curved_leaves(
+                    pa.points, pa.following, pa.arcs, ha.point + a0, a1, pa.boxes, ha.box + na,
+                    pb.points, pb.following, pb.arcs, hb.point + b0, b1, rel, pad,
+                    work.cross, work.param, work.spot, n,
+                )  # fmt: skip
             else:
                 n = _cross_leaves(
                     pa.points, pa.following, ha.point + a0, a1, pb.points, pb.following, hb.point + b0, b1,

@@ -6,9 +6,8 @@ import numpy as np
 
 from .arc import FIRST, SECOND, UNSURE, arc_arc, line_arc, turned
 from .jit import kernel
-from .pool import Pool
 from .predicates import side
-from .work import OVERFLOW, TANGLED, Relative, Work, placed
+from .work import OVERFLOW, TANGLED, Relative, placed
 
 
 @kernel(inline="always")
@@ -25,26 +24,37 @@ def _along(
 
 @kernel
 def cross_curved_leaves(
-    pa: Pool, a0: int, a1: int, pb: Pool, b0: int, b1: int, rel: Relative, noise: float, work: Work, n: int
-) -> int:
-    """Append the crossings of edges a0..a1 of A with edges b0..b1 of B; their number, or OVERFLOW, or TANGLED."""
+    qa: np.ndarray, next_a: np.ndarray, arcs_a: np.ndarray, a0: int, a1: int, boxes: np.ndarray, box: int,
+    qb: np.ndarray, next_b: np.ndarray, arcs_b: np.ndarray, b0: int, b1: int, rel: Relative, noise: float,
+    cross: np.ndarray, param: np.ndarray, spot: np.ndarray, n: int,
+) -> int:  # fmt: skip
+    """Append the crossings of edges a0..a1 of A, which lie in boxes[box], with edges b0..b1 of B.
+
+    Returns their number, or OVERFLOW, or TANGLED.
+    """
+    near_x = boxes[box, 0] - boxes[box, 2] - noise
+    far_x = boxes[box, 0] + boxes[box, 2] + noise
+    near_y = boxes[box, 1] - boxes[box, 3] - noise
+    far_y = boxes[box, 1] + boxes[box, 3] + noise
     for j in range(b0, b1):
-        cx, cy = placed(pb.points, j, rel)
-        dx, dy = placed(pb.points, pb.following[j], rel)
-        gx, gy = placed(pb.arcs, j, rel)
-        u = pb.arcs[j, 2]
-        bow = pb.arcs[j, 3]
+        cx, cy = placed(qb, j, rel)
+        dx, dy = placed(qb, next_b[j], rel)
+        bow = arcs_b[j, 3]
         low_x = min(cx, dx) - bow
         high_x = max(cx, dx) + bow
         low_y = min(cy, dy) - bow
         high_y = max(cy, dy) + bow
+        if high_x < near_x or low_x > far_x or high_y < near_y or low_y > far_y:
+            continue
+        gx, gy = placed(arcs_b, j, rel)
+        u = arcs_b[j, 2]
         for i in range(a0, a1):
-            k = pa.following[i]
-            ax = pa.points[i, 0]
-            ay = pa.points[i, 1]
-            bx = pa.points[k, 0]
-            by = pa.points[k, 1]
-            bow = pa.arcs[i, 3]
+            k = next_a[i]
+            ax = qa[i, 0]
+            ay = qa[i, 1]
+            bx = qa[k, 0]
+            by = qa[k, 1]
+            bow = arcs_a[i, 3]
             if (
                 max(ax, bx) + bow < low_x
                 or min(ax, bx) - bow > high_x
@@ -52,9 +62,9 @@ def cross_curved_leaves(
                 or min(ay, by) - bow > high_y
             ):
                 continue
-            fx = pa.arcs[i, 0]
-            fy = pa.arcs[i, 1]
-            r = pa.arcs[i, 2]
+            fx = arcs_a[i, 0]
+            fy = arcs_a[i, 1]
+            r = arcs_a[i, 2]
             enters = 1  # of the crossing at (x1, y1)
             if r == 0.0 and u == 0.0:
                 bits, x1, y1 = _line_line(ax, ay, bx, by, cx, cy, dx, dy)
@@ -76,17 +86,17 @@ def cross_curved_leaves(
                 return TANGLED
             for bit in (FIRST, SECOND):
                 if bits & bit:
-                    if n == len(work.cross):
+                    if n == len(cross):
                         return OVERFLOW
                     x = x1 if bit == FIRST else x2
                     y = y1 if bit == FIRST else y2
-                    work.cross[n, 0] = i
-                    work.cross[n, 1] = j
-                    work.cross[n, 2] = enters if bit == FIRST else -enters
-                    work.param[n, 0] = _along(ax, ay, bx, by, fx, fy, r, x, y)
-                    work.param[n, 1] = _along(cx, cy, dx, dy, gx, gy, u, x, y)
-                    work.spot[n, 0] = x
-                    work.spot[n, 1] = y
+                    cross[n, 0] = i
+                    cross[n, 1] = j
+                    cross[n, 2] = enters if bit == FIRST else -enters
+                    param[n, 0] = _along(ax, ay, bx, by, fx, fy, r, x, y)
+                    param[n, 1] = _along(cx, cy, dx, dy, gx, gy, u, x, y)
+                    spot[n, 0] = x
+                    spot[n, 1] = y
                     n += 1
     return n
 

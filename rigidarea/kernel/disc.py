@@ -10,10 +10,11 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from .arc import SAME_CIRCLE, across, circle_circle, on_arc, segment
 from .jit import kernel
-from .pool import Pool
-from .work import A_EDGE, B_EDGE, TANGLED, Relative, Work, measure, placed, put
+from .work import A_EDGE, B_EDGE, TANGLED, Relative, measure, placed, put
 
 #: Two crossings nearer than this, over the radius: the boundaries only touch. (An edge cuts off a chord of nothing or
 #: of 1e-8 of the radius: less comes from a corner that lies on the circle to rounding.)
@@ -49,11 +50,20 @@ def _shallow(ra: float, rb: float, x: float, y: float, d: float) -> float:
 
 
 @kernel
-def whole_disc(work: Work, label: int, cx: float, cy: float, r: float) -> int:
+def whole_disc(
+    p: np.ndarray,
+    label: np.ndarray,
+    bows: np.ndarray,
+    loops: np.ndarray,
+    own: int,
+    cx: float,
+    cy: float,
+    r: float,
+) -> int:
     """The region that is all of a disc."""
-    v = put(work, 0, label, cx + r, cy, cx - r, cy, cx, cy, r)
-    v = put(work, v, label, cx - r, cy, cx + r, cy, cx, cy, r)
-    loop = work.loops[0]
+    v = put(p, label, bows, 0, own, cx + r, cy, cx - r, cy, cx, cy, r)
+    v = put(p, label, bows, v, own, cx - r, cy, cx + r, cy, cx, cy, r)
+    loop = loops[0]
     loop.start = 0
     loop.stop = v
     loop.area = math.pi * r * r
@@ -69,7 +79,9 @@ def whole_disc(work: Work, label: int, cx: float, cy: float, r: float) -> int:
 
 
 @kernel
-def disc_disc(ra: float, rb: float, rel: Relative, work: Work) -> int:
+def disc_disc(
+    ra: float, rb: float, rel: Relative, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray
+) -> int:
     """Two discs: a lens, or the smaller one.
 
     With d the distance of the centres and depth = ra + rb - d, the chord's half length is Heron's
@@ -86,8 +98,8 @@ def disc_disc(ra: float, rb: float, rel: Relative, work: Work) -> int:
         return 0
     if d <= abs(ra - rb):
         if ra <= rb:
-            return whole_disc(work, A_EDGE, 0.0, 0.0, ra)
-        return whole_disc(work, B_EDGE, dx, dy, rb)
+            return whole_disc(p, label, bows, loops, A_EDGE, 0.0, 0.0, ra)
+        return whole_disc(p, label, bows, loops, B_EDGE, dx, dy, rb)
     dx /= d
     dy /= d
     half = 0.5 * math.sqrt(depth * (d - (ra - rb)) * (d + (ra - rb)) * (d + ra + rb)) / d
@@ -100,24 +112,23 @@ def disc_disc(ra: float, rb: float, rel: Relative, work: Work) -> int:
     fy = foot * dy
     hx = half * -dy
     hy = half * dx
-    polygon = work.polygon
-    polygon[0, 0] = fx - hx
-    polygon[0, 1] = fy - hy
-    polygon[1, 0] = ra * dx
-    polygon[1, 1] = ra * dy
-    polygon[2, 0] = fx + hx
-    polygon[2, 1] = fy + hy
-    polygon[3, 0] = (ra - depth) * dx
-    polygon[3, 1] = (ra - depth) * dy
+    p[0, 0] = fx - hx
+    p[0, 1] = fy - hy
+    p[1, 0] = ra * dx
+    p[1, 1] = ra * dy
+    p[2, 0] = fx + hx
+    p[2, 1] = fy + hy
+    p[3, 0] = (ra - depth) * dx
+    p[3, 1] = (ra - depth) * dy
     for v in range(4):
         of_a = v < 2
-        work.label[v] = A_EDGE if of_a else B_EDGE
-        work.bows[v, 0] = 0.0 if of_a else rel.tx
-        work.bows[v, 1] = 0.0 if of_a else rel.ty
-        work.bows[v, 2] = ra if of_a else rb
+        label[v] = A_EDGE if of_a else B_EDGE
+        bows[v, 0] = 0.0 if of_a else rel.tx
+        bows[v, 1] = 0.0 if of_a else rel.ty
+        bows[v, 2] = ra if of_a else rb
     area = area_a + area_b
     x = foot + (moment_a - moment_b) / area
-    loop = work.loops[0]
+    loop = loops[0]
     loop.start = 0
     loop.stop = 4
     loop.area = area
@@ -134,8 +145,9 @@ def disc_disc(ra: float, rb: float, rel: Relative, work: Work) -> int:
 
 @kernel
 def _close(
-    work: Work, v: int, label: int, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
-) -> int:
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+) -> int:  # fmt: skip
     """Append the disc's arc p -> q, counter-clockwise, however far."""
     ax = px - cx
     ay = py - cy
@@ -143,7 +155,7 @@ def _close(
     by = qy - cy
     gap = (bx - ax) ** 2 + (by - ay) ** 2
     if ax * by - ay * bx >= 0.0 or gap < (TOUCH * r) ** 2:
-        return put(work, v, label, px, py, qx, qy, cx, cy, r)
+        return put(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
     # more than half a turn: halved opposite the middle of the chord
     mx = -(ax + bx)
     my = -(ay + by)
@@ -153,8 +165,8 @@ def _close(
     f = r / math.sqrt(mx * mx + my * my)
     mx = cx + f * mx
     my = cy + f * my
-    v = put(work, v, label, px, py, mx, my, cx, cy, r)
-    return put(work, v, label, mx, my, qx, qy, cx, cy, r)
+    v = put(p, label, bows, v, own, px, py, mx, my, cx, cy, r)
+    return put(p, label, bows, v, own, mx, my, qx, qy, cx, cy, r)
 
 
 @kernel
@@ -177,23 +189,24 @@ def _cut_by_arc(
 
 @kernel
 def disc_convex(
-    cx: float, cy: float, r: float, pool: Pool, i: int, place: Relative, label: int, work: Work, noise: float
-) -> int:
-    """A disc at (cx, cy) with convex outline i, placed (by the identity if it is A), whose label is `label`."""
-    head = pool.heads[i]
-    mine = B_EDGE if label == A_EDGE else A_EDGE
-    begin = head.point
-    end = begin + head.count
-    px, py = placed(pool.points, begin, place)
+    cx: float, cy: float, r: float, points: np.ndarray, following: np.ndarray, arcs: np.ndarray, begin: int, end: int,
+    place: Relative, own: int, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
+) -> int:  # fmt: skip
+    """A disc at (cx, cy) with the convex outline of edges begin:end, placed (by the identity if it is A).
+
+    own: the outline's label, A_EDGE or B_EDGE. p, label, bows, loops: the scratch's.
+    """
+    mine = B_EDGE if own == A_EDGE else A_EDGE
+    px, py = placed(points, begin, place)
     p_in = across(px, py, cx, cy, r)
     v = 0
     crossed = 0
     open_ = False  # left, and not entered since, at (out_x, out_y)
     out_x = out_y = in_x = in_y = 0.0
     for e in range(begin, end):
-        qx, qy = placed(pool.points, pool.following[e], place)
+        qx, qy = placed(points, following[e], place)
         q_in = across(qx, qy, cx, cy, r)
-        a = pool.arcs[e, 2]
+        a = arcs[e, 2]
         enters = False
         leaves = False
         x1 = y1 = x2 = y2 = 0.0
@@ -224,7 +237,7 @@ def disc_convex(
                     x2 = fx + half * ux
                     y2 = fy + half * uy
         else:
-            ax, ay = placed(pool.arcs, e, place)
+            ax, ay = placed(arcs, e, place)
             d2 = (cx - ax) ** 2 + (cy - ay) ** 2
             if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
                 return TANGLED
@@ -232,24 +245,24 @@ def disc_convex(
         # what of p -> q lies inside the disc, and the disc's arc before it
         if p_in:
             if leaves:
-                v = put(work, v, label, px, py, x2, y2, ax, ay, a)
+                v = put(p, label, bows, v, own, px, py, x2, y2, ax, ay, a)
                 out_x = x2
                 out_y = y2
                 open_ = True
             else:
-                v = put(work, v, label, px, py, qx, qy, ax, ay, a)
+                v = put(p, label, bows, v, own, px, py, qx, qy, ax, ay, a)
         if enters:
             if open_:
-                v = _close(work, v, mine, out_x, out_y, x1, y1, cx, cy, r)
+                v = _close(p, label, bows, v, mine, out_x, out_y, x1, y1, cx, cy, r)
                 open_ = False
             else:
                 in_x = x1
                 in_y = y1
             crossed += 1
             if q_in or p_in:
-                v = put(work, v, label, x1, y1, qx, qy, ax, ay, a)
+                v = put(p, label, bows, v, own, x1, y1, qx, qy, ax, ay, a)
             else:
-                v = put(work, v, label, x1, y1, x2, y2, ax, ay, a)
+                v = put(p, label, bows, v, own, x1, y1, x2, y2, ax, ay, a)
                 out_x = x2
                 out_y = y2
                 open_ = True
@@ -258,39 +271,39 @@ def disc_convex(
         p_in = q_in
     touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
     if crossed == 0 or touched:
-        return _nested(cx, cy, r, pool, i, place, label, mine, work, noise)
+        return _nested(
+            cx, cy, r, points, following, arcs, begin, end, place, own, p, label, bows, loops, noise
+        )
     if open_:
-        v = _close(work, v, mine, out_x, out_y, in_x, in_y, cx, cy, r)
-    if measure(work, 0, 0, v, True, noise) == 0 or work.loops[0].area < 0.0:  # negative: rounding
+        v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, cx, cy, r)
+    if measure(p, label, bows, loops, 0, 0, v, True, noise) == 0 or loops[0].area < 0.0:  # negative: rounding
         return 0
     return 1
 
 
 @kernel
 def _nested(
-    cx: float, cy: float, r: float, pool: Pool, i: int, place: Relative, label: int, mine: int, work: Work,
-    noise: float,
+    cx: float, cy: float, r: float, points: np.ndarray, following: np.ndarray, arcs: np.ndarray, begin: int, end: int,
+    place: Relative, own: int, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
 ) -> int:  # fmt: skip
     """`disc_convex` where the boundaries do not cross: one inside the other, or apart."""
-    head = pool.heads[i]
-    begin = head.point
-    end = begin + head.count
     farthest = 0.0
     inside = True  # the disc's centre, of the polygon of the chords, or of what an arc adds to it
     v = 0
     for e in range(begin, end):
-        px, py = placed(pool.points, e, place)
-        qx, qy = placed(pool.points, pool.following[e], place)
-        ax, ay = placed(pool.arcs, e, place)
-        a = pool.arcs[e, 2]
-        v = put(work, v, label, px, py, qx, qy, ax, ay, a)
+        px, py = placed(points, e, place)
+        qx, qy = placed(points, following[e], place)
+        ax, ay = placed(arcs, e, place)
+        a = arcs[e, 2]
+        v = put(p, label, bows, v, own, px, py, qx, qy, ax, ay, a)
         farthest = max(farthest, (px - cx) ** 2 + (py - cy) ** 2)
         if (qx - px) * (cy - py) - (qy - py) * (cx - px) < 0.0 and not (
             a > 0.0 and across(cx, cy, ax, ay, a)
         ):
             inside = False
     for k in range(v):
-        farthest = max(farthest, (work.polygon[k, 0] - cx) ** 2 + (work.polygon[k, 1] - cy) ** 2)
+        farthest = max(farthest, (p[k, 0] - cx) ** 2 + (p[k, 1] - cy) ** 2)
     if farthest <= r * r * (1.0 + 1e-9):  # a corner may touch the circle
-        return measure(work, 0, 0, v, True, noise)
-    return whole_disc(work, mine, cx, cy, r) if inside else 0
+        return measure(p, label, bows, loops, 0, 0, v, True, noise)
+    mine = B_EDGE if own == A_EDGE else A_EDGE
+    return whole_disc(p, label, bows, loops, mine, cx, cy, r) if inside else 0

@@ -45,28 +45,31 @@ def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> t
 
 
 @kernel
-def _curved_arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> tuple[int, int]:
+def _curved_arc(
+    points: np.ndarray, following: np.ndarray, arcs: np.ndarray, rel: Relative, cross: np.ndarray, spot: np.ndarray,
+    order: np.ndarray, polygon: np.ndarray, label: np.ndarray, bows: np.ndarray, k: int, along: int, v: int,
+) -> tuple[int, int]:  # fmt: skip
     """`_arc` for outlines with arcs: edges and arcs with their middles."""
-    m = work.order[2 + along, k]
+    m = order[2 + along, k]
     wraps = m < 0
     if wraps:
         m = ~m
-    edge = work.cross[k, along]
-    last = work.cross[m, along]
-    px = work.spot[k, 0]
-    py = work.spot[k, 1]
+    edge = cross[k, along]
+    last = cross[m, along]
+    px = spot[k, 0]
+    py = spot[k, 1]
     more = edge != last or wraps
     while True:
         if more:
-            qx, qy = placed(pool.points, pool.following[edge], rel)
+            qx, qy = placed(points, following[edge], rel)
         else:
-            qx = work.spot[m, 0]
-            qy = work.spot[m, 1]
-        cx, cy = placed(pool.arcs, edge, rel)
-        v = put(work, v, along, px, py, qx, qy, cx, cy, pool.arcs[edge, 2])
+            qx = spot[m, 0]
+            qy = spot[m, 1]
+        cx, cy = placed(arcs, edge, rel)
+        v = put(polygon, label, bows, v, along, px, py, qx, qy, cx, cy, arcs[edge, 2])
         if not more:
             return m, v
-        edge = pool.following[edge]
+        edge = following[edge]
         px = qx
         py = qy
         more = edge != last
@@ -310,13 +313,15 @@ def _whole_rings(
             if arcs:
                 qx, qy = placed(pool.points, pool.following[k], place)
                 cx, cy = placed(pool.arcs, k, place)
-                v = put(work, v, along, px, py, qx, qy, cx, cy, pool.arcs[k, 2])
+                v = put(
+                    work.polygon, work.label, work.bows, v, along, px, py, qx, qy, cx, cy, pool.arcs[k, 2]
+                )
             else:
                 work.polygon[v, 0] = px
                 work.polygon[v, 1] = py
                 work.label[v] = along
                 v += 1
-        n = measure(work, n, start, v, arcs, noise)
+        n = measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
     return n, v
 
 
@@ -358,14 +363,22 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
             while True:
                 work.done[i] = 1
                 if arcs:
-                    i, v = _curved_arc(pa, own, work, i, A_EDGE, v)
-                    i, v = _curved_arc(pb, rel, work, i, B_EDGE, v)
+                    i, v = _curved_arc(
+                        pa.points, pa.following, pa.arcs, own, work.cross, work.spot, work.order,
+                        work.polygon, work.label, work.bows, i, A_EDGE, v,
+                    )  # fmt: skip
+                    i, v = _curved_arc(
+                        pb.points, pb.following, pb.arcs, rel, work.cross, work.spot, work.order,
+                        work.polygon, work.label, work.bows, i, B_EDGE, v,
+                    )  # fmt: skip
                 else:
                     i, v = _arc(pa, rel, work, i, A_EDGE, v)
                     i, v = _arc(pb, rel, work, i, B_EDGE, v)
                 if i == first:
                     break
-            n = measure(work, n, start, v, arcs, noise)
-    n, v = _whole_rings(pa, ia, own, pb, ib, rel, 0, work, n, v, noise)
-    n, v = _whole_rings(pb, ib, rel, pa, ia, rel, 1, work, n, v, noise)
-    return _gather(work, n)
+            n = measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
+    if ha.rings > 1 or not work.hit[0]:
+        n, v = _whole_rings(pa, ia, own, pb, ib, rel, 0, work, n, v, noise)
+    if hb.rings > 1 or not work.hit[half]:
+        n, v = _whole_rings(pb, ib, rel, pa, ia, rel, 1, work, n, v, noise)
+    return n if n == 0 or (n == 1 and work.loops[0].area > 0.0) else _gather(work, n)

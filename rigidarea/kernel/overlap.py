@@ -81,17 +81,23 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
     ha = pa.heads[ia]
     hb = pb.heads[ib]
     if ha.convex and hb.convex:
+        noise = noise_of(ha.radius, hb.radius, rel)
         if ha.disc and hb.disc:
-            return disc_disc(ha.radius, hb.radius, rel, work)
+            return disc_disc(ha.radius, hb.radius, rel, work.polygon, work.label, work.bows, work.loops)
         if ha.disc:
             return disc_convex(
-                0.0, 0.0, ha.radius, pb, ib, rel, B_EDGE, work, noise_of(ha.radius, hb.radius, rel)
-            )
+                0.0, 0.0, ha.radius, pb.points, pb.following, pb.arcs, hb.point, hb.point + hb.count, rel, B_EDGE,
+                work.polygon, work.label, work.bows, work.loops, noise,
+            )  # fmt: skip
         if hb.disc:
             own = Relative(1.0, 0.0, 0.0, 0.0)
-            noise = noise_of(ha.radius, hb.radius, rel)
-            return disc_convex(rel.tx, rel.ty, hb.radius, pa, ia, own, A_EDGE, work, noise)
+            return disc_convex(
+                rel.tx, rel.ty, hb.radius, pa.points, pa.following, pa.arcs, ha.point, ha.point + ha.count, own,
+                A_EDGE, work.polygon, work.label, work.bows, work.loops, noise,
+            )  # fmt: skip
         if ha.arcs + hb.arcs == 0 and ha.count * hb.count <= CLIP_PAIRS:
-            noise = noise_of(ha.radius, hb.radius, rel)
-            return clip(pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel, work, noise)
+            return clip(
+                pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel,
+                work.polygon, work.label, work.bows, work.loops, noise,
+            )  # fmt: skip
     return general(pa, ia, pb, ib, rel, work)

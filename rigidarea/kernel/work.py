@@ -127,23 +127,25 @@ def noise_of(radius_a: float, radius_b: float, rel: Relative) -> float:
 
 @kernel
 def put(
-    work: Work, v: int, label: int, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
-) -> int:
-    """Append the edge p -> q (q left out) of a loop with arcs, an arc's middle too; the number of vertices then."""
-    polygon = work.polygon
-    bows = work.bows
+    polygon: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+) -> int:  # fmt: skip
+    """Append the edge p -> q (q left out) of a loop with arcs, an arc's middle too; the number of vertices then.
+
+    (Kernels that are called often take the arrays they need: a whole `Work` costs a hundred words a call.)
+    """
     if px == qx and py == qy:
         return v
     polygon[v, 0] = px
     polygon[v, 1] = py
-    work.label[v] = label
+    label[v] = own
     bows[v, 2] = r
     if r != 0.0:
         bows[v, 0] = cx
         bows[v, 1] = cy
         v += 1
         polygon[v, 0], polygon[v, 1] = top(px, py, qx, qy, cx, cy, r)
-        work.label[v] = label
+        label[v] = own
         bows[v, 0] = cx
         bows[v, 1] = cy
         bows[v, 2] = r
@@ -151,7 +153,10 @@ def put(
 
 
 @kernel
-def measure(work: Work, n: int, start: int, stop: int, arcs: bool, noise: float) -> int:
+def measure(
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, n: int, start: int, stop: int, arcs: bool,
+    noise: float,
+) -> int:  # fmt: skip
     """Area, centroid, chord and straight stretch of the polygon start:stop as loop n; the number of loops then.
 
     arcs: whether its edges may be arcs, by `work.bows`. noise: see `noise_of`; edges that turn by no more at a vertex
@@ -159,9 +164,6 @@ def measure(work: Work, n: int, start: int, stop: int, arcs: bool, noise: float)
     """
     if stop - start < 2:
         return n
-    p = work.polygon
-    label = work.label
-    bows = work.bows
     ox = p[start, 0]
     oy = p[start, 1]
     doubled = 0.0
@@ -262,7 +264,7 @@ def measure(work: Work, n: int, start: int, stop: int, arcs: bool, noise: float)
                 flat_a = max(flat_a, reach)
             else:
                 flat_b = max(flat_b, reach)
-    loop = work.loops[n]
+    loop = loops[n]
     loop.start = start
     loop.stop = stop
     loop.area = 0.5 * doubled
