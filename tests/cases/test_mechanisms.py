@@ -67,7 +67,10 @@ def test_geneva_sweep_of_steps_counts_what_large_steps_cost():
     assert not fine["under_resolved"]
     assert coarse["under_resolved"]  # the engagement itself lasts 0.66 s
     assert fine["steps_halved"] == 0 < coarse["steps_halved"]
-    assert fine["evaluations_a_step"] == pytest.approx(fine["newton_iterations_mean"])
+    # one an iteration, and a few more where the contact is lost
+    assert (
+        fine["newton_iterations_mean"] <= fine["evaluations_a_step"] < 1.01 * fine["newton_iterations_mean"]
+    )
     assert coarse["evaluations_a_step"] > coarse["newton_iterations_mean"]
     assert coarse["run_cpu_s"] > 0
 
