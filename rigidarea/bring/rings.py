@@ -57,7 +57,7 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
                 f"ring {i}: {shapely.is_valid_reason(polygon)}; expected a ring that does not cross itself"
             )
         solid.append(polygon)
-    inner, outer = _overlapping_boxes(solid, limits)
+    inner, outer = overlapping_boxes(solid, limits.parts, "rings")
     edges = np.array([polygon.exterior for polygon in solid], object)
     areas = np.array(solid, object)
     for i, j in zip(inner, outer):
@@ -82,7 +82,7 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
     ]
 
 
-def _overlapping_boxes(solid: Sequence[shapely.Polygon], limits: Limits) -> tuple[Indices, Indices]:
+def overlapping_boxes(solid: Sequence[shapely.Polygon], most: int, what: str) -> tuple[Indices, Indices]:
     """Pairs (i, j), i != j, of polygons whose boxes overlap. Of 1e5 nested rings there are 1e10: refused."""
     if not solid:
         return np.zeros(0, int), np.zeros(0, int)
@@ -92,7 +92,7 @@ def _overlapping_boxes(solid: Sequence[shapely.Polygon], limits: Limits) -> tupl
         pairs[0] += first
         pairs = pairs[:, pairs[0] != pairs[1]]
         total += pairs.shape[1]
-        check(total, limits.parts, "pairs of rings whose boxes overlap")
+        check(total, most, f"pairs of {what} whose boxes overlap")
         found.append(pairs)
     inner, outer = np.concatenate(found, axis=1)
     return inner, outer

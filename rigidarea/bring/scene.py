@@ -48,12 +48,14 @@ from pathlib import Path
 from typing import Any
 
 import pymunk
+import shapely
 
 from ..contact import AreaContact, attach
 from ..outline import Outline
 from .geojson import parse_json
 from .joints import COMMON, JOINTS, LENGTH, POINT
 from .limits import LIMITS, Limits, check, read, text
+from .rings import overlapping_boxes
 from .values import Values
 
 FORMAT = 1
@@ -131,6 +133,7 @@ class _Reader(Values):
         self.outlines: dict[str, Outline] = {}
         self.materials: dict[str, dict[str, float]] = {}
         self.densities: dict[pymunk.Shape, float] = {}
+        self.made: list[tuple[pymunk.Body, list[pymunk.Shape]]] = []
 
     def scene(self, found: Any) -> Scene:
         known = ("rigidarea", "contact", "materials", "outlines", "bodies", "joints", *SPACE)
@@ -169,6 +172,13 @@ class _Reader(Values):
             )
             check(shapes, self.limits.parts, "shapes")
             self.body(given, f"bodies[{i}]", space, bodies)
+        # Chipmunk notes every pair of overlapping boxes as shapes are added: a heap in one place would take it hours
+        boxes = [shape.cache_bb() for _, its_shapes in self.made for shape in its_shapes]
+        overlapping_boxes(
+            [shapely.box(b.left, b.bottom, b.right, b.top) for b in boxes], self.limits.points, "shapes"
+        )
+        for body, its_shapes in self.made:
+            space.add(body, *its_shapes)
         joints: dict[str, pymunk.Constraint] = {}
         given_joints = self.rows(top.get("joints", []), "joints")
         check(len(given_joints), self.limits.parts, "joints")
@@ -216,7 +226,7 @@ class _Reader(Values):
             body.angular_velocity = self.number(
                 given.get("angular_velocity", 0.0), f"{place}.angular_velocity"
             )
-        space.add(body, *shapes)
+        self.made.append((body, shapes))
         name = given.get("name")
         if name is not None:
             if not isinstance(name, str) or not name or name in bodies:

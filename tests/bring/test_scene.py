@@ -250,6 +250,11 @@ SMALL = Limits(bytes=100_000, depth=10, points=100, parts=20, pixels=100)
             "json",
             "at most 100 points",
         ),
+        (
+            json.dumps({"rigidarea": 1, "bodies": [{"type": "static", "shapes": [{"circle": 1}]}] * 15}),
+            "json",
+            "at most 100 pairs of shapes whose boxes overlap, got 210",
+        ),
         ("x" * 200_000, "json", "at most 100000 characters"),
         ("x = " + "[" * 5000, "toml", "expected"),
         ("a" * 90_000, "toml", "expected TOML"),
