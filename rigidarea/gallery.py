@@ -185,7 +185,7 @@ class Run:
     Raises ValueError for an unknown engine.
     """
 
-    def __init__(self, scene: Scene, engine: str = "area", hook: str = "auto") -> None:
+    def __init__(self, scene: Scene, engine: str = "area") -> None:
         if engine not in ENGINES:
             raise ValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
         self.scene, self.engine, self.space = scene, engine, scene.space
@@ -201,7 +201,7 @@ class Run:
         self.bodies = sum(body.body_type == pymunk.Body.DYNAMIC for body in self.space.bodies)
         self.contact: AreaContact | None = None
         if engine == "area":
-            self.contact = attach(self.space, **{"hook": hook, **scene.attach})
+            self.contact = attach(self.space, **scene.attach)
         else:
             decompose(self.space)
         self.done = 0

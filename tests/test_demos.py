@@ -60,18 +60,6 @@ def test_runs_and_is_drawn(name, engine):
     json.dumps(plain(row), allow_nan=False)
 
 
-@pytest.mark.parametrize("name", ["journal", "gears", "geneva", "platformer"])
-def test_both_hooks_agree(name):
-    states = []
-    for hook in ("compiled", "python"):
-        run = Run(load(name), hook=hook)
-        for _ in range(12 if name == "platformer" else 2):
-            run.advance()
-        states.append([(*body.position, body.angle) for body in run.space.bodies])
-    # the same arithmetic in both, to rounding
-    np.testing.assert_allclose(*states, rtol=1e-9, atol=1e-9)
-
-
 # --- the number that each scene is about ---
 
 

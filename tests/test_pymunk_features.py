@@ -1,4 +1,4 @@
-"""pymunk's own features on an attached space, as its users know them: the same expectations for both hooks."""
+"""pymunk's own features on an attached space, as its users know them."""
 
 import copy
 import gc
@@ -18,18 +18,11 @@ G = 10.0
 DT = 1 / 960
 
 
-@pytest.fixture(params=["compiled", "python"])
-def hook(request):
-    return request.param
-
-
-def world(hook, gravity=(0, -G), **settings):
+def world(gravity=(0, -G), **settings):
     space = pymunk.Space()
     space.gravity = gravity
     settings.setdefault("stiffness", 5e4)
-    contact = ra.attach(space, hook=hook, **settings)
-    assert contact.compiled == (hook == "compiled")
-    return space, contact
+    return space, ra.attach(space, **settings)
 
 
 def floor(space, y=0.0, friction=0.5, elasticity=0.0, **attributes):
@@ -81,8 +74,8 @@ def used(contact):
 # --- what touches what ---
 
 
-def test_shape_filter(hook):
-    space, contact = world(hook)
+def test_shape_filter():
+    space, contact = world()
     floor(space, filter=pymunk.ShapeFilter(categories=0b10))
     through, shape = box(space, (0, 0.6))
     shape.filter = pymunk.ShapeFilter(mask=0b01)
@@ -97,8 +90,8 @@ def test_shape_filter(hook):
     assert len(contact.regions) == 3
 
 
-def test_sensor_is_called_but_never_pushes(hook):
-    space, contact = world(hook)
+def test_sensor_is_called_but_never_pushes():
+    space, contact = world()
     floor(space)
     _, sensor = box(space, (0, 2), body_type=pymunk.Body.STATIC)
     sensor.sensor, sensor.collision_type = True, 7
@@ -120,8 +113,8 @@ def test_sensor_is_called_but_never_pushes(hook):
     assert body.position.y == pytest.approx(0.5, abs=1e-3)
 
 
-def test_a_shape_made_sensor_while_in_contact_lets_go(hook):
-    space, _ = world(hook)
+def test_a_shape_made_sensor_while_in_contact_lets_go():
+    space, _ = world()
     shape = floor(space)
     body, _ = box(space, (0, 0.5))
     steps(space, 500)
@@ -130,8 +123,8 @@ def test_a_shape_made_sensor_while_in_contact_lets_go(hook):
 
 
 @pytest.mark.parametrize("collide", [False, True])
-def test_collide_bodies_of_a_joint(hook, collide):
-    space, contact = world(hook, gravity=(0, 0))
+def test_collide_bodies_of_a_joint(collide):
+    space, contact = world(gravity=(0, 0))
     a, _ = box(space, (0, 0))
     b, _ = box(space, (0.8, 0))
     joint = pymunk.PinJoint(a, b)
@@ -142,8 +135,8 @@ def test_collide_bodies_of_a_joint(hook, collide):
     assert (b.velocity.x > 0 or a.velocity.x < 0 or len(contact.regions) > 0) == collide
 
 
-def test_kinematic_platform_carries_a_box_and_pushes(hook):
-    space, _ = world(hook)
+def test_kinematic_platform_carries_a_box_and_pushes():
+    space, _ = world()
     platform, _ = box(space, (0, -0.5), size=(20, 1), friction=1.0, body_type=pymunk.Body.KINEMATIC)
     body, _ = box(space, (0, 0.5), friction=0.4)
     steps(space, 400)
@@ -161,8 +154,8 @@ def test_kinematic_platform_carries_a_box_and_pushes(hook):
     assert wall.velocity == (4, 0)
 
 
-def test_kinematic_and_static_do_not_push_each_other(hook):
-    space, contact = world(hook)
+def test_kinematic_and_static_do_not_push_each_other():
+    space, contact = world()
     floor(space)
     lift, _ = box(space, (0, 0.2), body_type=pymunk.Body.KINEMATIC)
     other, _ = box(space, (0.5, 0.3), body_type=pymunk.Body.KINEMATIC)
@@ -174,8 +167,8 @@ def test_kinematic_and_static_do_not_push_each_other(hook):
     assert used(contact) == (0, 0)
 
 
-def test_body_type_changed_during_a_run(hook):
-    space, _ = world(hook)
+def test_body_type_changed_during_a_run():
+    space, _ = world()
     floor(space)
     body, _ = box(space, (0, 0.5))
     steps(space, 300)
@@ -190,9 +183,9 @@ def test_body_type_changed_during_a_run(hook):
 # --- shapes and bodies ---
 
 
-def test_offset_centre_of_gravity(hook):
+def test_offset_centre_of_gravity():
     """The force finds the point under it, and the box leans as on a Winkler bed."""
-    space, contact = world(hook)
+    space, contact = world()
     floor(space)
     body, _ = box(space, (0, 0.5))
     body.center_of_gravity = 0.1, -0.3
@@ -207,7 +200,7 @@ def test_offset_centre_of_gravity(hook):
 
 def test_box_with_a_lifted_edge_comes_to_rest():
     """Centre of gravity outside the middle third: the pressure is a triangle, 3 x 0.3 m long."""
-    space, contact = world("compiled")
+    space, contact = world()
     floor(space, friction=0.0)
     body, _ = box(space, (0, 0.5))
     body.center_of_gravity = 0.2, -0.3
@@ -216,9 +209,9 @@ def test_box_with_a_lifted_edge_comes_to_rest():
     assert contact.regions[0]["chord"] == pytest.approx(0.9, rel=1e-3)
 
 
-def test_disc_with_low_centre_of_gravity_rolls_to_and_fro(hook):
+def test_disc_with_low_centre_of_gravity_rolls_to_and_fro():
     """Period 2 pi sqrt((I + m (r - d)^2) / (m g d)) for small angles, I about the centre of gravity."""
-    space, _ = world(hook, stiffness=1e6)
+    space, _ = world(stiffness=1e6)
     floor(space, friction=1.0, elasticity=1.0)
     body = pymunk.Body(1.0, 0.125)
     body.center_of_gravity = 0.0, -0.2  # before the position: setting it moves the body's origin
@@ -239,9 +232,9 @@ def test_disc_with_low_centre_of_gravity_rolls_to_and_fro(hook):
     assert crossings[2] - crossings[0] == pytest.approx(exact, rel=3e-3)
 
 
-def test_circle_with_offset(hook):
+def test_circle_with_offset():
     """The circle stands 0.25 above its body's origin."""
-    space, _ = world(hook)
+    space, _ = world()
     floor(space)
     body, _ = ball(space, (10, 0.05), radius=0.25, offset=(0, 0.25))
     body.moment = math.inf
@@ -250,8 +243,8 @@ def test_circle_with_offset(hook):
     assert body.position.y == pytest.approx(-((0.75 * G / 5e4 / math.sqrt(0.5)) ** (2 / 3)), abs=2.5e-4)
 
 
-def test_poly_with_radius_rests_on_its_rounding(hook):
-    space, _ = world(hook)
+def test_poly_with_radius_rests_on_its_rounding():
+    space, _ = world()
     floor(space)
     body = pymunk.Body(1, 1)
     body.position = 0, 0.7
@@ -261,9 +254,9 @@ def test_poly_with_radius_rests_on_its_rounding(hook):
     assert body.position.y == pytest.approx(0.7 - G / 5e4, abs=1e-4)
 
 
-def test_segments_with_radius_and_several_shapes_per_body(hook):
+def test_segments_with_radius_and_several_shapes_per_body():
     """A table: a top and two legs on one body, standing on a thick segment."""
-    space, contact = world(hook)
+    space, contact = world()
     ground = pymunk.Segment(space.static_body, (-50, -0.5), (50, -0.5), 0.5)
     ground.friction = 0.5
     space.add(ground)
@@ -284,16 +277,16 @@ def test_segments_with_radius_and_several_shapes_per_body(hook):
     assert cup.position.y == pytest.approx(2.1, abs=0.02)
 
 
-def test_shapes_of_one_body_do_not_touch_each_other(hook):
-    space, contact = world(hook, gravity=(0, 0))
+def test_shapes_of_one_body_do_not_touch_each_other():
+    space, contact = world(gravity=(0, 0))
     body, _ = box(space, (0, 0))
     space.add(pymunk.Circle(body, 0.7, (0.2, 0)))
     steps(space, 5)
     assert not len(contact.regions) and body.velocity == (0, 0)
 
 
-def test_infinite_moment_never_turns(hook):
-    space, _ = world(hook)
+def test_infinite_moment_never_turns():
+    space, _ = world()
     floor(space)
     body, _ = box(space, (0, 0.7), elasticity=0.5)
     body.moment = math.inf
@@ -304,8 +297,8 @@ def test_infinite_moment_never_turns(hook):
     assert body.velocity.length < 1e-6
 
 
-def test_damping_and_custom_velocity_func(hook):
-    space, _ = world(hook)
+def test_damping_and_custom_velocity_func():
+    space, _ = world()
     floor(space, friction=0.0, elasticity=1.0)
     space.damping = 0.5
     body, _ = box(space, (0, 0.5 - G / 5e4))
@@ -320,15 +313,15 @@ def test_damping_and_custom_velocity_func(hook):
     other.velocity_func = no_gravity
     other.velocity = 0, -1
     steps(space, 960)
-    assert other.velocity.y == pytest.approx(-1, rel=1e-12)  # nothing but the hook's force acts on it
+    assert other.velocity.y == pytest.approx(-1, rel=1e-12)  # nothing but the contact acts on it
     steps(space, 960)
     assert other.velocity.y == pytest.approx(0.5, abs=0.002)  # the issue's bound of restitution
 
 
-def test_spatial_hash_gives_the_same_bits(hook):
+def test_spatial_hash_gives_the_same_bits():
     results = []
     for use in (False, True):
-        space, _ = world(hook)
+        space, _ = world()
         if use:
             space.use_spatial_hash(1.0, 100)
         floor(space)
@@ -339,11 +332,11 @@ def test_spatial_hash_gives_the_same_bits(hook):
     assert np.array(results[0]) == pytest.approx(np.array(results[1]), abs=1e-9)
 
 
-def test_threaded_space(hook):
+def test_threaded_space():
     space = pymunk.Space(threaded=True)
     space.threads = 2
     space.gravity = 0, -G
-    contact = ra.attach(space, hook=hook, stiffness=5e4)
+    contact = ra.attach(space, stiffness=5e4)
     floor(space)
     bodies = [box(space, (0, 0.5 + i))[0] for i in range(4)]
     steps(space, 2000)
@@ -354,9 +347,9 @@ def test_threaded_space(hook):
 # --- joints and motors ---
 
 
-def test_pendulum_on_a_pivot_joint_bounces_off_a_wall(hook):
+def test_pendulum_on_a_pivot_joint_bounces_off_a_wall():
     """Elastic wall at the lowest point: it swings back to the height it came from."""
-    space, _ = world(hook, stiffness=1e6)
+    space, _ = world(stiffness=1e6)
     length = 2.0
     bob, _ = ball(space, (length, 0), radius=0.25, friction=0.0, elasticity=1.0)
     bob.moment = math.inf
@@ -389,12 +382,12 @@ JOINTS = {
 
 
 @pytest.mark.parametrize("kind", JOINTS)
-def test_every_joint_goes_on_working_beside_area_contact(hook, kind):
+def test_every_joint_goes_on_working_beside_area_contact(kind):
     """A box on a joint is hit by a ball and lands on the floor: the joint's own condition holds all the time.
 
     Bounds: pymunk's joints correct errors over time (error_bias), so a hit stretches them for a while.
     """
-    space, contact = world(hook)
+    space, contact = world()
     floor(space)
     body, _ = box(space, (0, 0.51), friction=0.3)
     (joint,) = JOINTS[kind](space, body)
@@ -429,8 +422,8 @@ def test_every_joint_goes_on_working_beside_area_contact(hook, kind):
     assert math.isfinite(body.position.x + body.angle)
 
 
-def test_motor_drives_a_wheel_along_the_floor_by_friction(hook):
-    space, _ = world(hook)
+def test_motor_drives_a_wheel_along_the_floor_by_friction():
+    space, _ = world()
     floor(space, friction=1.0)
     car = pymunk.Body(2, 1)
     car.position = 0, 0.8
@@ -453,9 +446,9 @@ def test_motor_drives_a_wheel_along_the_floor_by_friction(hook):
 # --- callbacks ---
 
 
-def test_one_way_platform(hook):
+def test_one_way_platform():
     """process_collision = False in the user's pre_solve lets through from below, and holds from above."""
-    space, contact = world(hook)
+    space, contact = world()
     platform = floor(space, y=2.0, collision_type=5)
     calls = []
 
@@ -481,8 +474,8 @@ def test_one_way_platform(hook):
     assert platform.collision_type == 5
 
 
-def test_process_collision_false_in_begin_lets_through_until_separated(hook):
-    space, contact = world(hook)
+def test_process_collision_false_in_begin_lets_through_until_separated():
+    space, contact = world()
     floor(space, collision_type=5)
 
     def begin(arbiter, space, data):
@@ -494,8 +487,8 @@ def test_process_collision_false_in_begin_lets_through_until_separated(hook):
     assert used(contact) == (0, 0)
 
 
-def test_begin_and_separate_balance_and_post_solve_is_called(hook):
-    space, contact = world(hook)
+def test_begin_and_separate_balance_and_post_solve_is_called():
+    space, contact = world()
     floor(space, elasticity=1.0, collision_type=3)
     counts = {"begin": 0, "pre": 0, "post": 0, "separate": 0}
 
@@ -526,8 +519,8 @@ def test_begin_and_separate_balance_and_post_solve_is_called(hook):
     assert used(contact) == (0, 0)
 
 
-def test_friction_overridden_in_pre_solve(hook):
-    space, contact = world(hook)
+def test_friction_overridden_in_pre_solve():
+    space, contact = world()
     floor(space, collision_type=1)
 
     def icy(arbiter, space, data):
@@ -542,8 +535,8 @@ def test_friction_overridden_in_pre_solve(hook):
     assert abs(contact.regions[0]["friction"]) == pytest.approx(0.1 * G, rel=1e-3)
 
 
-def test_restitution_overridden_in_pre_solve(hook):
-    space, _ = world(hook, stiffness=1e6)
+def test_restitution_overridden_in_pre_solve():
+    space, _ = world(stiffness=1e6)
     floor(space, collision_type=1, elasticity=1.0)
 
     def bouncy(arbiter, space, data):
@@ -559,8 +552,8 @@ def test_restitution_overridden_in_pre_solve(hook):
     assert highest == pytest.approx(0.64, abs=0.02)  # 2 e 0.003 m and gravity's share of 1 %
 
 
-def test_surface_velocity_overridden_in_pre_solve(hook):
-    space, _ = world(hook)
+def test_surface_velocity_overridden_in_pre_solve():
+    space, _ = world()
     ground = floor(space, collision_type=1, friction=1.0)
     given = []
 
@@ -585,14 +578,14 @@ def test_surface_velocity_overridden_in_pre_solve(hook):
 
 
 @pytest.mark.parametrize("belt_is", ["segment", "poly", "outline", "the moving one"])
-def test_conveyor_by_surface_velocity(hook, belt_is):
+def test_conveyor_by_surface_velocity(belt_is):
     """The same direction and speed as native pymunk; on an outline's stand-in too."""
     speeds = []
     for attach in (True, False):
         space = pymunk.Space()  # twice the same, in native pymunk the second time
         space.gravity = 0, -G
         if attach:
-            ra.attach(space, hook=hook, stiffness=5e4)
+            ra.attach(space, stiffness=5e4)
         static = space.static_body
         if belt_is == "outline":
             comb = [(-9, -1), (9, -1), (9, 0), (1, 0), (1, -0.2), (0.9, -0.2), (0.9, 0), (-9, 0)]
@@ -617,9 +610,9 @@ def test_conveyor_by_surface_velocity(hook, belt_is):
     assert area == pytest.approx(native, rel=1e-6)
 
 
-def test_surface_velocity_on_an_inclined_outline_acts_along_the_contact(hook):
+def test_surface_velocity_on_an_inclined_outline_acts_along_the_contact():
     """The stand-in's normal is not the contact's: the belt still carries at its full speed."""
-    space, _ = world(hook)
+    space, _ = world()
     wedge = ra.Outline([(-6, -3), (6, -3), (6, 0.6), (-6, -0.6)])
     belt = wedge.add_to(space.static_body, friction=1.0)
     along = pymunk.Vec2d(12, 1.2).normalized()
@@ -640,8 +633,8 @@ def test_surface_velocity_on_an_inclined_outline_acts_along_the_contact(hook):
     assert abs(body.velocity.dot(along)) == pytest.approx(1.0, rel=2e-3)
 
 
-def test_an_exception_in_a_users_callback_is_printed_and_the_space_goes_on(hook, monkeypatch):
-    space, contact = world(hook)
+def test_an_exception_in_a_users_callback_is_printed_and_the_space_goes_on(monkeypatch):
+    space, contact = world()
     floor(space, collision_type=2)
 
     def broken(arbiter, space, data):
@@ -662,12 +655,12 @@ def test_an_exception_in_a_users_callback_is_printed_and_the_space_goes_on(hook,
 # --- adding and removing ---
 
 
-def test_thousands_of_adds_and_removes_do_not_grow_the_pairs(hook):
-    space, contact = world(hook)
+def test_thousands_of_adds_and_removes_do_not_grow_the_pairs():
+    space, contact = world()
     floor(space)
     box(space, (0, 0.5))
     sizes = set()
-    cycles = 3000 if hook == "compiled" else 400
+    cycles = 3000
     for i in range(cycles):
         body, shape = box(space, (3, 0.49))
         space.step(DT)
@@ -678,7 +671,6 @@ def test_thousands_of_adds_and_removes_do_not_grow_the_pairs(hook):
             space.remove(shape)
             space.remove(body)
         if i % 100 == 99:
-            contact.steps(1 / 60)
             tables = contact._store.tables
             sizes.add((len(tables.pairs), len(tables.regions)))
     space.step(DT)
@@ -687,34 +679,22 @@ def test_thousands_of_adds_and_removes_do_not_grow_the_pairs(hook):
     assert len(contact._shapes) < cycles / 2
 
 
-def test_rows_of_shapes_that_are_gone_are_used_again(hook):
-    """A particle fountain: ten shapes alive, a thousand gone. A step looks at every row (highest_frequency)."""
-    space, contact = world(hook)
+def test_rows_of_shapes_that_are_gone_are_used_again():
+    """A particle fountain: ten shapes alive, a thousand gone. A search looks at every row."""
+    space, contact = world()
     floor(space)
     alive = []
     for i in range(1000):
         alive.append(ball(space, (i % 10, 0.5), radius=0.1))
-        contact.steps(1 / 60)
+        space.step(DT)
         if len(alive) > 10:
             space.remove(*alive.pop(0))
     assert len(contact._store.known_shapes) < 500
 
 
-def test_a_shape_that_is_gone_no_longer_sets_the_step(hook):
-    """A light, stiff body needed short steps; removed, the rest may go on with long ones."""
-    space, contact = world(hook)
-    floor(space)
-    box(space, (0, 0.5))
-    before = contact.steps(1 / 60)
-    light = box(space, (5, 0.5), mass=1e-3)
-    assert contact.steps(1 / 60) > 20 * before
-    space.remove(*light)
-    assert contact.steps(1 / 60) == before
-
-
-def test_new_outlines_come_and_go_without_a_leak(hook):
+def test_new_outlines_come_and_go_without_a_leak():
     """Every cycle brings an outline of its own (a game's debris): what is gone must not be kept for ever."""
-    space, contact = world(hook)
+    space, contact = world()
     floor(space)
     cycles = 600
     for i in range(cycles):
@@ -726,12 +706,11 @@ def test_new_outlines_come_and_go_without_a_leak(hook):
         space.add(body, shape)
         space.step(DT)
         space.remove(body, shape)
-        contact.steps(1 / 60)
     assert len(contact._store.pool.heads) < cycles / 2
 
 
-def test_removing_a_body_in_contact_lets_the_rest_go_on(hook):
-    space, contact = world(hook)
+def test_removing_a_body_in_contact_lets_the_rest_go_on():
+    space, contact = world()
     floor(space)
     lower, lower_shape = box(space, (0, 0.5))
     upper, _ = box(space, (0, 1.5))
@@ -744,9 +723,9 @@ def test_removing_a_body_in_contact_lets_the_rest_go_on(hook):
     assert upper.position.y == pytest.approx(0.5, abs=1e-3)
 
 
-def test_a_shape_comes_back_and_moves_to_another_space(hook):
+def test_a_shape_comes_back_and_moves_to_another_space():
     """Its row was given to others meanwhile; each space knows it by an id of its own."""
-    space, contact = world(hook)
+    space, contact = world()
     floor(space)
     body, shape = box(space, (0, 0.6))
     steps(space, 300)
@@ -760,7 +739,7 @@ def test_a_shape_comes_back_and_moves_to_another_space(hook):
         contact.step(1 / 60)
     assert used(contact) == (1, 1)
     assert body.position.y == pytest.approx(0.5 - G / 5e4, abs=1e-6)
-    second, contact_2 = world(hook)
+    second, contact_2 = world()
     box(second, (9, 9))
     floor(second, y=-1.0)
     space.remove(body, shape)
@@ -771,25 +750,25 @@ def test_a_shape_comes_back_and_moves_to_another_space(hook):
     assert used(contact) == (0, 0) and used(contact_2)[0] == 2
 
 
-def test_mass_given_by_density(hook):
-    space, contact = world(hook, stiffness=None)
+def test_mass_given_by_density():
+    space, contact = world(stiffness=None)
     floor(space)
     body = pymunk.Body()
     body.position = 0, 0.6
     shape = pymunk.Poly.create_box(body, (1, 1))
     shape.density = 2.0
     space.add(body, shape)
-    for _ in range(60):
+    for _ in range(300):
         contact.step(1 / 60)
     assert contact.regions["force"] == pytest.approx([2 * G], rel=1e-9)
-    # chosen so that it sinks by 2e-4 of its face
-    assert contact.stiffness == pytest.approx(2 * G / 2e-4, rel=1e-12)
+    # chosen so that it sinks by 2e-4 of its size: the load is an average over half a second, ten of which have passed
+    assert contact.regions["stiffness"] == pytest.approx([2 * G / 2e-4], rel=1e-3)
 
 
 @pytest.mark.parametrize("kind", ["box", "ball"])
-def test_sliding_and_rolling_over_the_joints_of_a_floor(hook, kind):
+def test_sliding_and_rolling_over_the_joints_of_a_floor(kind):
     """A floor of many segments feels like one: no bumps ("ghost collisions") where they meet."""
-    space, _ = world(hook, stiffness=1e6)
+    space, _ = world(stiffness=1e6)
     for i in range(-10, 10):
         shape = pymunk.Segment(space.static_body, (i, 0), (i + 1, 0), 0)
         shape.friction = 1.0
@@ -809,9 +788,9 @@ def test_sliding_and_rolling_over_the_joints_of_a_floor(hook, kind):
     assert body.velocity.x == pytest.approx(2.0, rel=0.01 if kind == "ball" else 1e-4)
 
 
-def test_adding_and_removing_from_callbacks(hook):
+def test_adding_and_removing_from_callbacks():
     """Each ball that lands is replaced by a new one in a post-step callback."""
-    space, contact = world(hook)
+    space, contact = world()
     floor(space, collision_type=1)
     made = []
 
@@ -838,9 +817,9 @@ def test_adding_and_removing_from_callbacks(hook):
     assert used(contact)[0] <= 1
 
 
-def test_shape_added_in_a_callback_during_the_step(hook):
+def test_shape_added_in_a_callback_during_the_step():
     """pymunk puts off what is added while locked; the new shape is met at the next step without set-up."""
-    space, contact = world(hook)
+    space, contact = world()
     floor(space, collision_type=1)
     new = []
 
@@ -872,22 +851,22 @@ def scene(space):
     ball(space, (0.1, 5), elasticity=0.3)
 
 
-def test_detached_before_any_step_is_native_to_the_bit(hook):
+def test_detached_before_any_step_is_native_to_the_bit():
     results = []
     for detour in (False, True):
         space = pymunk.Space()
         space.gravity = 0, -G
         scene(space)
         if detour:
-            ra.attach(space, hook=hook).detach()
+            ra.attach(space).detach()
         steps(space, 1500, 1 / 240)
         results.append(state(space))
     assert (results[0] == results[1]).all()
 
 
-def test_detached_in_flight_after_contacts_is_native_to_the_bit(hook):
+def test_detached_in_flight_after_contacts_is_native_to_the_bit():
     """Well defined where nothing touches: no arbiter is left from which the solver could start warm."""
-    space, contact = world(hook, stiffness=1e4)
+    space, contact = world(stiffness=1e4)
     scene(space)
     steps(space, 1500)
     for i, body in enumerate(space.bodies):
@@ -909,8 +888,8 @@ def test_detached_in_flight_after_contacts_is_native_to_the_bit(hook):
     assert (state(space) == state(fresh)).all()
 
 
-def test_detached_mid_contact_stands_natively_and_can_be_attached_again(hook):
-    space, contact = world(hook)
+def test_detached_mid_contact_stands_natively_and_can_be_attached_again():
+    space, contact = world()
     scene(space)
     steps(space, 2000)
     contact.detach()
@@ -921,7 +900,7 @@ def test_detached_mid_contact_stands_natively_and_can_be_attached_again(hook):
     for body in space.bodies:
         body.each_arbiter(lambda arbiter: impulses.append(arbiter.total_impulse.length))
     assert max(impulses) > 0  # Chipmunk's own response carries
-    again = ra.attach(space, hook=hook, stiffness=5e4)
+    again = ra.attach(space, stiffness=5e4)
     steps(space, 2000)
     assert again is not contact and ra.attached(space) is again
     assert again.regions["force"].sum() > 0
@@ -929,9 +908,9 @@ def test_detached_mid_contact_stands_natively_and_can_be_attached_again(hook):
     assert low > 0.45
 
 
-def test_two_spaces_at_once_do_not_meet(hook):
+def test_two_spaces_at_once_do_not_meet():
     def make():
-        space, contact = world(hook)
+        space, contact = world()
         scene(space)
         return space, contact
 
@@ -971,8 +950,8 @@ def bent_scene(space):
 
 @pytest.mark.parametrize("how", ["copy", "deepcopy", "pickle"])
 @pytest.mark.parametrize("when", [0, 333, 1500])
-def test_copies_go_on_bit_for_bit(hook, how, when):
-    space, contact = world(hook, rest_speed=0.05, length=1.0)
+def test_copies_go_on_bit_for_bit(how, when):
+    space, contact = world(rest_speed=0.05, length=1.0)
     bent_scene(space)
     steps(space, when)
     if how == "copy":
@@ -989,7 +968,7 @@ def test_copies_go_on_bit_for_bit(hook, how, when):
     steps(space, 500)
     steps(other, 500)
     found = ra.attached(other)
-    assert found is not None and found.compiled == contact.compiled
+    assert found is not None
     assert (state(space) == state(other)).all()
     assert (np.sort(found.regions["force"]) == np.sort(contact.regions["force"])).all()
     assert len(contact.regions) > 0
@@ -997,21 +976,22 @@ def test_copies_go_on_bit_for_bit(hook, how, when):
     assert ra.attached(space) is contact
 
 
-def test_copy_before_anything_was_chosen(hook):
+def test_copy_before_anything_was_chosen():
     space = pymunk.Space()
     space.gravity = 0, -G
-    contact = ra.attach(space, hook=hook)
+    contact = ra.attach(space)
     bent_scene(space)
     other = space.copy()
     contact.step(1 / 60)
     copied = ra.attached(other)
     copied.step(1 / 60)
-    assert copied.stiffness == contact.stiffness > 0
-    assert copied.rest_speed == contact.rest_speed > 0
+    assert copied.stiffness is contact.stiffness is None
+    assert (copied.regions["stiffness"] == contact.regions["stiffness"]).all()
+    assert (state(space) == state(other)).all()
 
 
-def test_copy_of_a_copy_and_of_a_detached_space(hook):
-    space, contact = world(hook)
+def test_copy_of_a_copy_and_of_a_detached_space():
+    space, contact = world()
     bent_scene(space)
     steps(space, 700)
     second = space.copy().copy()  # the first copy was never stepped
@@ -1027,8 +1007,8 @@ def test_copy_of_a_copy_and_of_a_detached_space(hook):
 # --- sleeping ---
 
 
-def sleepy(hook):
-    space, contact = world(hook)
+def sleepy():
+    space, contact = world()
     space.sleep_time_threshold = 0.3
     space.idle_speed_threshold = 0.05
     floor(space, friction=1.0)
@@ -1036,7 +1016,7 @@ def sleepy(hook):
 
 
 def test_a_stack_falls_asleep_as_one_and_wakes_when_hit():
-    space, _ = sleepy("compiled")
+    space, _ = sleepy()
     bodies = [box(space, (0, 0.5 + i), friction=0.8)[0] for i in range(4)]
     other, _ = box(space, (10, 0.5))
     asleep_at = {}
@@ -1065,7 +1045,7 @@ def test_a_stack_falls_asleep_as_one_and_wakes_when_hit():
 
 def test_friction_memory_outlives_sleep():
     """A block on an incline sleeps and is woken: it does not slip by the friction spring's stretch again."""
-    space, contact = world("compiled")
+    space, contact = world()
     space.sleep_time_threshold = 4.0  # until it has settled
     theta = 0.4
     along = pymunk.Vec2d(50, 0).rotated(theta)
@@ -1086,7 +1066,7 @@ def test_friction_memory_outlives_sleep():
 
 
 def test_waking_changes_nothing():
-    space, _ = sleepy("compiled")
+    space, _ = sleepy()
     space.sleep_time_threshold = 2.0
     body, _ = box(space, (0, 0.5 - G / 5e4))
     steps(space, 4000)
@@ -1099,7 +1079,7 @@ def test_waking_changes_nothing():
 
 
 def test_sleeping_removal_and_detach():
-    space, contact = sleepy("compiled")
+    space, contact = sleepy()
     bodies = [box(space, (0, 0.5 + i), friction=0.8)[0] for i in range(3)]
     steps(space, 4000)
     assert all(b.is_sleeping for b in bodies)
@@ -1118,7 +1098,7 @@ def test_sleeping_removal_and_detach():
 
 
 @pytest.mark.parametrize("how", ["del space", "del contact", "exit", "both", "remove all"])
-def test_a_space_may_go_while_contacts_live(hook, how):
+def test_a_space_may_go_while_contacts_live(how):
     code = f"""
         import gc, pymunk, rigidarea as ra
         for round in range(5):
@@ -1126,7 +1106,7 @@ def test_a_space_may_go_while_contacts_live(hook, how):
             space.gravity = 0, -10
             floor = pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0)
             space.add(floor)
-            contact = ra.attach(space, stiffness=5e4, hook={hook!r})
+            contact = ra.attach(space, stiffness=5e4)
             for i in range(40):
                 body = pymunk.Body(1, 1)
                 body.position = 1.1 * (i % 8), 0.499 + i // 8
@@ -1159,10 +1139,10 @@ def test_a_space_may_go_while_contacts_live(hook, how):
     assert run.stderr == ""
 
 
-def test_a_space_is_collected_with_its_contact(hook):
+def test_a_space_is_collected_with_its_contact():
     import weakref
 
-    space, contact = world(hook)
+    space, contact = world()
     scene(space)
     steps(space, 100)
     gone = weakref.ref(space), weakref.ref(contact)
