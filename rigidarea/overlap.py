@@ -118,7 +118,7 @@ def overlap(
         return out
     head = pool.heads[0]
     at_x, at_y = float(head["x"]), float(head["y"])
-    for row, loop in zip(out, work.loops[:n]):
+    for k, loop in enumerate(work.loops[:n]):
         start, stop, area, x, y, chord_x, chord_y, _, _, _, arcs = loop.tolist()
         chord = math.hypot(chord_x, chord_y)
         nx, ny = chord_direction(chord_x, chord_y, area)
@@ -129,7 +129,7 @@ def overlap(
         span = slice(start, stop)
         corners = work.polygon[span].copy()
         bows = work.bows[span].copy() if arcs else None
-        row[()] = (
+        out[k] = (
             area,
             (a.x + a.c * x - a.s * y, a.y + a.s * x + a.c * y),
             (a.c * nx - a.s * ny, a.s * nx + a.c * ny),
