@@ -237,7 +237,8 @@ class AreaContact:
     ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
-        steps: substeps of each frame (default SUBSTEPS). More are more accurate; any number is stable.
+        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, and more where
+            teeth or slots of a concave outline would pass each other unseen (`kernel.solve.needed`).
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
             its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
 
@@ -256,7 +257,7 @@ class AreaContact:
             positive(tolerance, "tolerance")
         if steps is not None:
             _count(steps, "steps")
-        self._state["substeps"] = steps or SUBSTEPS
+        self._state["substeps"], self._state["steps_given"] = steps or SUBSTEPS, steps is not None
         self._state["tolerance"] = tolerance or 0.0
         try:
             if frames == 1:
@@ -270,7 +271,7 @@ class AreaContact:
                 else:
                     done += self._run(dt, frames - done)
         finally:
-            self._state["substeps"], self._state["tolerance"] = SUBSTEPS, 0.0
+            self._state["substeps"], self._state["steps_given"], self._state["tolerance"] = SUBSTEPS, 0, 0.0
         return int(self._state["taken"])
 
     def _step_alone(self, dt: float) -> bool:

@@ -29,6 +29,7 @@ from ..kernel.solve import (
     gather,
     join,
     kick,
+    needed,
     place,
     respond_explicitly,
     sweep,
@@ -351,10 +352,12 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     is the error itself: that is what is compared.
     """
     n = s.substeps
+    if s.steps_given == 0:
+        n = max(n, needed(load_pool(s), load_tables(s), dt))
     if s.tolerance > 0.0:
         if not _keep(s) or not _substeps(s, space, dt, n):
             return False
-        while n < MOST_SUBSTEPS:
+        while 2 * n <= MOST_SUBSTEPS:
             _see(s)
             if not _again(s):  # the tables have grown: from here on with what there is
                 break

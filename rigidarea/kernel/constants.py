@@ -37,6 +37,8 @@ NO_CHORD = 1e-6
 LOOK = 0.5
 #: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
 HIT = 0.05
+#: Fraction of the chord on which a concave outline lies (of a gear: a tooth's) that it may move by in a substep.
+FEATURE = 0.1
 #: Room around a shape's box, as a fraction of its size, before pairs are searched again.
 MARGIN = 0.1
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box

@@ -10,7 +10,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from .broad import search, somebody_left
+from .constants import FEATURE, MOST_SUBSTEPS
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, meet, meet_ahead
 from .pool import Pool
@@ -53,6 +56,35 @@ def kick(tables: Tables, frame: int) -> None:
             body.vx += body.kick_x
             body.vy += body.kick_y
             body.w += body.kick_w
+
+
+@kernel
+def needed(pool: Pool, tables: Tables, dt: float) -> int:
+    """Substeps that a frame of dt needs, so that no outline passes a tooth of a concave one between two of them.
+
+    Convex bodies are met wherever they come (`meet`); teeth, slots and hooks move under a contact that is there
+    already, by no more than a FEATURE of the chord on which such an outline lies.
+    """
+    most = 1.0
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        if sa.left > sb.right or sb.left > sa.right or sa.bottom > sb.top or sb.bottom > sa.top:
+            continue
+        face = np.inf
+        for shape in (sa, sb):
+            head = pool.heads[shape.outline]
+            if not head.convex and not head.disc:
+                face = min(face, head.face)
+        if face == np.inf:
+            continue
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        way = math.hypot(a.vx - b.vx, a.vy - b.vy)
+        way += abs(a.w) * max(sa.half_x, sa.half_y) + abs(b.w) * max(sb.half_x, sb.half_y)
+        most = max(most, way * dt / (FEATURE * face))
+    return int(min(most, float(MOST_SUBSTEPS))) + 1
 
 
 @kernel
