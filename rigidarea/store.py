@@ -106,6 +106,7 @@ STATE = record(
         ("stiffness_given", "i8"),
         ("explicit", "i8"),  # 1: one symplectic Euler step a frame, Chipmunk's own positions and joints
         ("substeps", "i8"),  # of a frame
+        ("steps_given", "i8"),  # 1: just so many, whatever moves
         (
             "tolerance",
             "f8",

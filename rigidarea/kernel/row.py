@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import HIT, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
@@ -110,6 +110,16 @@ def _ends(row: Any, r: Any) -> None:
     row.e2 = middle + half
 
 
+@kernel(inline="always")
+def least_extent(a: Any, b: Any) -> float:
+    """The smaller one's smallest extent, of those that can move (length)."""
+    if a.inverse_mass == 0.0:
+        return float(b.extent)
+    if b.inverse_mass == 0.0:
+        return float(a.extent)
+    return float(min(a.extent, b.extent))
+
+
 @kernel
 def _struck(
     row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float
@@ -118,7 +128,7 @@ def _struck(
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`); not where it rests, since in a pile others lie where it would be put.
+    so much further on it is put (`shift`). Not where it comes slowly to rest: in a pile others lie where it would be put.
     """
     back = r.back
     row.alpha = 0.0
@@ -145,8 +155,9 @@ def _struck(
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if leaving < 0.0:
+    if leaving < 0.0 or touch * back > HIT * least_extent(a, b):
         row.shift = back
+    if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
 
 
@@ -225,9 +236,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
         c += theta * (1.0 + RELEASE_STEPS * max(1.0, math.sqrt(phase2))) * h * stiffness
-        least = a.extent if b.inverse_mass == 0.0 else b.extent
-        if a.inverse_mass > 0.0 and b.inverse_mass > 0.0:
-            least = min(a.extent, b.extent)
+        least = least_extent(a, b)
         if theta > 0.0:
             slowest = elastic / (RELEASE_SPEED * least)
             c = slowest if r.placed else max(c, slowest)
