@@ -75,7 +75,7 @@ class AreaContact:
         self._space: pymunk.Space | None = space
         self._plain = type(space)
         space.__class__ = _attached(self._plain)
-        _contacts[space] = self
+        space.__dict__[_KEY] = self
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         self._end = weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
@@ -140,7 +140,7 @@ class AreaContact:
             if int(function[at]) == int(self._state["hold_at"]):
                 function[at] = own
         space.__class__ = self._plain
-        del _contacts[space]
+        del space.__dict__[_KEY]
         self._space = None
 
     # --- shapes ---
@@ -374,7 +374,7 @@ def _moves(shape: pymunk.Shape) -> bool:
 
 # --- an attached space's class: its own, and copies of it take their contact along ---
 
-_contacts: weakref.WeakKeyDictionary[pymunk.Space, AreaContact] = weakref.WeakKeyDictionary()
+_KEY = "_area_contact"  # where a space keeps its contact: they go together, and pymunk does not pickle it
 _classes: dict[type, type] = {}
 
 
@@ -382,7 +382,7 @@ def _attached(plain: type) -> type:
     if plain not in _classes:
 
         def reduce(self: Any, protocol: Any) -> Any:
-            contact = _contacts[self]
+            contact = self.__dict__[_KEY]
             self.__class__ = plain
             try:
                 made = self.__reduce_ex__(protocol)
@@ -405,7 +405,8 @@ def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
 
 def attached(space: pymunk.Space) -> AreaContact | None:
     """The area contact of a space, None if it has none. Of a copied or unpickled space too."""
-    return _contacts.get(space)
+    contact: AreaContact | None = space.__dict__.get(_KEY)
+    return contact
 
 
 # --- settings ---

@@ -103,8 +103,10 @@ def impact_force(r: Any, elastic: float, speed: float, inverse: float, h: float)
     if r.born and depth < h * speed:
         elastic *= 0.5 * (1.0 + depth / (h * speed))
     force = max(0.0, elastic * (1.0 + r.damping * speed) / (1.0 + 0.5 * h * elastic * r.damping * inverse))
-    # damping slows down, it never turns the speed round within a step
+    # damping slows down, it never turns the speed round within a step; nor is it less than nothing while closing
     force = min(force, max(elastic, speed / (h * inverse)))
+    if speed >= 0.0:
+        force = max(force, elastic)
     r.elastic = elastic
     r.excess = force - elastic
     return force
