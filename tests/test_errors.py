@@ -347,7 +347,7 @@ def test_a_velocity_that_is_not_finite_spreads_to_nobody(velocity):
     space = scene()
     contact = ra.attach(space, 5e4)
     contact.step(1 / 60)
-    body = list(space.bodies)[0]
+    body = next(iter(space.bodies))
     good = state(space)
     body.velocity = velocity
     with pytest.raises(ra.SimulationError, match=r"bodies\[\d\].*not finite in frame \d+"):
