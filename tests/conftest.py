@@ -46,10 +46,13 @@ class Kernel:
         self.overlap = kernel_module("overlap")
         self.place = kernel_module("place")
         self.pool = kernel_module("pool")
-        self.force = kernel_module("force")
-        self.region = kernel_module("region")
         self.direction = kernel_module("direction")
         self.impact = kernel_module("impact")
+        self.stiffness = kernel_module("stiffness")
+        self.row = kernel_module("row")
+        self.tables = kernel_module("tables")
+        self.broad = kernel_module("broad")
+        self.constants = kernel_module("constants")
         self.predicates = kernel_module("predicates")
         regions_of = self.place.overlap_of_outlines
         Pose = self.place.Pose

@@ -80,15 +80,69 @@ def is_standard(name: str) -> bool:
 
 
 def test_there_are_kernels() -> None:
-    assert {"predicates", "pool", "overlap", "force", "pair"} <= {p.stem for p in KERNELS}
+    assert {"predicates", "pool", "overlap", "tables", "broad", "meet", "row", "solve"} <= {
+        p.stem for p in KERNELS
+    }
 
 
 @pytest.mark.parametrize("path", KERNELS, ids=lambda p: p.stem)
 def test_kernels_know_numbers_only(path: Path) -> None:
-    """numpy and numba, other kernels, nothing else; not even inside a function."""
+    """numpy and numba (with its llvmlite), other kernels, nothing else; not even inside a function."""
     for name in imports(path, inside_functions=True):
         ours = name == "rigidarea.kernel" or name.startswith("rigidarea.kernel.")
-        assert ours or is_standard(name) or name.partition(".")[0] in ("numpy", "numba"), name
+        assert ours or is_standard(name) or name.partition(".")[0] in ("numpy", "numba", "llvmlite"), name
+
+
+@pytest.mark.parametrize("rooms", [("kernel",), ("kernel", "contact")], ids="/".join)
+def test_numbers_do_not_know_who_attaches(rooms: tuple[str, ...]) -> None:
+    """The walk goes one way (docs/architecture.md): nobody below imports `contact`, nor what draws or compares."""
+    below = {n for n in MODULES if n.split(".")[1:2] and n.split(".")[1] in rooms}
+    assert below
+    above = {"cases", "draw", "gallery", "study", "flexible", "__main__", "contact"} - set(rooms)
+    for module in below:
+        for name in imports(MODULES[module], inside_functions=True):
+            parts = name.split(".")
+            assert parts[0] != "pygame", f"{module} imports pygame"
+            assert parts[0] != "rigidarea" or parts[1:2] == [] or parts[1] not in above, (
+                f"{module} imports {name}"
+            )
+
+
+def circle(graph: dict[str, set[str]]) -> list[str]:
+    """One circle of the graph, first node repeated at its end; empty if there is none."""
+    done: set[str] = set()
+
+    def walk(node: str, path: list[str]) -> list[str]:
+        if node in path:
+            return [*path[path.index(node) :], node]
+        if node in done:
+            return []
+        for after in sorted(graph[node]):
+            if found := walk(after, [*path, node]):
+                return found
+        done.add(node)
+        return []
+
+    for node in sorted(graph):
+        if found := walk(node, []):
+            return found
+    return []
+
+
+def test_a_circle_is_found() -> None:
+    assert circle({"a": {"b", "c"}, "b": {"c"}, "c": set()}) == []
+    assert circle({"a": {"b"}, "b": {"c"}, "c": {"b"}}) == ["b", "c", "b"]
+    assert circle({"a": {"a"}}) == ["a", "a"]
+
+
+def test_imports_have_no_circles() -> None:
+    """Of what runs on import. A package stands for its __init__; `from . import name` is an import of name alone."""
+    graph: dict[str, set[str]] = {}
+    for module, path in MODULES.items():
+        names = imports(path) & MODULES.keys()
+        submodules = {n.rpartition(".")[0] for n in names}
+        graph[module] = {n for n in names if not (n in submodules and module.startswith(f"{n}."))} - {module}
+    assert circle(graph) == []
 
 
 def test_the_core_needs_four_libraries() -> None:
