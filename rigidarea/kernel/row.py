@@ -128,7 +128,7 @@ def _struck(
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where it comes slowly to rest: in a pile others lie where it would be put.
+    so much further on it is put (`shift`). Not where it comes slowly to rest: in a pile others lie there.
     """
     back = r.back
     row.alpha = 0.0
