@@ -373,9 +373,7 @@ def test_a_shape_without_area_is_named_by_attach():
     assert ra.attached(space) is None
 
 
-@pytest.mark.xfail(
-    reason="the ValueError comes, but bodies keep the frame's gravity: v_y = -1/6 of 1/60 s", strict=True
-)
+@pytest.mark.xfail(reason="the ValueError comes, but bodies keep the frame's kick: v_y = -0.167", strict=True)
 def test_a_shape_without_area_is_named_by_the_next_frame():
     space = scene()
     contact = ra.attach(space, 5e4)
