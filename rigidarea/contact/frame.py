@@ -417,7 +417,8 @@ def solve(constraint: int, coefficient: float) -> None:
     s = state_of(space)
     iterations = array_at(space, (1,), np.int32)
     s.sweeps = iterations[0]
-    iterations[0] = 0
+    if s.explicit == 0:
+        iterations[0] = 0  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
     if s.frame != np.int64(timestamp(space)) or s.failed:
         return
     dt = _time_step(space)
