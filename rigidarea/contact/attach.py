@@ -16,7 +16,6 @@ from ..kernel.constants import FOLLOWED, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
 from ..store import Store
-from . import frame, joints, record
 from .memory import Memory, recall, remember
 from .report import regions_of, total_energy
 
@@ -43,6 +42,8 @@ class AreaContact:
     # --- attaching ---
 
     def _install(self, space: pymunk.Space) -> None:
+        from . import joints, record  # the machine code: compiled, or loaded, when first attached
+
         self._error: BaseException | None = None
         self._store = Store()
         self._shapes: dict[int, pymunk.Shape] = {}
@@ -87,6 +88,8 @@ class AreaContact:
 
     def _hide(self, space: pymunk.Space) -> None:
         """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
+        from . import frame, joints, record
+
         idle, none = joints.idle.address, joints.no_impulse.address
         self._classes = np.array(
             [
@@ -281,6 +284,8 @@ class AreaContact:
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
+        from . import frame
+
         space = self.space
         self._state["stop"] = 0
         space._locked = True
@@ -314,6 +319,8 @@ class AreaContact:
     # --- what machine code asks for ---
 
     def _answer(self, request: int) -> None:
+        from . import record
+
         store = self._store
         if request == record.REGISTER:
             self._register()
