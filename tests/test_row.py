@@ -131,7 +131,7 @@ def test_a_put_overlap_opens_at_a_bounded_speed(kernel: Any) -> None:
     left = []
     for h in (1e-3, 1e-1, 10.0):
         a, b = body(kernel, inverse_mass=1.0, extent=0.3), body(kernel)
-        got = row_of(kernel, a, b, h, stiffness=1e7, put=1)
+        got = row_of(kernel, a, b, h, stiffness=1e7, placed=1)
         kernel.row.visit(got.row, a, b)
         left.append(a["vy"] / (0.3 * kernel.constants.RELEASE_SPEED))
     assert 0 < left[0] <= left[1] <= left[2] <= 1.0
