@@ -4,7 +4,7 @@ What the user chooses (stiffness or penetration, law, sweeps, substeps) is not h
 """
 
 #: Substeps of a frame, unless asked otherwise. Two: what the first one met the second one already answers, and the
-#: sweeps, not the substeps, are what piles need (docs/architecture.md has the measurement).
+#: sweeps, not the substeps, are what piles need.
 SUBSTEPS = 2
 #: Of the sweeps of a substep, one in so many goes on in the direction of the search: those reach far, the rest settle.
 FAR_SWEEPS = 3
@@ -15,13 +15,12 @@ MOST_SUBSTEPS = 1024
 FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time), times w h where that is above 1: the row's S,
 #: its release overdamped. Less: what sweeps have left unsolved is handed back before they have learnt of it, and piles
-#: sway; more: they go on sliding for seconds. The stiffer, the more of it is left (docs/architecture.md).
+#: sway; more: they go on sliding for seconds. The stiffer, the more of it is left.
 RELEASE_STEPS = 9.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.
 RELEASE_SPEED = 1.0
-#: Damping ratio of a contact at rest that the step follows: beyond critical, so that what is pressed in comes to the
-#: surface without the speed to leave it.
+#: Damping ratio, for e = 0, of a contact at rest that the step follows.
 REST_DAMPING = 1.0
 #: Tangential over normal stiffness. Cundall & Strack (1979) leave it free; 2/7 makes a sphere's two periods equal.
 TANGENT_STIFFNESS = 2.0 / 7.0
@@ -31,8 +30,6 @@ REST_KICKS = 2.0
 MOST_ARRIVED = 2.0
 #: Restitution below this is taken as this: the exact law's damping grows as 1/e.
 LEAST_RESTITUTION = 0.01
-#: A chord below this fraction of sqrt(area) is rounding: the direction is then remembered, or found anew.
-NO_CHORD = 1e-6
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
 LOOK = 0.5
 #: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
