@@ -45,3 +45,6 @@ WEIGHTLESS_PHASE2 = 40.0
 LOAD_TIME = 0.5
 #: A stiffness grows or shrinks by no more than this factor a frame.
 STIFFNESS_CHANGE = 1.05
+#: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
+#: both ends of the way does so between them, but for 1/8 of this squared of its size.
+STRAIGHT_WAY = 0.1

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .arc import on_arc
+from .apart import gap_along
 from .jit import entry, kernel
 from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
@@ -50,32 +50,6 @@ def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Wo
         if n == TANGLED:
             n = 0
     return n, rel
-
-
-@kernel
-def _support(pool: Pool, i: int, mx: float, my: float) -> float:
-    """How far the outer ring of outline i reaches along the unit direction m, in its own frame (length)."""
-    head = pool.heads[i]
-    reach = -np.inf
-    for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
-        x = pool.points[e, 0]
-        y = pool.points[e, 1]
-        reach = max(reach, mx * x + my * y)
-        r = pool.arcs[e, 2]
-        if r > 0.0:
-            k = pool.following[e]
-            cx = pool.arcs[e, 0]
-            cy = pool.arcs[e, 1]
-            if on_arc(x, y, pool.points[k, 0], pool.points[k, 1], r, cx + r * mx, cy + r * my):
-                reach = max(reach, mx * cx + my * cy + r)
-    return reach
-
-
-@kernel
-def _way(pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float) -> float:
-    """How far B must go along m, a unit direction in A's frame, to be clear of A's convex hull (length)."""
-    back = _support(pool, ib, -(rel.c * mx + rel.s * my), rel.s * mx - rel.c * my)
-    return _support(pool, ia, mx, my) + back - (mx * rel.tx + my * rel.ty)
 
 
 @entry
@@ -135,7 +109,7 @@ def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]
                 for way in (1.0, -1.0):
                     if r == 0.0 and way < 0.0:
                         continue
-                    depth = _way(pool, ia, ib, rel, way * mx, way * my)
+                    depth = -gap_along(pool, ia, ib, rel, way * mx, way * my)
                     if 0.0 < depth < best:
                         best = depth
                         best_x = way * mx

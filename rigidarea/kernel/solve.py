@@ -12,14 +12,16 @@ from typing import Any
 
 import numpy as np
 
+from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import FEATURE, MOST_SUBSTEPS
+from .constants import FEATURE, MOST_SUBSTEPS, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, meet, meet_ahead
+from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
+from .place import seen_from
 from .pool import Pool
 from .row import make_row, push, settle, visit
 from .stiffness import carry
-from .tables import ANEW, BODIES, DRIFTS, NEAR, ROWS, Law, Tables
+from .tables import ANEW, BODIES, DRIFTS, NEAR, ROWS, SUBSTEP, Law, Tables
 from .work import Work
 
 #: What a kernel may ask for before it can go on.
@@ -162,6 +164,57 @@ def _may_touch(tables: Tables, pair: Any, h: float) -> bool:
 
 
 @kernel
+def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what parted a pair in the substep before parts it now, and did on the way."""
+    if pair.axis_x == 0.0 and pair.axis_y == 0.0:
+        return False
+    stamp = tables.counters[SUBSTEP]
+    if jumped(tables, pair, a, b, h) > 1 and (
+        pair.parted != stamp - 1 or h * max(abs(a.w), abs(b.w)) > STRAIGHT_WAY
+    ):
+        return False
+    ia = tables.shapes[pair.a].outline
+    ib = tables.shapes[pair.b].outline
+    rel = seen_from(pool.heads[ia], pose_of(a), pool.heads[ib], pose_of(b))
+    pair.gap = gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)
+    pair.parted = stamp
+    return bool(pair.gap > 0.0)
+
+
+@kernel
+def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
+    """Look for what parts a pair that does not overlap."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    if sa.mirror < 0 and sb.mirror < 0:
+        rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
+        find_axis(pool, sa.outline, sb.outline, rel, pair)
+        pair.parted = tables.counters[SUBSTEP]
+
+
+@kernel
+def _cannot_meet(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether a pair that is apart closes too slowly to overlap in the next h."""
+    if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
+        return False
+    nx = a.c * pair.axis_x - a.s * pair.axis_y
+    ny = a.s * pair.axis_x + a.c * pair.axis_y
+    closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
+    closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
+    closing += abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
+    return bool(h * closing < pair.gap)
+
+
+@kernel
+def _farthest(pool: Pool, shape: Any, body: Any) -> float:
+    """At most so far from the body's centre is a point of the shape (length)."""
+    head = pool.heads[shape.outline]
+    dx = head.x - body.cog_x
+    dy = head.y - body.cog_y
+    return float(math.sqrt(dx * dx + dy * dy) + head.radius)
+
+
+@kernel
 def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     """Whether the pair may collide in this frame: the user's verdict, where there is somebody to ask.
 
@@ -220,14 +273,16 @@ def gather(
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if pair.head < 0 and not _may_touch(tables, pair, h):
+        if pair.head < 0 and (not _may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
             continue
         if not allowed(tables, pair, frame):
             continue
         status = meet(pool, tables, work, law, p, h)
         if status != DONE:
             return status, i
-        if not _add_rows(tables, law, p, h):
+        if pair.head < 0:
+            _part(pool, tables, pair, a, b)
+        elif not _add_rows(tables, law, p, h):
             return GROW_REGIONS, i
     return DONE, counters[NEAR]
 
@@ -252,7 +307,9 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if not _may_touch(tables, pair, -h) or not allowed(tables, pair, frame):
+        if _cannot_meet(pool, tables, pair, a, b, h) or not _may_touch(tables, pair, -h):
+            continue
+        if not allowed(tables, pair, frame):
             continue
         status = meet_ahead(pool, tables, work, law, p, h)
         if status != DONE:

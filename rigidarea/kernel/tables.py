@@ -119,6 +119,10 @@ PAIR = record(
             "f8",
         ),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
+        ("axis_x", "f8"),  # what parted them last, A's frame, A to B (`apart`); (0, 0): nothing known
+        ("axis_y", "f8"),
+        ("gap", "f8"),  # how far apart along it, and in which substep (length)
+        ("parted", "i8"),
     ],
 )
 
@@ -276,6 +280,9 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.stiffness = 0.0
         pair.carrying = 0.0
         pair.area = 0.0
+        pair.axis_x = 0.0
+        pair.axis_y = 0.0
+        pair.parted = -1
         _enter(tables, a, b, p)
     return int(p)
 
