@@ -242,8 +242,8 @@ def _space_and_constraint() -> dict[str, int]:
     joint = pymunk.PivotJoint(one, two, (0, 0), (0, 0))
     joint.max_force, joint.error_bias, joint.max_bias = 61.5, 62.5, 63.5
     space.add(one, two, joint)
-    space.iterations = 0x1234567
     lib.cpSpaceStep(space._space, 0.125)  # not space.step, which somebody may have wrapped
+    space.iterations = 0x1234567
     memory = _bytes(space._space, "space", np.float64)
     if _bytes(space._space, "space", np.int32)[0] != 0x1234567:
         raise LayoutError("iterations: expected at the start of Chipmunk's space")

@@ -17,7 +17,7 @@ from typing import Any
 
 import numba
 from numba.core import caching, types
-from numba.core.registry import CPUDispatcher
+from numba.core.registry import CPUDispatcher, cpu_target
 
 from . import cache, whole
 
@@ -48,7 +48,11 @@ def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[...,
         numba.config.CACHE_DIR, caching.IndexDataCacheFile = cache_folder(), cache.CheckedFile
         try:
             decorate = functools.partial(compiler(cache=True, **options), function)
-            made = cache.notice.eagerly(decorate) if at_once else decorate()
+            if at_once:
+                with whole.compiling(cpu_target.target_context, part=False):
+                    made = cache.notice.eagerly(decorate)
+            else:
+                made = decorate()
         finally:
             numba.config.CACHE_DIR, caching.IndexDataCacheFile = before
         if isinstance(made, CPUDispatcher):
@@ -67,10 +71,10 @@ def _general(kind: Any) -> Any:
 class _Whole(CPUDispatcher):  # type: ignore[misc]
     """What runs for itself, though a part may be what calls it first."""
 
-    parts = False
+    part = False
 
     def compile(self, sig: Any) -> Any:
-        with whole.compiling(self.targetctx, self.parts):
+        with whole.compiling(self.targetctx, self.part):
             return super().compile(sig)
 
     def get_call_template(self, args: Any, kws: Any) -> Any:
@@ -87,7 +91,7 @@ entry: Any = functools.partial(njit, _nrt=False)
 class _Part(_Whole):
     """A kernel that is compiled into those that call it, and not for itself (`whole`)."""
 
-    parts = True
+    part = True
 
     def __call__(self, *arguments: Any) -> Any:
         if "way_in" not in self.__dict__:

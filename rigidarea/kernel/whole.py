@@ -1,8 +1,9 @@
-"""Kernels that only kernels call are optimized once, with the one that Python or C calls, and not each for itself.
+"""A kernel that runs is optimized as a whole, once, together with all that it calls.
 
-numba makes every function ready to run: optimizes it together with all that it calls, and turns that into machine
-code. Of a chain of ten calls the last one is so made ten times. What is compiled `for_others` stays as it was written
-until somebody links it in. Where numba's insides are not as expected it is made as numba does it, only later.
+numba makes every function ready to run: optimizes it together with what it calls, and turns that into machine code.
+Of a chain of ten calls the last one is so made ten times; and each may still be called from elsewhere, so that it
+takes all of its arguments, a hundred words for a handful of arrays. Here a kernel that only kernels call stays a
+part, as it was written, until one that runs links it in; and that one keeps it to itself.
 """
 
 from __future__ import annotations
@@ -29,26 +30,35 @@ class _Part(JITCodeLibrary):  # type: ignore[misc]
         return 0
 
 
-class _Parts(JITCPUCodegen):  # type: ignore[misc]
-    """What makes parts instead of libraries that run."""
+class _Whole(JITCodeLibrary):  # type: ignore[misc]
+    """Code that runs, and what it calls, which nobody else does."""
 
-    _library_class = _Part
+    def finalize(self) -> None:
+        self._own = {f.name for f in self._final_module.functions if not f.is_declaration}
+        super().finalize()
+
+    def _optimize_final_module(self) -> None:
+        for f in self._final_module.functions:
+            if not f.is_declaration and f.name not in self._own:
+                f.linkage = "internal"
+        super()._optimize_final_module()
+
+
+class _Codegen(JITCPUCodegen):  # type: ignore[misc]
+    """numba's own, with a library class that `compiling` sets."""
 
     def set_env(self, env_name: str, env: Any) -> None:
-        pass
+        if self._library_class is not _Part:
+            super().set_env(env_name, env)
 
 
 @contextlib.contextmanager
-def compiling(context: Any, parts: bool) -> Iterator[None]:
+def compiling(context: Any, part: bool) -> Iterator[None]:
     """Within, numba's target context compiles parts, or what runs."""
     before = context._internal_codegen
-    runs = getattr(before, "runs", before)
-    if parts:
-        context._internal_codegen = copy.copy(runs)
-        context._internal_codegen.__class__ = _Parts
-        context._internal_codegen.runs = runs
-    else:
-        context._internal_codegen = runs
+    context._internal_codegen = copy.copy(before)
+    context._internal_codegen.__class__ = _Codegen
+    context._internal_codegen._library_class = _Part if part else _Whole
     try:
         yield
     finally:
