@@ -31,7 +31,9 @@ from .tables import (
     LAW_AREA,
     LAW_ENERGY,
     NEARING,
+    PLACED,
     REST,
+    SPENT,
     STRUCK,
     SUBSTEP,
     Law,
@@ -355,6 +357,12 @@ def _hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
     return bool(u > REST_KICKS * pushed * h)
 
 
+@kernel(inline="always")
+def _arrives(r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""
+    return bool(closing(r, a, b, 1.0) * h > 2.0 * max(r.depth, r.rest_depth))
+
+
 @kernel
 def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
     """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
@@ -385,11 +393,12 @@ def _enter(
     phase2 = stiffness * inverse * h * h
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
+    placed = law.followed != math.inf and back == 0.0 and _jumped_in(region, 0.0, a, b, h)
     if phase2 <= law.followed and back == 0.0:
-        region.mode = IMPACT
+        region.mode = REST if placed else IMPACT
     else:
         region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
-        region.placed = region.mode == REST and _jumped_in(region, 0.0, a, b, h)
+    region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
@@ -526,10 +535,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.placed = 0
         else:
             before = region.depth
-            region.placed = region.placed and patch.depth > 10.0 * region.rest_depth
-            if not region.placed and patch.depth > 2.0 * before:
+            if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
+                region.placed = 0
+            if region.placed == SPENT and region.stiffness * patch.area <= 1.1 * region.force:
+                region.placed = 0
+            if region.placed != PLACED and patch.depth > 2.0 * before:
                 region.depth = patch.depth
-                region.placed = _jumped_in(region, before, a, b, h)
+                if _jumped_in(region, before, a, b, h):
+                    region.placed = PLACED
         if back > 0.0:
             ax, ay = _centre(a, pose_a)
             bx, by = _centre(b, pose_b)
@@ -544,7 +557,9 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.spring = 0.0
             region.tangent_stiffness = 0.0
             region.back = 0.0
-        elif region.mode != IMPACT and _hit(law, region, a, b, h):
+        elif (region.mode != IMPACT and _hit(law, region, a, b, h)) or (
+            region.mode == NEARING and _arrives(region, a, b, h)
+        ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
             region.mode = REST
@@ -644,9 +659,9 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.spring = 0.0
         region.tangent_stiffness = 0.0
         region.first_speed = 0.0
-        region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, gain / inverse))
-        region.back = (
-            u * ahead - region.depth + region.rest_depth
-        ) / h  # the closing speed that is left to it
+        # in a stack both fall alike, and it will carry something all the same
+        load = max(gain, law.gravity) / inverse
+        region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, load))
+        region.back = ahead
     pair.head = kept
     return DONE
