@@ -116,8 +116,8 @@ def impact_force(r: Any, elasticity: float, elastic: float, speed: float, invers
         force = max(force, elastic)
     r.elastic = elastic
     r.excess = force - elastic
-    stop = speed / (h * inverse)
-    if elasticity < 1.0 and 0.0 <= stop <= force and speed > 0.0:  # turned round within the step: the rest of it is opening already
+    stop = speed / (h * inverse)  # where it turns round within the step, the rest of it is opening already
+    if elasticity < 1.0 and 0.0 <= stop <= force and speed > 0.0:
         moved = 0.5 * h * speed * stop / force
         r.work += elastic * moved
         r.loss += r.excess * moved

@@ -121,9 +121,7 @@ def least_extent(a: Any, b: Any) -> float:
 
 
 @kernel
-def _struck(
-    row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float
-) -> None:
+def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
@@ -155,7 +153,7 @@ def _struck(
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if leaving < 0.0 or touch * back > HIT * least_extent(a, b):
+    if leaving < 0.0 or touch * abs(back) > HIT * least_extent(a, b):
         row.shift = back
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
@@ -273,7 +271,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         phase2 = stiffness * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
-        steps = min(RELEASE_STEPS * max(1.0, math.sqrt(phase2)), max(RELEASE_STEPS, 1.0 / (RELEASE_SPEED * h)))
+        steps = min(
+            RELEASE_STEPS * max(1.0, math.sqrt(phase2)), max(RELEASE_STEPS, 1.0 / (RELEASE_SPEED * h))
+        )
         c += theta * (1.0 + steps) * h * stiffness
         least = least_extent(a, b)
         slowest = elastic / (RELEASE_SPEED * least)
@@ -416,7 +416,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
             pair.area += area_allowed(law, r, a, b)
     pair.jx += normal * row.nx - row.lt * row.ny
     pair.jy += normal * row.ny + row.lt * row.nx
-    if row.shift > 0.0:
+    if row.shift != 0.0:
         turn = row.l1 * row.e1 + row.l2 * row.e2
         fx = (normal * row.nx - row.lt * row.ny) * row.shift
         fy = (normal * row.ny + row.lt * row.nx) * row.shift
