@@ -10,7 +10,7 @@ from typing import Any
 
 from .constants import LEAST_RESTITUTION, REST_DAMPING
 from .jit import kernel
-from .tables import REST
+from .tables import REST, SPENT
 
 
 @kernel
@@ -68,8 +68,9 @@ def follow_impact(r: Any, elasticity: float, speed: float, inverse: float, h: fl
     less. So the energy is kept account of: what the opening must give back less is withheld from its force.
     """
     if r.opened:
-        if speed > 0.0:
+        if speed > 0.0 or r.withheld == 1.0:
             r.mode = REST
+            r.placed = SPENT if r.withheld == 1.0 else 0
         return
     moved = 0.5 * h * (r.speed + speed)
     r.work += r.elastic * moved
@@ -77,17 +78,23 @@ def follow_impact(r: Any, elasticity: float, speed: float, inverse: float, h: fl
     r.slowed += h * (r.elastic + r.excess) * inverse
     r.lasted += h
     if speed < 0.0:
-        r.opened = 1
-        # touch came within a step, whose speed is that of its middle: what else pushes has changed it since
-        others = (speed - r.first_speed + r.slowed) / r.lasted
-        touch = r.first_speed + others * r.late
-        energy = 0.5 * touch * touch / inverse
-        missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
-        r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
+        _open(r, elasticity, speed, inverse)
 
 
 @kernel
-def impact_force(r: Any, elastic: float, speed: float, inverse: float, h: float) -> float:
+def _open(r: Any, elasticity: float, speed: float, inverse: float) -> None:
+    """From here on it opens: what must be withheld from its elastic force for it to return e."""
+    r.opened = 1
+    # touch came within a step, whose speed is that of its middle: what else pushes has changed it since
+    others = (speed - r.first_speed + r.slowed) / r.lasted if r.lasted > 0.0 else 0.0
+    touch = r.first_speed + others * r.late
+    energy = 0.5 * touch * touch / inverse
+    missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
+    r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
+
+
+@kernel
+def impact_force(r: Any, elasticity: float, elastic: float, speed: float, inverse: float, h: float) -> float:
     """Normal force: f (1 + a speed) while closing, f (1 - b) while opening.
 
     The step of first touch is spent in touch for a part only, and so is the one that will end it: with (1 + part) / 2
@@ -109,4 +116,11 @@ def impact_force(r: Any, elastic: float, speed: float, inverse: float, h: float)
         force = max(force, elastic)
     r.elastic = elastic
     r.excess = force - elastic
+    stop = speed / (h * inverse)  # where it turns round within the step, the rest of it is opening already
+    if elasticity < 1.0 and 0.0 <= stop <= force and speed > 0.0:
+        moved = 0.5 * h * speed * stop / force
+        r.work += elastic * moved
+        r.loss += r.excess * moved
+        _open(r, elasticity, speed, inverse)
+        force = stop + (force - stop) * (1.0 - r.withheld)
     return force

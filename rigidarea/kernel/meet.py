@@ -30,7 +30,9 @@ from .tables import (
     LAW_AREA,
     LAW_ENERGY,
     NEARING,
+    PLACED,
     REST,
+    SPENT,
     STRUCK,
     SUBSTEP,
     Law,
@@ -64,36 +66,17 @@ def pose_of(body: Any) -> Pose:
 
 @kernel
 def earlier(body: Any, time: float) -> Pose:
-    """Where they were `time` ago, at the velocity at which it has come."""
-    vx = body.vx - body.kick_x
-    vy = body.vy - body.kick_y
-    w = body.w - body.kick_w
+    """Where they were `time` ago, at the velocity at which it has come; negative: where they will be, at the present."""
     if body.kind != DRIFTS:
-        vx = 0.0
-        vy = 0.0
-        w = 0.0
-    angle = time * w
+        return pose_of(body)
+    came = 1.0 if time > 0.0 else 0.0
+    angle = time * (body.w - came * body.kick_w)
     cd = math.cos(angle)
     sd = math.sin(angle)
     c = body.c * cd + body.s * sd
     s = body.s * cd - body.c * sd
-    x = body.x - time * vx
-    y = body.y - time * vy
-    return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
-
-
-@kernel
-def later(body: Any, time: float) -> Pose:
-    """Where they will be in `time`, at their present velocity."""
-    if body.kind != DRIFTS:
-        return pose_of(body)
-    angle = time * body.w
-    cd = math.cos(angle)
-    sd = math.sin(angle)
-    c = body.c * cd - body.s * sd
-    s = body.s * cd + body.c * sd
-    x = body.x + time * body.vx
-    y = body.y + time * body.vy
+    x = body.x - time * (body.vx - came * body.kick_x)
+    y = body.y - time * (body.vy - came * body.kick_y)
     return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
 
 
@@ -277,7 +260,8 @@ def _touch(
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
     u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
     there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms are:
-    what is done there and then, and carried on from there, keeps all momenta.
+    what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
+    well (`back` negative).
     """
     come = back > 0.0
     region.back = back
@@ -348,6 +332,12 @@ def _hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
     return bool(u > REST_KICKS * pushed * h)
 
 
+@kernel(inline="always")
+def _arrives(r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""
+    return bool(closing(r, a, b, 1.0) * h > 2.0 * max(r.depth, r.rest_depth))
+
+
 @kernel
 def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
     """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
@@ -378,11 +368,12 @@ def _enter(
     phase2 = stiffness * inverse * h * h
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
+    placed = law.followed != math.inf and back == 0.0 and _jumped_in(region, 0.0, a, b, h)
     if phase2 <= law.followed and back == 0.0:
-        region.mode = IMPACT
+        region.mode = REST if placed else IMPACT
     else:
         region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
-        region.placed = region.mode == REST and _jumped_in(region, 0.0, a, b, h)
+    region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
@@ -395,6 +386,44 @@ def _enter(
         region.first_speed = 0.0
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
+
+
+@kernel
+def _await(
+    pool: Pool,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    face: float,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    ahead: float,
+    h: float,
+) -> bool:
+    """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither."""
+    region.stiffness = pair.stiffness
+    stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
+    inverse = inverse_mass(region, a, b)
+    if stiffness * inverse * h * h <= law.followed:
+        return False  # the steps follow it
+    u = closing(region, a, b, 0.0)
+    gain = max(0.0, u - closing(region, a, b, 1.0)) / h
+    if min(1.0, pair.elasticity) * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
+        region.mode = STRUCK
+        region.rest_depth = 0.0
+        region.first_speed = u
+        # positions are those of the middle of the substep: the drift yet to come is the half of it
+        return _touch(pool, work, law, region, ia, ib, a, b, -ahead, h) and region.back >= -0.5 * h
+    region.mode = NEARING
+    region.first_speed = 0.0
+    # in a stack both fall alike, and it will carry something all the same
+    load = max(gain, law.gravity) / inverse
+    region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, load))
+    region.back = ahead
+    return True
 
 
 @kernel
@@ -519,10 +548,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.placed = 0
         else:
             before = region.depth
-            region.placed = region.placed and patch.depth > 10.0 * region.rest_depth
-            if not region.placed and patch.depth > 2.0 * before:
+            if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
+                region.placed = 0
+            if region.placed == SPENT and region.stiffness * patch.area <= 1.1 * region.force:
+                region.placed = 0
+            if region.placed != PLACED and patch.depth > 2.0 * before:
                 region.depth = patch.depth
-                region.placed = _jumped_in(region, before, a, b, h)
+                if _jumped_in(region, before, a, b, h):
+                    region.placed = PLACED
         if back > 0.0:
             ax, ay = _centre(a, pose_a)
             bx, by = _centre(b, pose_b)
@@ -537,7 +570,9 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.spring = 0.0
             region.tangent_stiffness = 0.0
             region.back = 0.0
-        elif region.mode != IMPACT and _hit(law, region, a, b, h):
+        elif (region.mode != IMPACT and _hit(law, region, a, b, h)) or (
+            region.mode == NEARING and _arrives(region, a, b, h)
+        ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
             region.mode = REST
@@ -560,8 +595,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
 def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
-    DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one. A bounce is left to come: it
-    is found, and its place and time with it, when it has happened (`_touch`).
+    DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
+    this drift, STRUCK. A bounce in the first half of the next one is found when it has happened (`meet`).
     """
     pair = tables.pairs[p]
     regions = tables.regions
@@ -579,8 +614,8 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     ahead = h
     for i in range(looks):
         ahead = h * (i + 1) / looks
-        pose_a = later(a, ahead)
-        pose_b = later(b, ahead)
+        pose_a = earlier(a, -ahead)
+        pose_b = earlier(b, -ahead)
         n, rel = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
         if n != 0:
             break
@@ -607,18 +642,6 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
             continue
-        face = _face(pool, sa, sb, a, b)
-        if pair.stiffness == 0.0:
-            choose_stiffness(law, pair, face, a, b, h)
-        region.stiffness = pair.stiffness
-        stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
-        inverse = inverse_mass(region, a, b)
-        if stiffness * inverse * h * h <= law.followed:
-            continue  # the steps follow it
-        gain = max(0.0, u - closing(region, a, b, 1.0)) / h
-        slow = _slow(law, gain, stiffness * inverse, h)
-        if min(1.0, pair.elasticity) * u > 0.0 and u > slow:
-            continue
         counters[FREE_REGION] = region.next
         counters[FREE_REGIONS] -= 1
         region.next = kept
@@ -628,7 +651,6 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.past = 0
         region.placed = 0
         region.born = 1
-        region.mode = NEARING
         region.opened = 0
         region.l1 = 0.0
         region.l2 = 0.0
@@ -636,10 +658,21 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.step = h
         region.spring = 0.0
         region.tangent_stiffness = 0.0
-        region.first_speed = 0.0
-        region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, gain / inverse))
-        region.back = (
-            u * ahead - region.depth + region.rest_depth
-        ) / h  # the closing speed that is left to it
-    pair.head = kept
+    if kept < 0:
+        return DONE
+    face = _face(pool, sa, sb, a, b)
+    if pair.stiffness == 0.0:
+        choose_stiffness(law, pair, face, a, b, h)
+    pair.head = -1
+    r = kept
+    while r >= 0:  # after the loops have been read: looking for the touch takes the work
+        region = regions[r]
+        after = region.next
+        if _await(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h):
+            region.next = pair.head
+            pair.head = r
+        else:
+            region.next = -1
+            free_regions(regions, counters, r)
+        r = after
     return DONE

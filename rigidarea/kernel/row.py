@@ -31,7 +31,7 @@ from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
 from .stiffness import area_allowed
-from .tables import IMPACT, LAW_AREA, NEARING, REST, STRUCK, Law
+from .tables import IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
 
 ROW = record(
     [
@@ -121,9 +121,7 @@ def least_extent(a: Any, b: Any) -> float:
 
 
 @kernel
-def _struck(
-    row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, inverse: float, h: float
-) -> None:
+def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
@@ -155,10 +153,51 @@ def _struck(
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if leaving < 0.0 or touch * back > HIT * least_extent(a, b):
+    if leaving < 0.0 or touch * abs(back) > HIT * least_extent(a, b):
         row.shift = back
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
+    if row.shift == 0.0:
+        _one_point(r, a, b)
+
+
+@kernel(inline="always")
+def _one_point(r: Any, a: Any, b: Any) -> None:
+    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
+
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere.
+    """
+    share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
+    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
+    lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
+    r.arm_a -= share * arm
+    r.arm_b += (1.0 - share) * arm
+    r.lean_a -= share * lean
+    r.lean_b += (1.0 - share) * lean
+
+
+@kernel
+def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
+    """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
+
+    Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
+    point of application. A corner is thicker between them: the thicker end then has all of the depth.
+    """
+    row.alpha = 0.0
+    row.alpha_t = 0.0
+    row.tt = surface
+    speed = closing(r, a, b, 0.0)
+    turn = a.w - b.w
+    _one_point(r, a, b)
+    if row.ends == 1:
+        row.t1 = (speed * r.back - r.depth + r.rest_depth) / h
+        return
+    length = row.e2 - row.e1
+    mean = r.area / r.chord
+    lean = min(1.0, max(-1.0, 3.0 * (row.e1 + row.e2) / length))
+    left = r.rest_depth - r.depth + mean * abs(lean)
+    row.t1 = ((speed - turn * row.e1) * r.back - mean * lean + left) / h
+    row.t2 = ((speed - turn * row.e2) * r.back + mean * lean + left) / h
 
 
 @kernel
@@ -167,26 +206,32 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
 
     Row.region, a, b are set by the caller.
     """
+    row.shift = 0.0
+    row.friction = pair.friction
+    surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
+    _ends(row, r)
+    if r.mode == STRUCK:
+        _struck(row, r, a, b, pair.elasticity, surface, h)
+    elif r.mode == NEARING:
+        _nearing(row, r, a, b, surface, h)
+    else:
+        row.t1 = 0.0
+        row.t2 = 0.0
     row.nx = r.nx
     row.ny = r.ny
     row.arm_a = r.arm_a
     row.arm_b = r.arm_b
     row.lean_a = r.lean_a
     row.lean_b = r.lean_b
-    row.friction = pair.friction
-    row.shift = 0.0
     row.p1 = 0.0
     row.p2 = 0.0
     row.pt = 0.0
-    row.t1 = 0.0
-    row.t2 = 0.0
     ia = a.inverse_moment
     ib = b.inverse_moment
     masses = a.inverse_mass + b.inverse_mass
     inverse = inverse_mass(r, a, b)
     inverse_t = masses + r.lean_a * r.lean_a * ia + r.lean_b * r.lean_b * ib
     row.weight = inverse
-    surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     k = r.stiffness
     stiffness = region_stiffness(law, k, r.chord)
     elastic = k * r.area if law.law == LAW_AREA else k * r.area * r.chord / law.length
@@ -198,17 +243,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             follow_impact(r, pair.elasticity, middle_speed, inverse, h)
     r.speed = middle_speed
     r.slip = slipping(r, a, b, 0.5) - surface
-    _ends(row, r)
     gamma = 0.0
     if r.mode >= STRUCK:
-        if r.mode == STRUCK:
-            _struck(row, r, a, b, pair.elasticity, surface, inverse, h)
-        else:
-            row.alpha = 0.0
-            row.alpha_t = 0.0
-            row.t1 = r.back
-            row.t2 = r.back
-            row.tt = surface
         gamma = 1.0 / inverse
         force = 0.0
         row.gamma_t = 1.0 / inverse_t
@@ -222,7 +258,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.e1 = 0.0
         row.e2 = 0.0
         row.alpha = 1.0
-        force = h * impact_force(r, elastic, middle_speed, inverse, h)
+        force = h * impact_force(r, pair.elasticity, elastic, middle_speed, inverse, h)
         row.alpha_t = 0.0
         row.gamma_t = 1.0 / inverse_t
         row.ft = 0.0
@@ -235,11 +271,18 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         phase2 = stiffness * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
-        c += theta * (1.0 + RELEASE_STEPS * max(1.0, math.sqrt(phase2))) * h * stiffness
+        steps = min(
+            RELEASE_STEPS * max(1.0, math.sqrt(phase2)), max(RELEASE_STEPS, 1.0 / (RELEASE_SPEED * h))
+        )
+        c += theta * (1.0 + steps) * h * stiffness
         least = least_extent(a, b)
-        if theta > 0.0:
-            slowest = elastic / (RELEASE_SPEED * least)
-            c = slowest if r.placed else max(c, slowest)
+        slowest = elastic / (RELEASE_SPEED * least)
+        if r.placed == PLACED:
+            c = slowest
+        elif r.placed == SPENT and law.followed < math.inf:
+            c = max(c, stiffness / RELEASE_SPEED)
+        elif theta > 0.0:
+            c = max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         gamma = h * c * row.alpha
@@ -263,7 +306,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             row.l1 += row.l2
             row.l2 = 0.0
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
-    if ia + ib <= 1e-12 * masses / (r.chord * r.chord):  # nothing turns: both ends are one
+    if row.ends == 2 and ia + ib <= 1e-12 * masses / (r.chord * r.chord):  # nothing turns: both ends are one
         row.ends = 1
         row.l1 += row.l2
         row.l2 = 0.0
@@ -367,11 +410,13 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     r.friction = row.lt / h
     if law.stiffness == 0.0:
         pair.carrying += normal
-        if last and r.mode != NEARING:
+        if r.mode == IMPACT:
+            pair.area = -math.inf  # no load, and no change of stiffness in the middle of it
+        elif last and r.mode != NEARING:
             pair.area += area_allowed(law, r, a, b)
     pair.jx += normal * row.nx - row.lt * row.ny
     pair.jy += normal * row.ny + row.lt * row.nx
-    if row.shift > 0.0:
+    if row.shift != 0.0:
         turn = row.l1 * row.e1 + row.l2 * row.e2
         fx = (normal * row.nx - row.lt * row.ny) * row.shift
         fy = (normal * row.ny + row.lt * row.nx) * row.shift

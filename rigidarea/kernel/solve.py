@@ -58,6 +58,8 @@ def kick(tables: Tables, frame: int) -> None:
             body.vx += body.kick_x
             body.vy += body.kick_y
             body.w += body.kick_w
+            body.came_vx = body.vx
+            body.came_vy = body.vy
 
 
 @kernel
@@ -387,6 +389,10 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
                 body.x += body.shift_x
                 body.y += body.shift_y
                 body.angle += body.shift_a
+                # what has been shifted by one impulse meets the next with another arm
+                turn = body.shift_x * (body.vy - body.came_vy) - body.shift_y * (body.vx - body.came_vx)
+                if body.inverse_mass > 0.0:
+                    body.w -= turn * body.inverse_moment / body.inverse_mass
                 place(body)
             body.shift_x = 0.0
             body.shift_y = 0.0

@@ -40,6 +40,8 @@ BODY = record(
         ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
+        ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
+        ("came_vy", "f8"),
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),
@@ -130,6 +132,10 @@ PAIR = record(
 #: an overlap yet to come, that the next drift would bring.
 REST, IMPACT, STRUCK, NEARING = 0, 1, 2, 3
 
+#: How a region at rest has come to be deeper than its load presses it: put there by hand; pressed in by a blow that has
+#: nothing to give back.
+PLACED, SPENT = 1, 2
+
 #: One contact region, remembered while it lives. Also what it did in the last substep.
 REGION = record(
     [
@@ -139,10 +145,7 @@ REGION = record(
         ("mode", "i4"),
         ("born", "i4"),  # 1: first seen in this substep
         ("past", "i4"),  # 1: past the middle of a body, the direction is kept
-        (
-            "placed",
-            "i4",
-        ),  # 1: an overlap that was put there by hand, while it is deeper than any load would press it
+        ("placed", "i4"),  # PLACED or SPENT, while it is deeper than any load would press it; 0: neither
         ("opened", "i4"),  # 1 once the bodies have moved apart within this impact
         ("area", "f8"),  # (length^2)
         ("x", "f8"),  # point of application, world (length)
@@ -153,7 +156,8 @@ REGION = record(
         ("middle", "f8"),  # of the chord, from the point of application along it (length)
         ("straight", "f8"),  # of the chord, as far as both boundaries are straight (length)
         ("depth", "f8"),  # extent along the direction (length)
-        ("back", "f8"),  # time since first touch, of an impact shorter than the step
+        # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
+        ("back", "f8"),
         ("rest_depth", "f8"),  # depth at which it would carry what pushes (length)
         ("arm_a", "f8"),  # of direction and of tangent about the two centres (length)
         ("arm_b", "f8"),

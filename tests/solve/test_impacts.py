@@ -52,7 +52,7 @@ def restitution(landing, partner, e, steps, stiffness=None, gravity=0.0, speed=3
     bar = world.box((touch.x + aside, -0.25), (3.0, 0.5), mass=2.0) if partner == "free" else None
     if bar is None:
         world.floor()
-    straight = touch.x == 0 and aside == 0
+    straight = abs(touch.x) < 1e-12 and aside == 0
     world.step(steps, frames=40 if straight else 5)  # off its centre a box soon lands on its next corner
 
     def upward(of, arm):
