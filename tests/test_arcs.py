@@ -109,6 +109,22 @@ def test_lens(kernel: Any, size: float, far: float) -> None:
         assert abs(found.chord[0] @ (to - at)) <= 1e-12 * size * (a + b)
 
 
+@pytest.mark.parametrize("gap", [1e-3, 1e-7, 1e-11])
+def test_discs_nearly_one_on_the_other(kernel: Any, gap: float) -> None:
+    """Centres nearer than a radius by far: the lens is all but a crescent of the smaller."""
+    rng = np.random.default_rng(9)
+    for _ in range(10 if PURE_PYTHON else 100):
+        b = 1 - gap * rng.uniform(-1, 1)
+        t, d = rng.uniform(0, TAU), (abs(1 - b) + gap * rng.random())
+        to = d * np.array([math.cos(t), math.sin(t)])
+        d = mpmath.hypot(mpmath.mpf(to[0]), mpmath.mpf(to[1]))
+        found = one(kernel, ra.Outline.circle(1.0), (0, 0, 0), ra.Outline.circle(b), (*to, 1.0))
+        area, x, half = lens(1, b, d)
+        assert float(abs(found.area[0] - area)) <= 1e-14
+        assert np.hypot(*(to / float(d) * float(x) - found.centroid[0])) <= 1e-14
+        assert np.hypot(*found.chord[0]) == pytest.approx(2 * float(half), abs=1e-15 / gap)
+
+
 def test_discs_apart_touching_and_nested(kernel: Any) -> None:
     disc, small = ra.Outline.circle(1.0), ra.Outline.circle(0.25)
     assert one(kernel, disc, (0, 0, 0), disc, (2.0, 0, 0)).count[0] == 0

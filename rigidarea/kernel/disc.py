@@ -103,8 +103,8 @@ def disc_disc(
     dx /= d
     dy /= d
     half = 0.5 * math.sqrt(depth * (d - (ra - rb)) * (d + (ra - rb)) * (d + ra + rb)) / d
-    bulge_a = 0.5 * depth * (2.0 * rb - depth) / d  # of A's arc beyond the chord
-    bulge_b = 0.5 * depth * (2.0 * ra - depth) / d
+    bulge_a = 0.5 * depth * (d - (ra - rb)) / d  # of A's arc beyond the chord
+    bulge_b = 0.5 * depth * (d + (ra - rb)) / d
     foot = ra - bulge_a
     area_a, moment_a = segment(half, foot, ra)
     area_b, moment_b = segment(half, rb - bulge_b, rb)
