@@ -48,3 +48,5 @@ STIFFNESS_CHANGE = 1.05
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1
+#: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
+SPREAD = 1.0

@@ -66,7 +66,7 @@ def pose_of(body: Any) -> Pose:
 
 @kernel
 def earlier(body: Any, time: float) -> Pose:
-    """Where they were `time` ago, at the velocity at which it has come; negative: where they will be, at the present."""
+    """Where they were `time` ago, at the velocity at which it has come; negative: where they will be."""
     if body.kind != DRIFTS:
         return pose_of(body)
     came = 1.0 if time > 0.0 else 0.0

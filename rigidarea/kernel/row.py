@@ -65,6 +65,8 @@ ROW = record(
         ("ft", "f8"),
         ("tt", "f8"),
         ("mt", "f8"),  # 1 / (alpha_t + gamma_t W_t)
+        ("slip1", "f8"),  # what an impulse at either end takes from the slip
+        ("slip2", "f8"),
         ("l1", "f8"),
         ("l2", "f8"),
         ("lt", "f8"),
@@ -306,6 +308,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             row.l1 += row.l2
             row.l2 = 0.0
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
+    lean_a = row.lean_a * ia
+    lean_b = row.lean_b * ib
     if row.ends == 2 and ia + ib <= 1e-12 * masses / (r.chord * r.chord):  # nothing turns: both ends are one
         row.ends = 1
         row.l1 += row.l2
@@ -318,6 +322,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.f2 = 0.0
         row.m11 = row.alpha + gamma * inverse
         row.det = 1.0 / row.m11
+        row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
+        row.slip2 = 0.0
         return
     turning = (row.e2 - row.e1) / (6.0 * r.chord)
     row.gamma_a = gamma * (0.25 + 0.5 * turning)
@@ -328,6 +334,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     a2 = r.arm_a - row.e2
     b1 = r.arm_b - row.e1
     b2 = r.arm_b - row.e2
+    row.slip1 = a1 * lean_a + b1 * lean_b
+    row.slip2 = a2 * lean_a + b2 * lean_b
     w11 = masses + a1 * a1 * ia + b1 * b1 * ib
     w12 = masses + a1 * a2 * ia + b1 * b2 * ib
     w22 = masses + a2 * a2 * ia + b2 * b2 * ib
@@ -355,21 +363,24 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
 
 @kernel(forceinline=True)
 def visit(row: Any, a: Any, b: Any) -> None:
-    """Solve one row for the bodies' present velocities: both ends as a block, then friction under them."""
-    row.gt = 0.0
+    """Solve one row for the bodies' present velocities: both ends as a block, then friction under them.
+
+    Friction sees what the ends have just done to the slip (`slip1`, `slip2`) before the bodies do: one push for all.
+    """
     ux = a.vx - b.vx
     uy = a.vy - b.vy
-    v = ux * row.nx + uy * row.ny + a.w * row.arm_a - b.w * row.arm_b
+    v = ux * row.nx + uy * row.ny + (a.w * row.arm_a - b.w * row.arm_b)
+    slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
     if row.ends == 1:
         d1 = (row.alpha * (row.f1 - row.l1) + row.gamma_a * (v - row.t1)) * row.det
         d1 = max(d1, -row.l1)
         d2 = 0.0
     else:
         turn = a.w - b.w
-        v1 = v - turn * row.e1 - row.t1
-        v2 = v - turn * row.e2 - row.t2
-        r1 = row.alpha * (row.f1 - row.l1) + row.gamma_a * v1 + row.gamma_b * v2
-        r2 = row.alpha * (row.f2 - row.l2) + row.gamma_a * v2 + row.gamma_b * v1
+        v1 = v - (turn * row.e1 + row.t1)
+        v2 = v - (turn * row.e2 + row.t2)
+        r1 = row.alpha * (row.f1 - row.l1) + (row.gamma_a * v1 + row.gamma_b * v2)
+        r2 = row.alpha * (row.f2 - row.l2) + (row.gamma_a * v2 + row.gamma_b * v1)
         d1 = (r1 * row.m22 - row.m12 * r2) * row.det
         d2 = (row.m11 * r2 - row.m21 * r1) * row.det
         if row.l1 + d1 < 0.0 or row.l2 + d2 < 0.0:  # one end is open
@@ -381,17 +392,16 @@ def visit(row: Any, a: Any, b: Any) -> None:
                 d1 = max(-row.l1, (r1 - row.m12 * d2) / row.m11)
         row.l2 += d2
     row.l1 += d1
+    slip -= d1 * row.slip1 + d2 * row.slip2
+    most = row.friction * (row.l1 + row.l2)
+    lt = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
+    lt = min(most, max(-most, lt))
+    dt = lt - row.lt
+    row.lt = lt
     row.g1 = d1
     row.g2 = d2
-    push(row, a, b, d1, d2, 0.0)
-    if row.friction > 0.0:
-        slip = -(a.vx - b.vx) * row.ny + (a.vy - b.vy) * row.nx + a.w * row.lean_a - b.w * row.lean_b
-        most = row.friction * (row.l1 + row.l2)
-        l = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
-        l = min(most, max(-most, l))
-        row.gt = l - row.lt
-        push(row, a, b, 0.0, 0.0, row.gt)
-        row.lt = l
+    row.gt = dt
+    push(row, a, b, d1, d2, dt)
 
 
 @kernel

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from .constants import LOAD_TIME, STIFFNESS_CHANGE, WEIGHTLESS_PHASE2
+from .constants import LOAD_TIME, SPREAD, STIFFNESS_CHANGE, WEIGHTLESS_PHASE2
 from .jit import kernel
 from .tables import LAW_AREA, Law
 
@@ -60,23 +60,38 @@ def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float)
     acceleration = law.gravity if law.gravity > 0.0 else WEIGHTLESS_PHASE2 * depth / (h * h)
     pair.least = acceleration / max(a.inverse_mass, b.inverse_mass)
     pair.load = pair.least
-    pair.stiffness = pair.least / (depth * face)
+    pair.allowed = depth * face
     if law.law != LAW_AREA:
-        pair.stiffness *= law.length / face
+        pair.allowed *= face / law.length
+    pair.stiffness = pair.least / pair.allowed
 
 
 @kernel
 def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
-    """The region's area (length^2; by the energy law weighted with chord / length) at the depth allowed."""
-    return 1.0 / stiffness_for(law, r, 1.0, allowed_depth(law, a, b))
+    """The region's area (length^2; by the energy law weighted with chord / length) at the depth allowed.
+
+    Of straight edges no less than if they met on a SPREAD of the smaller one's smallest extent: a corner's k would be
+    a thousand times what is right for the face that comes down next, and what is that stiff keeps a pile awake.
+    """
+    depth = allowed_depth(law, a, b)
+    area = 1.0 / stiffness_for(law, r, 1.0, depth)
+    if r.straight > 0.0:
+        spread = SPREAD * depth / law.penetration
+        area = max(area, depth * spread if law.law == LAW_AREA else depth * spread * spread / law.length)
+    return area
 
 
 @kernel
 def carry(pair: Any, dt: float) -> None:
-    """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it."""
+    """Once a frame: the pair's load and what area is to carry it, averaged over LOAD_TIME; its stiffness after them.
+
+    Averaged both, or what sways on its edges for a moment is made stiffer for good, and sways the more.
+    """
     if pair.area > 0.0 and pair.stiffness > 0.0:
-        pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
-        wanted = max(pair.load, pair.least) / pair.area
+        share = dt / (dt + LOAD_TIME)
+        pair.load += share * (pair.carrying / dt - pair.load)
+        pair.allowed += share * (pair.area - pair.allowed)
+        wanted = max(pair.load, pair.least) / pair.allowed
         k = pair.stiffness
         if wanted > k:
             pair.stiffness = min(STIFFNESS_CHANGE * k, 1.1 * wanted)
