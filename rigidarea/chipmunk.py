@@ -145,6 +145,12 @@ def _body_and_shape() -> dict[str, int]:
     found["shape_elasticity"] = _find(memory, "elasticity and friction", [0.375, 0.625])
     found["shape_type"] = _find_pointer(shape._shape, "shape", "collision type", 0x51525354)
     found["shape_filter"] = _find_pointer(shape._shape, "shape", "filter group", 0x61626364)
+    plain = _bytes(shape._shape, "shape", np.uint8)
+    shape.sensor = True
+    places = np.flatnonzero(plain != _bytes(shape._shape, "shape", np.uint8))
+    if len(places) != 1:
+        raise LayoutError(f"sensor: expected one place in Chipmunk's struct, found {len(places)}")
+    found["shape_sensor"] = int(places[0])
     words = _bytes(shape._shape, "shape", np.uint32)
     at = (found["shape_filter"] + 8) // 4
     if list(words[at : at + 2]) != [0x71727374, 0x75767778]:
@@ -232,6 +238,18 @@ def kinds_of_joints() -> tuple[int, ...]:
         places.append(at)
         counts.append(n)
     return *kinds, *places, *counts
+
+
+def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:
+    """The numbers in which Chipmunk keeps the impulse of a joint, in place: one or two; none of an unknown kind."""
+    kinds = kinds_of_joints()
+    n = len(kinds) // 3
+    kind = _word(joint._constraint, 0)
+    if kind not in kinds[:n]:
+        return np.empty(0)
+    i = kinds.index(kind)
+    memory = ffi.buffer(ffi.cast("char *", joint._constraint) + kinds[n + i], 8 * kinds[2 * n + i])
+    return np.frombuffer(memory)
 
 
 def _space_and_constraint() -> dict[str, int]:

@@ -28,6 +28,7 @@ from .kernel.tables import (
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    NEAR,
     PAIR,
     REGION,
     SHAPE,
@@ -61,7 +62,15 @@ OFFSETS = [
     ),
     *("body_torque", "body_inverse_mass", "body_inverse_moment", "body_position_func", "body_velocity_func"),
     *("position_func", "velocity_func", "body_shapes"),
-    *("shape_surface_velocity", "shape_elasticity", "shape_type", "shape_filter", "shape_body", "shape_next"),
+    *(
+        "shape_surface_velocity",
+        "shape_elasticity",
+        "shape_sensor",
+        "shape_type",
+        "shape_filter",
+        "shape_body",
+    ),
+    "shape_next",
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_body_a"),
     *("arbiter_count", "arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_state"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
@@ -115,7 +124,6 @@ STATE = record(
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
         ("held", "i8"),  # the step in which a position function of ours was last called
-        ("solved", "i8"),  # the last frame that was solved to its end
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
         ("request", "i8"),
@@ -128,10 +136,12 @@ STATE = record(
         ("global_handler", "u8"),  # Chipmunk's global handler
         ("pre_solve_at", "u8"),  # our pre_solve, and the user's global one that comes before it; 0: none
         ("user_pre_solve", "u8"),
+        ("global_begin", "u8"),  # the other functions of the global handler, when last looked at
+        ("global_post_solve", "u8"),
+        ("global_separate", "u8"),
         ("shape_counter", "u8"),  # what was last registered: Chipmunk's counter, shapes, handlers
         ("shape_count", "i8"),
         ("handler_count", "i8"),
-        ("handler_seen", "i8"),
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
@@ -499,6 +509,7 @@ class Store:
                 (pairs["a"] >= 0) & (np.isin(pairs["a"], rows) | np.isin(pairs["b"], rows))
             ):
                 end_pair(self.tables, int(p))
+            self.drop_near()
             rehash(self.tables)
         for row in rows:
             self.tables.shapes[row] = np.zeros((), SHAPE)
@@ -515,6 +526,14 @@ class Store:
         if len(self._outlines) > 2 * len(used) + 64:
             self._repack(used)
 
+    def drop_near(self) -> None:
+        """Pairs that have ended are near no more."""
+        tables = self.tables
+        near = tables.near[: tables.counters[NEAR]]
+        near = near[tables.pairs["a"][near] >= 0]
+        tables.near[: len(near)] = near
+        tables.counters[NEAR] = len(near)
+
     def _repack(self, used: np.ndarray) -> None:
         """Only the outlines of these numbers stay, with new numbers."""
         kept = {number: outline for number, outline in self._outlines.values()}
@@ -530,6 +549,10 @@ class Store:
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
         return 0 <= ident < len(self.slots) and bool(self.slots[ident] >= 0)
+
+    def row_of(self, address: int) -> int:
+        """The row of Chipmunk's body at `address`; -1: not known."""
+        return self._bodies.get(address, -1)
 
     def known_bodies(self) -> set[int]:
         """Chipmunk's bodies that have a row."""

@@ -113,10 +113,6 @@ def test_sensor_is_called_but_never_pushes():
     assert body.position.y == pytest.approx(0.5, abs=1e-3)
 
 
-@pytest.mark.xfail(
-    reason="y 0.4998 after 1 s: `sensor` is read at registration, never again",
-    strict=True,
-)
 def test_a_shape_made_sensor_while_in_contact_lets_go():
     space, _ = world()
     shape = floor(space)

@@ -8,13 +8,16 @@ import os
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pymunk
 
+from ..arcs import sweeps
 from ..contact import attached
 from ..outline import Outline
 from .joints import COMMON, JOINTS, POINT, TYPES
 from .scene import CONTACT, FORMAT, SPACE
 from .scene import TYPES as BODY_TYPES
+from .values import FLATTEST
 
 _NAMES = {value: name for name, value in BODY_TYPES.items()}
 
@@ -120,7 +123,13 @@ def _shape(shape: pymunk.Shape, outlines: dict[Outline, str]) -> dict[str, Any]:
 
 
 def _outline(outline: Outline) -> dict[str, Any]:
+    """Points as [x, y]; where an arc begins, [x, y, bulge]."""
     outer, *holes = (ring.tolist() for ring in outline.rings)
+    for ring, points, arcs in zip((outer, *holes), outline.rings, outline.arcs):
+        bulges = np.tan(sweeps(points, arcs) / 4)
+        for point, bulge in zip(ring, bulges.tolist()):
+            if abs(bulge) >= FLATTEST:
+                point.append(bulge)
     return {"points": outer, **({"holes": holes} if holes else {})}
 
 

@@ -35,7 +35,8 @@ anchor_b = [0, 5]
 ```
 
 A shape is one of `outline` (a name, or points and holes in place), `circle` (a radius, with `offset`), `box` (width,
-height), `poly` (points; their convex hull), `segment` (two ends); the last three take a `radius`. A body's mass comes
+height), `poly` (points; their convex hull), `segment` (two ends); the last three take a `radius`. A point of an outline
+may be `[x, y, bulge]`: from it to the next runs an arc that turns by 4 atan(bulge). A body's mass comes
 from its shapes' densities unless it has `mass` and `moment`. Nothing in a file names another file, and nothing is run.
 """
 
@@ -320,11 +321,14 @@ class _Reader(Values):
 
     def outline(self, found: Any, place: str) -> Outline:
         given = self.table(found, place, ("points", "holes"))
-        rings = [self.ring(given.get("points"), f"{place}.points")]
+        rings = [self.bulged(given.get("points"), f"{place}.points")]
         holes = self.rows(given.get("holes", []), f"{place}.holes")
-        rings += [self.ring(hole, f"{place}.holes[{i}]") for i, hole in enumerate(holes)]
+        rings += [self.bulged(hole, f"{place}.holes[{i}]") for i, hole in enumerate(holes)]
         try:
-            return Outline(rings[0], rings[1:])
+            if any(bulge for ring in rings for _, _, bulge in ring):
+                return Outline.from_bulges(rings[0], rings[1:])
+            flat = [[(x, y) for x, y, _ in ring] for ring in rings]
+            return Outline(flat[0], flat[1:])
         except ValueError as error:
             raise ValueError(f"{place}: {error}") from None
 

@@ -10,6 +10,9 @@ from .limits import Limits, check
 LARGEST = 1e50
 """Numbers beyond this are refused: a moment goes with the fourth power of a length, times a density."""
 
+FLATTEST = 1e-7
+"""Least bulge. An arc's radius is its chord over 4 bulges: flatter ones drown in the rounding of their radius."""
+
 
 class Values:
     """Reads values out of plain data. All methods raise ValueError with the place, what was expected, what came."""
@@ -71,6 +74,28 @@ class Values:
         if not isinstance(found, list) or len(found) != 2:
             raise ValueError(f"{place}: expected [x, y], got {found!r:.40}")
         return self.number(found[0], f"{place}[0]"), self.number(found[1], f"{place}[1]")
+
+    def bulged(self, found: Any, place: str) -> list[tuple[float, float, float]]:
+        """A list of points, [x, y] or, where an arc to the next begins, [x, y, bulge]; counted against the limit."""
+        points = self.rows(found, place)
+        self.points += len(points)
+        check(self.points, self.limits.points, "points")
+        told = []
+        for i, point in enumerate(points):
+            if not isinstance(point, list) or len(point) not in (2, 3):
+                raise ValueError(f"{place}[{i}]: expected [x, y] or [x, y, bulge], got {point!r:.40}")
+            x, y, bulge = (
+                self.number(value, f"{place}[{i}][{k}]") for k, value in enumerate([*point, 0][:3])
+            )
+            if bulge and not FLATTEST <= abs(bulge) <= 1 / FLATTEST:
+                raise ValueError(
+                    f"{place}[{i}][2]: expected 0 or a bulge of {FLATTEST:g} to {1 / FLATTEST:g} in size, got {bulge:g}"
+                )
+            told.append((x, y, bulge))
+        least = 2 if any(bulge for _, _, bulge in told) else 3
+        if len(told) < least:
+            raise ValueError(f"{place}: expected at least {least} points, got {len(told)}")
+        return told
 
     def ring(self, found: Any, place: str, least: int = 3) -> list[tuple[float, float]]:
         """A list of points, counted against the limit."""

@@ -37,6 +37,7 @@ class AreaContact:
     def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
         self._settings = settings
         self._memory: Memory | None = None
+        self._space: pymunk.Space | None = None
         self._install(space)
 
     # --- attaching ---
@@ -45,6 +46,7 @@ class AreaContact:
         from . import joints, record  # the machine code: compiled, or loaded, when first attached
 
         self._error: BaseException | None = None
+        self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._store = Store()
         self._shapes: dict[int, pymunk.Shape] = {}
         self._state = state = self._store.state[0]
@@ -73,18 +75,22 @@ class AreaContact:
         own = weakref.ref(self)  # C keeps no Python object alive
         self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
         state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
-        self._space: pymunk.Space | None = space
+        self._space = space
         self._plain = type(space)
         space.__class__ = _attached(self._plain)
         space.__dict__[_KEY] = self
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         self._end = weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
-        self._register()
-        if self._memory is not None:
-            recall(self._store, space, self._memory)
-            self._memory = None
-        self.energy()  # compiled now, not when it is asked for
+        try:
+            self._register()
+            if self._memory is not None:
+                recall(self._store, space, self._memory)
+                self._memory = None
+            self.energy()  # compiled now, not when it is asked for
+        except BaseException:  # a shape that cannot be a contact's, an interrupt
+            self.detach()
+            raise
 
     def _hide(self, space: pymunk.Space) -> None:
         """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
@@ -109,12 +115,14 @@ class AreaContact:
         lib.cpSpaceAddConstraint(space._space, joint)
         self._hidden = joint, body, pivot
         self._state["hidden"] = address_of(joint)
-        key = (None, None)
-        if key not in space._handlers:
-            space.on_collision()
-        self._handler = space._handlers[key]
-        self._state["global_handler"] = address_of(self._handler._handler)
-        self._state["pre_solve_at"] = record.pre_solve.address  # set at the begin of a frame
+        wildcard = int(
+            ffi.cast("uintptr_t", ~0)
+        )  # pymunk's own way to the global handler, but for an entry of its own
+        handler = lib.cpSpaceAddCollisionHandler(space._space, wildcard, wildcard)
+        self._state["global_handler"] = address_of(handler)
+        self._hook = ffi.cast("uintptr_t *", address_of(handler) + int(self._state["handler_pre_solve"]) - 8)
+        self._state["user_pre_solve"] = int(self._hook[1])
+        self._state["pre_solve_at"] = self._hook[1] = record.pre_solve.address
 
     @property
     def space(self) -> pymunk.Space:
@@ -136,7 +144,8 @@ class AreaContact:
         lib.cpSpaceRemoveConstraint(space._space, joint)
         ffi.cast("uintptr_t *", joint)[0] = pivot
         lib.cpConstraintFree(joint)
-        self._handler.pre_solve = self._handler.pre_solve  # pymunk sets Chipmunk's pointer anew
+        if int(self._hook[1]) == int(self._state["pre_solve_at"]):
+            self._hook[1] = int(self._state["user_pre_solve"]) or int(self._state["no_pre_solve"])
         at, own = int(self._state["body_position_func"]) // 8, int(self._state["position_func"])
         for body in space.bodies:
             function = ffi.cast("uintptr_t *", body._body)
@@ -204,15 +213,24 @@ class AreaContact:
     def _hear(self) -> None:
         """Which shapes' collision types have callbacks of the user's, that may say no."""
         space = self.space
+        state = self._state
+        for number, name in ((0, "begin"), (2, "post_solve"), (3, "separate")):
+            state[f"global_{name}"] = int(self._hook[number])
+        everywhere = space._handlers.get((None, None))
+        to_all = everywhere is not None and any(
+            getattr(everywhere, phase) is not None
+            for phase in ("begin", "pre_solve", "post_solve", "separate")
+        )
         keys = [key for key in space._handlers if key != (None, None)]
         alone = {a for a, b in keys if b is None}
         pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
         rows = self._store.slots
         for ident, shape in self._shapes.items():
             kind = shape.collision_type
-            self._store.tables.shapes[rows[ident]]["heard"] = (kind in alone) + 2 * (kind in pairs)
-        entries = ffi.cast("unsigned int **", address_of(space._space) + int(self._state["space_handlers"]))
-        self._state["handler_count"] = int(entries[0][0])
+            row = self._store.tables.shapes[rows[ident]]
+            row["type"], row["heard"] = kind, (to_all or kind in alone) + 2 * (kind in pairs)
+        entries = ffi.cast("unsigned int **", address_of(space._space) + int(state["space_handlers"]))
+        state["handler_count"] = int(entries[0][0])
 
     def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again, after `unsafe_set_vertices` and the like."""
@@ -268,7 +286,7 @@ class AreaContact:
                 return int(self._state["taken"])
             done = 0
             while done < frames:
-                if space._handlers.keys() - {(None, None)} or self._step_alone(dt):
+                if self._step_alone():
                     space.step(dt)
                     done += 1
                 else:
@@ -277,10 +295,10 @@ class AreaContact:
             self._state["substeps"], self._state["steps_given"], self._state["tolerance"] = SUBSTEPS, 0, 0.0
         return int(self._state["taken"])
 
-    def _step_alone(self, dt: float) -> bool:
+    def _step_alone(self) -> bool:
         """Whether pymunk has something to do around each step."""
         space = self.space
-        return bool(space.threaded or space._bodies_to_check or space._handlers[None, None].pre_solve)
+        return bool(space.threaded or space._bodies_to_check or space._handlers)
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
@@ -301,8 +319,14 @@ class AreaContact:
 
     def _raise(self) -> None:
         error, self._error = self._error, None
-        if error is not None:
-            raise error
+        before, self._before = self._before, []
+        if error is None:
+            return
+        for body, (x, y, angle, vx, vy, w) in before:
+            if (*body.position, body.angle) != (x, y, angle):
+                body.position, body.angle = (x, y), angle
+            body.velocity, body.angular_velocity = (vx, vy), w
+        raise error
 
     # --- what it shows ---
 
@@ -358,6 +382,8 @@ class AreaContact:
 
 
 def _serve(own: weakref.ref[AreaContact], request: int) -> None:
+    from . import record
+
     contact = own()
     if contact is None or contact._space is None:
         return
@@ -367,11 +393,16 @@ def _serve(own: weakref.ref[AreaContact], request: int) -> None:
         contact._state["failed"] = contact._state["stop"] = 1
         if contact._error is None:
             contact._error = error
+            if request in (record.REGISTER, record.MORE_JOINTS):
+                # nothing has been changed yet, but Chipmunk will go on with this step: to be put back after it
+                contact._before = [
+                    (b, (*b.position, b.angle, *b.velocity, b.angular_velocity))
+                    for b in contact._space.bodies
+                ]
             contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
 
 
 def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
-    space._post_step_callbacks.pop(key)
     contact._raise()
 
 

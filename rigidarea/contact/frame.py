@@ -9,6 +9,7 @@ once velocities are integrated; `report` after its sweeps, so that whoever asks 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -61,12 +62,12 @@ from .record import (
     read_motion,
     read_place,
     state_of,
+    time_step,
     timestamp,
     user_data,
     words,
 )
 
-_time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 _cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
 _step = function("cpSpaceStep", types.void(types.uintp, types.float64))
 
@@ -95,8 +96,12 @@ def silence(constraint: int, dt: float) -> None:
 
 
 @kernel
-def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> None:
-    """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities."""
+def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> bool:
+    """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
+
+    False: the state of one (`broken`) is not finite. Later that would have spread to others.
+    """
+    s.broken = -1
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0:
@@ -108,12 +113,19 @@ def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> None:
             read_motion(s, address, body)
             body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
             body.kind = DRIFTS
+            body.old_x = body.x
+            body.old_y = body.y
+            body.old_a = body.angle
             body.old_vx = body.vx
             body.old_vy = body.vy
             body.old_w = body.w
         if s.explicit or body.kind == LED:
             read_place(s, address, body)
         read_motion(s, address, body)
+        state = body.x + body.y + body.angle + body.vx + body.vy + body.w
+        if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
+            s.broken = i if s.broken < 0 else s.broken
+            continue
         whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
         body.kick_x = 0.0
         body.kick_y = 0.0
@@ -130,6 +142,7 @@ def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> None:
             body.kick_x = body.vx - body.old_vx
             body.kick_y = body.vy - body.old_vy
             body.kick_w = body.w - body.old_w
+    return bool(s.broken < 0)
 
 
 @kernel(forceinline=True)
@@ -243,7 +256,8 @@ def _join(s: Any, h: float) -> int:
 @kernel
 def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
-    _start(s, space, load_tables(s), dt, dt)
+    if not _start(s, space, load_tables(s), dt, dt):
+        return False
     if not _contacts(s, space, dt, dt):
         return False
     tables = load_tables(s)
@@ -256,7 +270,8 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps. Whether there was memory for it."""
     h = dt / n
-    _start(s, space, load_tables(s), dt, h)
+    if not _start(s, space, load_tables(s), dt, h):
+        return False
     for i in range(n):
         drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
         kick(load_tables(s), s.frame)
@@ -376,17 +391,21 @@ def _frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
-def _finish_frame(s: Any, tables: Tables) -> None:
-    """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at."""
+def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
+    """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at.
+
+    Of a frame that failed also what the user's position functions have moved.
+    """
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         if body.stamp != s.frame or body.address == 0:
             continue
-        if body.mobile:
+        if body.mobile or not good:
             write_motion(s, body)
-        if body.kind == DRIFTS and s.explicit == 0:
+        if (body.kind == DRIFTS and s.explicit == 0) or not good:
             write_place(s, body)
-            words(body.address + s.body_position_func, 1)[0] = s.hold_at
+            if body.kind == DRIFTS and s.explicit == 0:
+                words(body.address + s.body_position_func, 1)[0] = s.hold_at
             shape = words(body.address + s.body_shapes, 1)[0]
             while shape != 0:
                 _cache_box(s.scratch_at, shape)
@@ -421,18 +440,18 @@ def solve(constraint: int, coefficient: float) -> None:
         iterations[0] = 0  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
     if s.frame != np.int64(timestamp(space)) or s.failed:
         return
-    dt = _time_step(space)
+    dt = time_step(space)
     good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
     tables = load_tables(s)
     if good:
         s.broken = finite(tables, s.frame)
-        if s.broken >= 0:
-            ask(s, BROKEN)
-            good = False
+        good = s.broken < 0
+    if s.broken >= 0:
+        ask(s, BROKEN)
     if not good:
         _undo(s, tables)
     s.contacts = tables.counters[ROWS]
-    _finish_frame(s, tables)
+    _finish_frame(s, tables, good)
 
 
 @callback(types.void(types.uintp, types.uintp))

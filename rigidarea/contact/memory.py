@@ -1,77 +1,126 @@
-"""What a copy of an attached space is told, so that it goes on as its original does: near pairs, regions, boxes."""
+"""What a copy of an attached space is told, so that it goes on as its original does.
+
+Pairs with their regions, the shapes' boxes, and the impulses that joints start from, which pymunk's copies forget.
+Pairs keep their numbers: what comes first where two are equally high is decided by them.
+"""
 
 from __future__ import annotations
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 import pymunk
 
-from ..kernel.tables import ANEW, FREE_PAIRS, FREE_REGION, FREE_REGIONS, NEAR, SUBSTEP, new_pair
+from ..chipmunk import address_of, joint_impulse
+from ..kernel.tables import (
+    ANEW,
+    APART,
+    FREE_PAIR,
+    FREE_PAIRS,
+    FREE_REGION,
+    FREE_REGIONS,
+    NEAR,
+    SEARCH,
+    SUBSTEP,
+    end_pair,
+    rehash,
+)
 from ..store import Store
 
 
 class Memory(NamedTuple):
-    """Pairs in the order of the sweeps, by the places of their two shapes in space.shapes; a record a shape."""
+    """Arrays of a `Store`; shapes and joints by their places in the space's lists."""
 
-    pairs: list[tuple[int, int, Any, list[Any]]]
-    shapes: list[Any]
+    pairs: np.ndarray
+    """(n,) PAIR, the two shapes by their rows."""
+    regions: np.ndarray
+    """(n,) REGION."""
+    near: np.ndarray
+    """(n,) int32: pairs in the order of the sweeps."""
+    rows: np.ndarray
+    """(n,) int: each shape's row; -1: it has come since the last frame."""
+    order: np.ndarray
+    """(n,) int32: rows in the order of the last search."""
+    shapes: np.ndarray
+    """(n,) SHAPE, by row."""
+    counters: np.ndarray
+    joints: list[np.ndarray]
+    """Impulses."""
+    substeps: int
+    """Of the last frame."""
 
 
-#: What a pair and a shape keep.
-_PAIR = (
-    *("side_a", "side_b", "verdict", "friction", "elasticity", "surface_x", "surface_y"),
-    *("stiffness", "load", "least", "order", "beside"),
+_COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
+#: What a shape keeps.
+_SHAPE = (
+    *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),
+    *("left", "bottom", "right", "top"),
 )
-_SHAPE = ("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y")
 
 
-def remember(store: Store, space: pymunk.Space) -> Memory | None:
-    """All near pairs and their regions; None where they are to be searched anew anyway."""
-    shapes = list(space.shapes)
+def remember(store: Store, space: pymunk.Space) -> Memory:
+    """What the next frame starts from."""
+    rows = [int(store.slots[s._hashid]) if store.knows(s._hashid) else -1 for s in space.shapes]
     tables = store.tables
-    if tables.counters[ANEW] or not all(store.knows(shape._hashid) for shape in shapes):
-        return None
-    place = {int(store.slots[shape._hashid]): i for i, shape in enumerate(shapes)}
-    pairs = []
-    for p in tables.near[: tables.counters[NEAR]]:
-        pair = tables.pairs[p]
-        if int(pair["a"]) not in place or int(pair["b"]) not in place:
-            return None
-        rows = []
-        r = int(pair["head"])
-        while r >= 0:
-            rows.append(np.array(tables.regions[r], copy=True))
-            r = int(tables.regions[r]["next"])
-        pairs.append((place[int(pair["a"])], place[int(pair["b"])], np.array(pair, copy=True), rows))
-    records = [np.array(tables.shapes[store.slots[shape._hashid]], copy=True) for shape in shapes]
-    return Memory(pairs, records)
+    return Memory(
+        tables.pairs.copy(),
+        tables.regions.copy(),
+        tables.near.copy(),
+        np.array(rows, np.int64),
+        tables.sorted.copy(),
+        tables.shapes.copy(),
+        tables.counters.copy(),
+        [np.array(joint_impulse(joint)) for joint in space.constraints],
+        int(store.state[0]["substeps_before"]),
+    )
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
-    """Give a copy what its original remembers."""
-    slots = [int(store.slots[shape._hashid]) for shape in space.shapes]
-    for row, old in zip(slots, memory.shapes):
-        for name in _SHAPE:
-            store.tables.shapes[row][name] = old[name]
-    while len(memory.pairs) > store.tables.counters[FREE_PAIRS]:
-        store.grow_pairs()
-    while sum(len(rows) for *_, rows in memory.pairs) > store.tables.counters[FREE_REGIONS]:
-        store.grow_regions()
-    tables = store.tables
-    tables.counters[SUBSTEP] += 1
-    for i, (a, b, old, rows) in enumerate(memory.pairs):
-        number = int(new_pair(tables, slots[a], slots[b]))
-        tables.near[i] = number
-        pair = tables.pairs[number]
-        for name in _PAIR:
-            pair[name] = old[name]
-        for row in reversed(rows):
-            r = int(tables.counters[FREE_REGION])
-            tables.counters[FREE_REGION] = tables.regions[r]["next"]
-            tables.counters[FREE_REGIONS] -= 1
-            tables.regions[r] = row
-            tables.regions[r]["pair"], tables.regions[r]["next"] = number, pair["head"]
-            tables.regions[r]["stamp"] = tables.counters[SUBSTEP]
-            pair["head"] = r
-    tables.counters[NEAR], tables.counters[ANEW] = len(memory.pairs), 0
+    """Give a copy, just registered, what its original remembers."""
+    mine = np.array([store.slots[shape._hashid] for shape in space.shapes], np.int64)
+    known = memory.rows >= 0
+    row_of = np.full(len(memory.shapes) + 1, -1)  # its row here by its row there; the last for none
+    row_of[memory.rows[known]] = mine[known]
+    for name in _SHAPE:
+        store.tables.shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
+    store.grow_pairs(len(memory.pairs))
+    store.grow_regions(len(memory.regions))
+    pairs, regions = memory.pairs.copy(), memory.regions.copy()
+    used = pairs["a"] >= 0
+    for name in ("a", "b"):
+        pairs[name][used] = row_of[pairs[name][used]]
+    order = row_of[memory.order]
+    order = order[order >= 0]
+    rest = np.setdiff1d(store.tables.sorted, order)
+    store.tables = tables = store.tables._replace(
+        pairs=pairs,
+        regions=regions,
+        near=memory.near.copy(),
+        rows=store.tables.rows[: len(regions)],
+        sorted=np.concatenate((order, rest)).astype(np.int32),
+    )
+    tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
+    lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
+    for p in np.flatnonzero(lost):  # one of its shapes is gone
+        end_pair(tables, int(p))
+    store.drop_near()
+    tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
+    rehash(tables)
+    store.state[0]["substeps_before"] = memory.substeps
+    for joint, impulse in zip(space.constraints, memory.joints):
+        joint_impulse(joint)[:] = impulse
+    _keep_apart(store, space)
+
+
+def _keep_apart(store: Store, space: pymunk.Space) -> None:
+    """The bodies that joints keep from colliding, as `joints.take_joints` lists them: else pairs are searched anew."""
+    store.grow_joints(len(space.constraints) + 1)
+    tables, n = store.tables, 0
+    for joint in space.constraints:
+        rows = [store.row_of(address_of(body._body)) for body in (joint.a, joint.b)]
+        if not joint.collide_bodies and min(rows) >= 0:
+            tables.apart[n] = rows
+            tables.bodies["joined"][rows] = 1
+            n += 1
+    tables.counters[APART] = n
+    store.sync()

@@ -8,12 +8,14 @@ friction, elasticity and surface velocity that they have left it, and whether th
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 from numba import types
 
 from ..chipmunk import function
+from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
 from ..kernel.solve import place
@@ -33,11 +35,12 @@ from ..store import STATE, load_tables, row_of_body
 from .joints import take_joints
 
 #: What machine code asks Python for.
-NOTHING, REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN = range(8)
+REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN = range(7)
 
 user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
 shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
+time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
 hash_id = function("cpShapeGetHashID", types.uintp(types.uintp))
 body_type = function("cpBodyGetType", types.int32(types.uintp))
@@ -133,6 +136,8 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
         body = tables.bodies[i]
         if body.stamp == s.frame:
             continue
+        met = body.stamp >= 0
+        x, y, angle = body.x, body.y, body.angle
         body.stamp = s.frame
         read_place(s, address, body)
         read_motion(s, address, body)
@@ -144,9 +149,14 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
             body.kind = DRIFTS
             if s.held != s.frame:
                 _take_back(body, dt)
-        body.old_x = body.x
-        body.old_y = body.y
-        body.old_a = body.angle
+        if met and body.kind == LED and not math.isfinite(body.x + body.y + body.angle):
+            body.old_x = x  # it has been moved before the frame began for us: where the last one has left it
+            body.old_y = y
+            body.old_a = angle
+        else:
+            body.old_x = body.x
+            body.old_y = body.y
+            body.old_a = body.angle
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w
@@ -184,7 +194,10 @@ def begin(s: Any, space: int, dt: float) -> bool:
     s.failed = 0
     s.broken = -1
     hook = words(s.global_handler + s.handler_pre_solve, 1)
-    fresh = changed(s, space)
+    heard = words(s.global_handler + s.handler_pre_solve - 8, 4)  # begin, pre_solve, post_solve, separate
+    fresh = changed(s, space) or (
+        heard[0] != s.global_begin or heard[2] != s.global_post_solve or heard[3] != s.global_separate
+    )
     if hook[0] != s.pre_solve_at:  # the user has set one of theirs, or taken it away: ours comes after it
         s.user_pre_solve = np.uint64(0) if hook[0] == s.no_pre_solve else hook[0]
         hook[0] = s.pre_solve_at
@@ -198,9 +211,16 @@ def begin(s: Any, space: int, dt: float) -> bool:
         return False
     tables = load_tables(s)
     _watch(s, tables, space, dt)
+    solid = False
+    retyped = False
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
         if shape.outline >= 0:
+            sensor = array_at(shape.address + s.shape_sensor, (1,), np.uint8)[0]
+            if sensor != shape.sensor:
+                shape.sensor = sensor
+                tables.counters[ANEW] = 1
+                solid = True
             material = floats(shape.address + s.shape_elasticity, 2)
             shape.elasticity = material[0]
             shape.friction = material[1]
@@ -214,6 +234,12 @@ def begin(s: Any, space: int, dt: float) -> bool:
                 shape.group = group
                 shape.categories = masks[0]
                 shape.mask = masks[1]
+            retyped |= words(shape.address + s.shape_type, 1)[0] != shape.type
+    if retyped and not ask(s, REGISTER):  # other callbacks may be asked about it
+        return False
+    tables = load_tables(s)
+    if solid:  # a body is as thin as its thinnest shape that is no sensor
+        extents(tables)
     if not s.explicit:
         n = len(members(space, s.space_constraints))
         if n > s.joints_n and not ask(s, MORE_JOINTS):
@@ -269,7 +295,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     now = np.int64(timestamp(space))
     if s.user_pre_solve != 0:
         _call_hook(s.user_pre_solve, arbiter, space, data)
-    if s.frame != now and not begin(s, space, 0.0):
+    if s.frame != now and not begin(s, space, time_step(space)):
         return
     both = words(arbiter + s.arbiter_shape_a, 2)
     a = _row_of_shape(s, both[0])
@@ -277,12 +303,16 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     if a < 0 or b < 0:
         return
     tables = load_tables(s)
-    if tables.shapes[a].sensor or tables.shapes[b].sensor:
-        return
+    solid = not (
+        array_at(both[0] + s.shape_sensor, (1,), np.uint8)[0]
+        or array_at(both[1] + s.shape_sensor, (1,), np.uint8)[0]
+    )
     if not (tables.bodies[tables.shapes[a].body].mobile or tables.bodies[tables.shapes[b].body].mobile):
         return
     p = find_pair(tables, a, b)
     if p < 0:
+        if not solid:
+            return
         if tables.counters[FREE_PAIRS] == 0:
             if not ask(s, MORE_PAIRS):
                 return
@@ -293,7 +323,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     pair.stamp = now
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1
-    pair.verdict = 1 if array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0
+    pair.verdict = 1 if solid and array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0
     pair.jx = 0.0
     pair.jy = 0.0
     pair.friction = floats(arbiter + s.arbiter_friction, 1)[0]

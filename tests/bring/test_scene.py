@@ -316,3 +316,53 @@ def test_fuzz_ends_in_a_scene_or_a_value_error():
                 assert body.body_type != pymunk.Body.DYNAMIC or 0 < body.mass < math.inf
     assert refused > 1000 and made > 50
     assert tomllib is not None
+
+
+def test_arcs_are_saved_as_bulges():
+    """A lens with a round hole comes back, to rounding: a bulge is the tangent of a quarter of the arc's turn."""
+    lens = ra.Outline.from_bulges(
+        [(-2, 0, 0.5), (2, 0, 0), (2, 1, 0.25), (-2, 1, 0)], [[(0.5, 0.25, 1), (-0.5, 0.25, 1)]]
+    )
+    space = pymunk.Space()
+    body = lens.body(density=1.0)
+    space.add(body, lens.add_to(body))
+    disc = pymunk.Body(1, 1)
+    space.add(disc, ra.Outline.circle(0.5).add_to(disc))
+    text = bring.scene_as_text(space)
+    again = bring.scene_from_text(text).space
+    found = [next(iter(b.shapes)).outline for b in again.bodies]
+    for before, after in zip((lens, ra.Outline.circle(0.5)), found):
+        assert after.area == pytest.approx(before.area, rel=1e-14)
+        for name in ("rings", "arcs"):
+            assert len(getattr(after, name)) == len(getattr(before, name))
+            for one, other in zip(getattr(before, name), getattr(after, name)):
+                assert other == pytest.approx(one, abs=1e-14)
+    assert found[1].area == pytest.approx(math.pi / 4, rel=1e-15)
+
+
+@pytest.mark.parametrize(
+    "points",
+    [
+        [[0, 0, 1], [1, 0, -1]],  # nothing within
+        [[0, 0, 1e50], [1, 0, 0], [1, 1, 0]],
+        [[0, 0, 1e-50], [1, 0, 0], [1, 1, 0]],
+        [[0, 0, 1], [0, 0, 1]],
+        [[0, 0, 1]],
+        [[0, 0, 1, 2], [1, 0], [1, 1]],
+        [[0, 0, "1"], [1, 0], [1, 1]],
+        [[0, 0, -0.9], [1, 0], [1, 1]],  # crosses the others
+        [[1e50, 0, 1], [1e50, 1], [0, 1]],
+    ],
+)
+def test_hostile_arcs_are_refused_or_right(points):
+    began = time.monotonic()
+    try:
+        scene = read(
+            {"rigidarea": 1, "bodies": [{"shapes": [{"outline": {"points": points}, "density": 1}]}]}
+        )
+    except ValueError as error:
+        assert "bodies[0]" in str(error)
+    else:
+        (body,) = scene.space.bodies
+        assert math.isfinite(body.mass) and math.isfinite(body.moment) and body.mass > 0
+    assert time.monotonic() - began < 5  # bounded: no array of 1e25 points
