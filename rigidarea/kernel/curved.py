@@ -11,7 +11,7 @@ from .work import OVERFLOW, TANGLED, Relative, placed
 
 
 @kernel(forceinline=True)
-def _along(
+def along_edge(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, r: float, x: float, y: float
 ) -> float:
     """Where on the edge or arc a -> b a point lies: grows along it."""
@@ -67,7 +67,7 @@ def cross_curved_leaves(
             r = arcs_a[i, 2]
             enters = 1  # of the crossing at (x1, y1)
             if r == 0.0 and u == 0.0:
-                bits, x1, y1 = _line_line(ax, ay, bx, by, cx, cy, dx, dy)
+                bits, x1, y1 = line_line(ax, ay, bx, by, cx, cy, dx, dy)
                 if bits & SECOND:
                     bits = FIRST
                     enters = -1
@@ -93,8 +93,8 @@ def cross_curved_leaves(
                     cross[n, 0] = i
                     cross[n, 1] = j
                     cross[n, 2] = enters if bit == FIRST else -enters
-                    param[n, 0] = _along(ax, ay, bx, by, fx, fy, r, x, y)
-                    param[n, 1] = _along(cx, cy, dx, dy, gx, gy, u, x, y)
+                    param[n, 0] = along_edge(ax, ay, bx, by, fx, fy, r, x, y)
+                    param[n, 1] = along_edge(cx, cy, dx, dy, gx, gy, u, x, y)
                     spot[n, 0] = x
                     spot[n, 1] = y
                     n += 1
@@ -102,7 +102,7 @@ def cross_curved_leaves(
 
 
 @kernel
-def _line_line(
+def line_line(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, dx: float, dy: float
 ) -> tuple[int, float, float]:
     """(FIRST where a -> b of A enters B through c -> d, SECOND where it leaves, 0 for no crossing; the point)."""

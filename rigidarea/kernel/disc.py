@@ -2,8 +2,8 @@
 
 A disc's boundary has no corner and no start, so nothing of it can lie on a corner of the other: every decision is
 whether an end of an edge lies inside the circle, a plain sign that both edges at that end share. One walk round the
-other outline finds where it enters the disc and leaves it, in order; between a leaving and the next entering the disc's
-own arc closes the region, because both are convex. The region is one.
+other outline, past what lies out of the disc's reach, finds where it enters the disc and leaves it, in order; between a
+leaving and the next entering the disc's own arc closes the region, because both are convex. The region is one.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ import numpy as np
 
 from .arc import SAME_CIRCLE, across, circle_circle, on_arc, segment
 from .jit import kernel
+from .pool import LEAF
 from .work import A_EDGE, B_EDGE, TANGLED, Relative, measure, placed, put
 
 #: Two crossings nearer than this, over the radius: the boundaries only touch. (An edge cuts off a chord of nothing or
@@ -144,6 +145,15 @@ def disc_disc(
 
 
 @kernel
+def _put(
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+) -> int:  # fmt: skip
+    """`put`, called: for what happens rarely."""
+    return put(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
+
+
+@kernel
 def _close(
     p: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
     px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
@@ -154,19 +164,20 @@ def _close(
     bx = qx - cx
     by = qy - cy
     gap = (bx - ax) ** 2 + (by - ay) ** 2
-    if ax * by - ay * bx >= 0.0 or gap < (TOUCH * r) ** 2:
-        return put(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
-    # more than half a turn: halved opposite the middle of the chord
-    mx = -(ax + bx)
-    my = -(ay + by)
-    if mx * mx + my * my < r * r:
-        mx = by - ay
-        my = ax - bx
-    f = r / math.sqrt(mx * mx + my * my)
-    mx = cx + f * mx
-    my = cy + f * my
-    v = put(p, label, bows, v, own, px, py, mx, my, cx, cy, r)
-    return put(p, label, bows, v, own, mx, my, qx, qy, cx, cy, r)
+    if ax * by - ay * bx < 0.0 and gap >= (TOUCH * r) ** 2:
+        # more than half a turn: halved opposite the middle of the chord
+        mx = -(ax + bx)
+        my = -(ay + by)
+        if mx * mx + my * my < r * r:
+            mx = by - ay
+            my = ax - bx
+        f = r / math.sqrt(mx * mx + my * my)
+        mx = cx + f * mx
+        my = cy + f * my
+        v = _put(p, label, bows, v, own, px, py, mx, my, cx, cy, r)
+        px = mx
+        py = my
+    return put(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
 
 
 @kernel
@@ -189,111 +200,154 @@ def _cut_by_arc(
 
 @kernel
 def disc_convex(
-    cx: float, cy: float, r: float, points: np.ndarray, following: np.ndarray, arcs: np.ndarray, begin: int, end: int,
-    place: Relative, own: int, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
+    cx: float, cy: float, r: float, points: np.ndarray, arcs: np.ndarray, boxes: np.ndarray, begin: int, count: int,
+    leaf: int, place: Relative, own: int, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray,
+    noise: float,
 ) -> int:  # fmt: skip
-    """A disc at (cx, cy) with the convex outline of edges begin:end, placed (by the identity if it is A).
+    """A disc at (cx, cy) with the convex outline of `count` edges from begin on, placed (by the identity if it is A).
 
-    own: the outline's label, A_EDGE or B_EDGE. p, label, bows, loops: the scratch's.
+    Worked out where the outline's own coordinates are, so that only the disc's centre and the result need placing.
+    Of its hierarchy only the leaves are looked at, rows of boxes from `leaf` on: edges of those that the disc's reach
+    does not meet are passed over. own: the outline's label, A_EDGE or B_EDGE. p, label, bows, loops: the scratch's.
     """
+    dx = cx - place.tx
+    dy = cy - place.ty
+    kx = place.c * dx + place.s * dy
+    ky = place.c * dy - place.s * dx
     mine = B_EDGE if own == A_EDGE else A_EDGE
-    px, py = placed(points, begin, place)
-    p_in = across(px, py, cx, cy, r)
+    reach = r + noise
     v = 0
     crossed = 0
     open_ = False  # left, and not entered since, at (out_x, out_y)
     out_x = out_y = in_x = in_y = 0.0
-    for e in range(begin, end):
-        qx, qy = placed(points, following[e], place)
-        q_in = across(qx, qy, cx, cy, r)
-        a = arcs[e, 2]
-        enters = False
-        leaves = False
-        x1 = y1 = x2 = y2 = 0.0
-        ax = ay = 0.0
-        if a == 0.0:
-            if not (p_in and q_in):
-                ux = qx - px
-                uy = qy - py
-                wx = cx - px
-                wy = cy - py
-                turn = ux * wy - uy * wx
-                length2 = ux * ux + uy * uy
-                hit = turn * turn < r * r * length2
-                if not hit and turn < 0.0:
-                    return 0  # the whole disc lies beyond this edge
-                if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
-                    length = math.sqrt(length2)
-                    ux /= length
-                    uy /= length
-                    distance = turn / length
-                    half = math.sqrt(max(0.0, (r - abs(distance)) * (r + abs(distance))))
-                    fx = cx + distance * uy
-                    fy = cy - distance * ux
-                    enters = not p_in
-                    leaves = not q_in
-                    x1 = fx - half * ux
-                    y1 = fy - half * uy
-                    x2 = fx + half * ux
-                    y2 = fy + half * uy
-        else:
-            ax, ay = placed(arcs, e, place)
-            d2 = (cx - ax) ** 2 + (cy - ay) ** 2
-            if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
-                return TANGLED
-            enters, leaves, x1, y1, x2, y2 = _cut_by_arc(px, py, qx, qy, ax, ay, a, p_in, q_in, cx, cy, r)
-        # what of p -> q lies inside the disc, and the disc's arc before it
-        if p_in:
-            if leaves:
-                v = put(p, label, bows, v, own, px, py, x2, y2, ax, ay, a)
+    for first in range(0, count, LEAF):
+        row = leaf + first // LEAF
+        far_x = max(0.0, abs(kx - boxes[row, 0]) - boxes[row, 2])
+        far_y = max(0.0, abs(ky - boxes[row, 1]) - boxes[row, 3])
+        if far_x * far_x + far_y * far_y > reach * reach:
+            continue
+        px = points[begin + first, 0]
+        py = points[begin + first, 1]
+        p_in = across(px, py, kx, ky, r)
+        for e in range(begin + first, begin + min(first + LEAF, count)):
+            k = e + 1 if e + 1 < begin + count else begin
+            qx = points[k, 0]
+            qy = points[k, 1]
+            q_in = across(qx, qy, kx, ky, r)
+            a = arcs[e, 2]
+            enters = False
+            leaves = False
+            x1 = y1 = x2 = y2 = 0.0
+            ax = ay = 0.0
+            if a == 0.0:
+                if not (p_in and q_in):
+                    ux = qx - px
+                    uy = qy - py
+                    wx = kx - px
+                    wy = ky - py
+                    turn = ux * wy - uy * wx
+                    length2 = ux * ux + uy * uy
+                    hit = turn * turn < r * r * length2
+                    if not hit and turn < 0.0:
+                        return 0  # the whole disc lies beyond this edge
+                    if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
+                        length = math.sqrt(length2)
+                        ux /= length
+                        uy /= length
+                        distance = turn / length
+                        half = math.sqrt(max(0.0, (r - abs(distance)) * (r + abs(distance))))
+                        fx = kx + distance * uy
+                        fy = ky - distance * ux
+                        enters = not p_in
+                        leaves = not q_in
+                        x1 = fx - half * ux
+                        y1 = fy - half * uy
+                        x2 = fx + half * ux
+                        y2 = fy + half * uy
+            else:
+                ax = arcs[e, 0]
+                ay = arcs[e, 1]
+                d2 = (kx - ax) ** 2 + (ky - ay) ** 2
+                if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
+                    return TANGLED
+                enters, leaves, x1, y1, x2, y2 = _cut_by_arc(px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r)
+            # what of p -> q lies inside the disc, and the disc's arc before it
+            back = enters and leaves and p_in  # an arc goes out and comes in again
+            if back:
+                v = _put(p, label, bows, v, own, px, py, x2, y2, ax, ay, a)
                 out_x = x2
                 out_y = y2
                 open_ = True
-            else:
-                v = put(p, label, bows, v, own, px, py, qx, qy, ax, ay, a)
-        if enters:
-            if open_:
-                v = _close(p, label, bows, v, mine, out_x, out_y, x1, y1, cx, cy, r)
-                open_ = False
-            else:
-                in_x = x1
-                in_y = y1
-            crossed += 1
-            if q_in or p_in:
-                v = put(p, label, bows, v, own, x1, y1, qx, qy, ax, ay, a)
-            else:
-                v = put(p, label, bows, v, own, x1, y1, x2, y2, ax, ay, a)
-                out_x = x2
-                out_y = y2
-                open_ = True
-        px = qx
-        py = qy
-        p_in = q_in
+            if enters:
+                crossed += 1
+                if open_:
+                    v = _close(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
+                    open_ = False
+                else:
+                    in_x = x1
+                    in_y = y1
+            if p_in or enters:
+                gone = leaves and not back
+                v = put(
+                    p, label, bows, v, own, x1 if enters else px, y1 if enters else py,
+                    x2 if gone else qx, y2 if gone else qy, ax, ay, a,
+                )  # fmt: skip
+                if gone:
+                    out_x = x2
+                    out_y = y2
+                    open_ = True
+            px = qx
+            py = qy
+            p_in = q_in
     touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
     if crossed == 0 or touched:
-        return _nested(
-            cx, cy, r, points, following, arcs, begin, end, place, own, p, label, bows, loops, noise
-        )
-    if open_:
-        v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, cx, cy, r)
-    if measure(p, label, bows, loops, 0, 0, v, True, noise) == 0 or loops[0].area < 0.0:  # negative: rounding
+        n = _nested(kx, ky, r, points, arcs, begin, count, own, p, label, bows, loops, noise)
+    else:
+        if open_:
+            v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
+        n = measure(p, label, bows, loops, 0, 0, v, True, noise)
+    if n == 0 or loops[0].area < 0.0:  # negative: rounding
         return 0
+    if own == B_EDGE:
+        _put_there(p, bows, loops, place)
     return 1
+
+
+@kernel(forceinline=True)
+def _put_there(p: np.ndarray, bows: np.ndarray, loops: np.ndarray, place: Relative) -> None:
+    """Place the first loop."""
+    loop = loops[0]
+    for i in range(loop.stop):
+        p[i, 0], p[i, 1] = placed(p, i, place)
+        if bows[i, 2] != 0.0:
+            bows[i, 0], bows[i, 1] = placed(bows, i, place)
+    x = loop.x
+    y = loop.y
+    loop.x = place.c * x - place.s * y + place.tx
+    loop.y = place.s * x + place.c * y + place.ty
+    x = loop.chord_x
+    y = loop.chord_y
+    loop.chord_x = place.c * x - place.s * y
+    loop.chord_y = place.s * x + place.c * y
 
 
 @kernel
 def _nested(
-    cx: float, cy: float, r: float, points: np.ndarray, following: np.ndarray, arcs: np.ndarray, begin: int, end: int,
-    place: Relative, own: int, p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
+    cx: float, cy: float, r: float, points: np.ndarray, arcs: np.ndarray, begin: int, count: int, own: int,
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
 ) -> int:  # fmt: skip
     """`disc_convex` where the boundaries do not cross: one inside the other, or apart."""
     farthest = 0.0
     inside = True  # the disc's centre, of the polygon of the chords, or of what an arc adds to it
     v = 0
-    for e in range(begin, end):
-        px, py = placed(points, e, place)
-        qx, qy = placed(points, following[e], place)
-        ax, ay = placed(arcs, e, place)
+    for e in range(begin, begin + count):
+        k = e + 1 if e + 1 < begin + count else begin
+        px = points[e, 0]
+        py = points[e, 1]
+        qx = points[k, 0]
+        qy = points[k, 1]
+        ax = arcs[e, 0]
+        ay = arcs[e, 1]
         a = arcs[e, 2]
         v = put(p, label, bows, v, own, px, py, qx, qy, ax, ay, a)
         farthest = max(farthest, (px - cx) ** 2 + (py - cy) ** 2)

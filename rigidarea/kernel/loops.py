@@ -325,6 +325,24 @@ def _whole_rings(
     return n, v
 
 
+@kernel(forceinline=True)
+def _link_two(
+    ring_a: np.ndarray, ring_b: np.ndarray, cross: np.ndarray, param: np.ndarray, order: np.ndarray
+) -> bool:
+    """`link` along both outlines for the two crossings that most pairs with arcs have: they must alternate."""
+    for along in range(2):
+        e = cross[0, along]
+        f = cross[1, along]
+        first = 0 if e < f or (e == f and param[0, along] <= param[1, along]) else 1
+        order[2 + along, first] = 1 - first
+        order[2 + along, 1 - first] = ~first
+    return bool(
+        cross[0, 2] != cross[1, 2]
+        and ring_a[cross[0, 0]] == ring_a[cross[1, 0]]
+        and ring_b[cross[0, 1]] == ring_b[cross[1, 1]]
+    )
+
+
 @kernel
 def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Any two outlines: crossings, loops, whole rings, holes."""
@@ -343,7 +361,10 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
     n = 0
     v = 0
     if k > 0:
-        if not link(
+        if k == 2 and arcs:
+            if not _link_two(pa.ring_of, pb.ring_of, work.cross, work.param, work.order):
+                return TANGLED
+        elif not link(
             pa.points, pa.following, pa.ring_of, pb.points, pb.following, rel, k,
             work.cross, work.param, work.spot, work.order, 0, near,
         ) or not link(

@@ -15,6 +15,7 @@ import numpy as np
 
 from .constants import HIT, LOOK, MOST_ARRIVED, REST_KICKS
 from .direction import chord_direction, nodal_direction
+from .extent import extent
 from .jit import kernel
 from .overlap import A_EDGE, OVERFLOW, Work
 from .place import Pose, overlap_of_outlines, push_out, seen_from
@@ -81,24 +82,13 @@ def earlier(body: Any, time: float) -> Pose:
 
 
 @kernel
-def _extent(work: Work, start: int, stop: int, nx: float, ny: float) -> float:
-    """Extent of a loop along (nx, ny), in its own frame."""
-    low = np.inf
-    high = -np.inf
-    for i in range(start, stop):
-        h = nx * work.polygon[i, 0] + ny * work.polygon[i, 1]
-        low = min(low, h)
-        high = max(high, h)
-    return high - low
-
-
-@kernel
-def _depth(work: Work, start: int, stop: int, nx: float, ny: float) -> float:
+def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) -> float:
     """How far a loop's outlines have gone into each other: its least width, of those across n and its longest edges.
 
     Along n alone a thin long strip would seem deep, since its chord runs from corner to opposite corner.
     """
-    least = _extent(work, start, stop, nx, ny)
+    low, high = extent(work.polygon, work.bows, start, stop, arcs, nx, ny)
+    least = high - low
     for own in range(2):
         longest = 0.0
         bx = 0.0
@@ -116,7 +106,8 @@ def _depth(work: Work, start: int, stop: int, nx: float, ny: float) -> float:
             j = i
         if longest > 0.0:
             length = math.sqrt(longest)
-            least = min(least, _extent(work, start, stop, -by / length, bx / length))
+            low, high = extent(work.polygon, work.bows, start, stop, arcs, -by / length, bx / length)
+            least = min(least, high - low)
     return least
 
 
@@ -144,7 +135,7 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
         middle = loop.lever / chord
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
-    depth = _depth(work, loop.start, loop.stop, nx, ny) if not blind else chord
+    depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
     straight = min(loop.straight, chord)
     return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, blind)
 
@@ -332,7 +323,7 @@ def _hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
     return bool(u > REST_KICKS * pushed * h)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _arrives(r: Any, a: Any, b: Any, h: float) -> bool:
     """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""
     return bool(closing(r, a, b, 1.0) * h > 2.0 * max(r.depth, r.rest_depth))

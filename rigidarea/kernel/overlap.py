@@ -1,8 +1,9 @@
 """Overlap of two placed outlines: its connected regions, each with area, centroid and chord.
 
-Three algorithms, one result. Small convex pairs of polygons (boxes, most game polygons) are clipped edge by edge
+Four algorithms, one result. Small convex pairs of polygons (boxes, most game polygons) are clipped edge by edge
 (Sutherland & Hodgman, Commun ACM 17, 1974). A disc with a disc is a lens, with any convex outline one walk round that
-(`disc.py`). Everything else, with holes, concave, thousands of edges, arcs, goes the general way:
+(`disc.py`). Small convex pairs with arcs that cross twice take their one region from there (`convex.py`). Everything
+else, with holes, concave, thousands of edges, arcs, goes the general way:
 
 1. *Crossings.* Both hierarchies are walked together; where two leaves meet, edge pairs are tested with the exact
    predicate of `predicates.side`. A crossing is where A's boundary enters B (+1) or leaves it (-1); where A leaves
@@ -34,6 +35,7 @@ Kernel arguments: a `Pool` and the number of an outline in it for A and for B, a
 from __future__ import annotations
 
 from .clip import clip
+from .convex import OTHERWISE, convex_pair
 from .disc import disc_convex, disc_disc
 from .jit import kernel
 from .loops import general
@@ -55,6 +57,8 @@ from .work import (
 
 #: At most this many edge pairs for the clipping of convex outlines; above, the hierarchy is faster.
 CLIP_PAIRS = 64
+#: At most this many edge pairs for the walk round two convex outlines with arcs: two rounded boxes have 64.
+WALKED_PAIRS = 144
 
 __all__ = [
     "A_EDGE",
@@ -86,13 +90,13 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
             return disc_disc(ha.radius, hb.radius, rel, work.polygon, work.label, work.bows, work.loops)
         if ha.disc:
             return disc_convex(
-                0.0, 0.0, ha.radius, pb.points, pb.following, pb.arcs, hb.point, hb.point + hb.count, rel, B_EDGE,
-                work.polygon, work.label, work.bows, work.loops, noise,
+                0.0, 0.0, ha.radius, pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + hb.leaves, rel,
+                B_EDGE, work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
         if hb.disc:
             own = Relative(1.0, 0.0, 0.0, 0.0)
             return disc_convex(
-                rel.tx, rel.ty, hb.radius, pa.points, pa.following, pa.arcs, ha.point, ha.point + ha.count, own,
+                rel.tx, rel.ty, hb.radius, pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + ha.leaves, own,
                 A_EDGE, work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
         if ha.arcs + hb.arcs == 0 and ha.count * hb.count <= CLIP_PAIRS:
@@ -100,4 +104,11 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
                 pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel,
                 work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
+        if ha.arcs + hb.arcs > 0 and ha.count * hb.count <= WALKED_PAIRS:
+            n = convex_pair(
+                pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + 1, pb.points, pb.arcs, hb.point, hb.count,
+                rel, work.polygon, work.label, work.bows, work.loops, noise,
+            )  # fmt: skip
+            if n != OTHERWISE:
+                return n
     return general(pa, ia, pb, ib, rel, work)

@@ -35,7 +35,6 @@ HEAD = record(
         ("convex", "i4"),  # and of MOST_WALKED edges at the most
         ("arcs", "i4"),  # number of edges that are arcs
         ("disc", "i4"),  # its one ring is a circle, about (0, 0)
-        ("round", "i4"),  # its edges are arcs, or the samples of a curve
         ("x", "f8"),  # middle of the bounding box, body frame (length)
         ("y", "f8"),
         ("radius", "f8"),  # about that middle (length)
@@ -77,8 +76,6 @@ class HasRings(Protocol):
 
 #: Convex outlines of more edges are not walked round: by then the hierarchy is faster.
 MOST_WALKED = 96
-#: Sampled closer than this fraction of the extent to an arc, an edge is taken for a part of it.
-ROUND = 1e-3
 #: Depth at which `face` is measured, as a fraction of the outline's extent: how deep contacts are expected to go.
 FACE_DEPTH = 0.02
 
@@ -184,37 +181,6 @@ def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
 
 
 @njit
-def _round(points: np.ndarray, following: np.ndarray) -> bool:
-    """Whether most of the boundary is a sampled curve: edges so short, turning so little, that no arc is far away.
-
-    An edge of length l in a curve that turns by t at its ends lies within l t / 8 of the arc.
-    """
-    n = len(points)
-    low = np.array([points[:, 0].min(), points[:, 1].min()])
-    high = np.array([points[:, 0].max(), points[:, 1].max()])
-    near = ROUND * (high - low).max()
-    turn = np.empty(n)  # at the end of edge i
-    length = np.empty(n)
-    for i in range(n):
-        j = following[i]
-        k = following[j]
-        ux = points[j, 0] - points[i, 0]
-        uy = points[j, 1] - points[i, 1]
-        vx = points[k, 0] - points[j, 0]
-        vy = points[k, 1] - points[j, 1]
-        turn[i] = abs(math.atan2(ux * vy - uy * vx, ux * vx + uy * vy))
-        length[i] = math.hypot(ux, uy)
-    total = 0.0
-    curved = 0.0
-    for i in range(n):
-        j = following[i]
-        total += length[j]
-        if length[j] * max(turn[i], turn[j]) <= 8.0 * near:
-            curved += length[j]
-    return curved > 0.5 * total
-
-
-@njit
 def _convex(points: np.ndarray, arcs: np.ndarray) -> bool:
     """Whether a ring is convex, so that clipping it by its own edges or walking round it is safe.
 
@@ -247,7 +213,7 @@ def _convex(points: np.ndarray, arcs: np.ndarray) -> bool:
 
 @njit
 def _chords(points: np.ndarray, arcs: np.ndarray) -> np.ndarray:
-    """A ring with each of its arcs as 32 chords: what `_face` and `_round` need of it."""
+    """A ring with each of its arcs as 32 chords: what `_face` needs of it."""
     n = len(points)
     out = np.empty((32 * n, 2))
     m = 0
@@ -277,7 +243,7 @@ def _chords(points: np.ndarray, arcs: np.ndarray) -> np.ndarray:
 @njit
 def _prepare(
     points: np.ndarray, arcs: np.ndarray, starts: np.ndarray, x: float, y: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, int, bool, bool, float, float, float]]:
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, int, bool, float, float, float]]:
     """Everything of one outline but its rings: following, ring_of, boxes, and the numbers of its head.
 
     From its points and arcs about the middle of its box, where its rings start in them, and its centroid (x, y). The
@@ -319,13 +285,8 @@ def _prepare(
     convex = len(starts) == 2 and n <= MOST_WALKED and _convex(points, arcs)
     if bent > 0:
         outer = _chords(outer, arcs[: starts[1]])
-        after = np.arange(1, len(outer) + 1).astype(np.int32)
-        after[-1] = 0
-        curved = _round(outer, after)
-    else:
-        curved = _round(points, following)
     face, arm = _face(outer, x, y)
-    return following, ring_of, boxes, (leaves, convex, bent, disc, curved, radius, face, arm)
+    return following, ring_of, boxes, (leaves, convex, bent, disc, radius, face, arm)
 
 
 def pack(outlines: Sequence[HasRings]) -> Pool:
@@ -354,7 +315,7 @@ def pack(outlines: Sequence[HasRings]) -> Pool:
             arcs[:, :2] -= np.where(arcs[:, 2:3] == 0, 0.0, middle)
         x, y = outline.centroid
         following, ring_of, boxes, numbers = _prepare(points, arcs, starts, x - middle[0], y - middle[1])
-        names = ("leaves", "convex", "arcs", "disc", "round", "radius", "face", "face_arm")
+        names = ("leaves", "convex", "arcs", "disc", "radius", "face", "face_arm")
         for name, number in zip(names, numbers):
             head[name] = number
         head["point"], head["ring"], head["box"] = n_points, n_rings, n_boxes

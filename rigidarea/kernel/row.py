@@ -163,7 +163,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
         _one_point(r, a, b)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _one_point(r: Any, a: Any, b: Any) -> None:
     """Arms of one point of application, bodies where they are now: the heavier one's gives way.
 

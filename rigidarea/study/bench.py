@@ -6,7 +6,8 @@ import math
 import os
 import time
 import tracemalloc
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -17,7 +18,7 @@ from .crowds import CROWDS
 from .peers import drive, get_peer, record
 from .records import Progress, Row
 from .scene import Scene
-from .timing import one_core
+from .timing import median_times, one_core
 
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
 
@@ -128,9 +129,9 @@ def call_overhead(count: int = 20000) -> Row:
 
 def _us(step: Any, count: int, *arguments: object) -> float:
     drive(step, count // 10, *arguments)
-    before = time.perf_counter()
+    before = time.thread_time()
     drive(step, count, *arguments)
-    return 1e6 * (time.perf_counter() - before) / count
+    return 1e6 * (time.thread_time() - before) / count
 
 
 # Kernels
@@ -179,9 +180,10 @@ def _gon(n: int) -> Outline:
     return Outline(np.column_stack((np.cos(angles), np.sin(angles))))
 
 
-def kernels(names: Sequence[str] = (), repeats: int = 5) -> Row:
+def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
     """One overlap query (µs) in a compiled loop, beside shapely's intersection with area and centroid.
 
+    Processor time, the median of `repeats` rounds, each of which asks all pairs of both: a drift hits all alike.
     Rows: pair, points_a, points_b, regions, query_us, shapely_us, area_error (relative, against shapely). Points are
     the ends of edges and arcs; shapely gets arcs sampled to a thousandth of half the extent (a disc: 72 points), as
     its users sample them.
@@ -189,13 +191,15 @@ def kernels(names: Sequence[str] = (), repeats: int = 5) -> Row:
     import shapely
     from shapely.affinity import affine_transform
 
-    rows = []
     pairs = kernel_pairs()
     for name in names:
         if name not in pairs:
             raise ValueError(f"unknown pair {name!r}; expected one of {', '.join(pairs)}")
-    progress = Progress("kernels", len(names or pairs))
-    for name in names or pairs:
+    chosen = list(names or pairs)
+    progress = Progress("kernels", len(chosen))
+    queries, areas = [], []
+    jobs: list[Callable[[], float]] = []
+    for name in chosen:
         a, b, (x, y, angle) = pairs[name]
         query = Query(a, b, (x, y, angle))
         c, s = math.cos(angle), math.sin(angle)
@@ -206,23 +210,24 @@ def kernels(names: Sequence[str] = (), repeats: int = 5) -> Row:
             both = shapely.intersection(one, other)
             return both.area, *both.centroid.coords[0]
 
-        area = theirs()[0]
-        with one_core():
-            ours_us = min(query.time_us() for _ in range(repeats))
-            shapely_us = min(_us(theirs, 200) for _ in range(repeats))
-        rows.append(
-            {
-                "pair": name,
-                "points_a": sum(map(len, a.rings)),
-                "points_b": sum(map(len, b.rings)),
-                "regions": query.regions,
-                "query_us": ours_us,
-                "shapely_us": shapely_us,
-                "area_error": abs(query.area / area - 1),
-            }
-        )
+        queries.append(query)
+        areas.append(theirs()[0])
+        jobs += [query.time_us, partial(_us, theirs, 100)]
         progress.step(name)
-    return envelope("bench kernels", {"pairs": list(names or pairs), "repeats": repeats}, rows)
+    times = median_times(jobs, repeats, patience_s=math.inf)
+    rows = [
+        {
+            "pair": name,
+            "points_a": sum(map(len, pairs[name][0].rings)),
+            "points_b": sum(map(len, pairs[name][1].rings)),
+            "regions": query.regions,
+            "query_us": ours_us,
+            "shapely_us": shapely_us,
+            "area_error": abs(query.area / area - 1),
+        }
+        for name, query, area, ours_us, shapely_us in zip(chosen, queries, areas, times[::2], times[1::2])
+    ]
+    return envelope("bench kernels", {"pairs": chosen, "repeats": repeats}, rows)
 
 
 def _sampled(outline: Outline) -> Any:
@@ -249,13 +254,13 @@ class Query:
             self.regions = _loop(self.pool, *pose, self.work, 1)
         self.area = float(sum(self.work.loops["area"][: self.regions]))
         self.count = 1
-        while self._seconds() < 0.02:
+        while self._seconds() < 0.005:
             self.count *= 2
 
     def _seconds(self) -> float:
-        before = time.perf_counter()
+        before = time.thread_time()
         _loop(self.pool, *self.pose, self.work, self.count)
-        return time.perf_counter() - before
+        return time.thread_time() - before
 
     def time_us(self) -> float:
         """Mean time of a query (µs)."""

@@ -1,0 +1,180 @@
+"""Overlap of two small convex outlines with arcs (capsules, rounded boxes) whose boundaries cross twice.
+
+Nearly all pairs of them do. The crossings are found as in `curved.py`, by the same signs; with two of them nothing has
+to be sorted, and the one region is A's boundary from where it enters B to where it leaves, then B's. No crossing and
+boxes that leave no room for one inside the other: apart. Whatever else there is goes the general way.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from .arc import FIRST, SECOND, UNSURE, arc_arc, line_arc
+from .curved import along_edge, line_line
+from .jit import kernel
+from .work import A_EDGE, B_EDGE, TANGLED, Relative, measure, placed, put
+
+#: Instead of a number of regions: not two crossings.
+OTHERWISE = -3
+
+
+@kernel
+def convex_pair(
+    qa: np.ndarray, arcs_a: np.ndarray, boxes: np.ndarray, a0: int, na: int, root: int,
+    qb: np.ndarray, arcs_b: np.ndarray, b0: int, nb: int, rel: Relative,
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
+) -> int:  # fmt: skip
+    """The region of A's edges a0.., na of them, in the box boxes[root], with B's, placed; or OTHERWISE, or TANGLED."""
+    left = boxes[root, 0] - boxes[root, 2] - noise
+    right = boxes[root, 0] + boxes[root, 2] + noise
+    bottom = boxes[root, 1] - boxes[root, 3] - noise
+    top = boxes[root, 1] + boxes[root, 3] + noise
+    n = 0
+    # where A enters B, and where it leaves: edge of A, edge of B, point
+    in_a = in_b = out_a = out_b = -1
+    in_x = in_y = out_x = out_y = 0.0
+    b_left = b_bottom = np.inf
+    b_right = b_top = -np.inf
+    dx, dy = placed(qb, b0, rel)
+    for j in range(b0, b0 + nb):
+        cx = dx
+        cy = dy
+        dx, dy = placed(qb, j + 1 if j + 1 < b0 + nb else b0, rel)
+        bow = arcs_b[j, 3]
+        low_x = min(cx, dx) - bow
+        high_x = max(cx, dx) + bow
+        low_y = min(cy, dy) - bow
+        high_y = max(cy, dy) + bow
+        b_left = min(b_left, low_x)
+        b_right = max(b_right, high_x)
+        b_bottom = min(b_bottom, low_y)
+        b_top = max(b_top, high_y)
+        if high_x < left or low_x > right or high_y < bottom or low_y > top:
+            continue
+        u = arcs_b[j, 2]
+        gx = gy = 0.0
+        if u != 0.0:
+            gx, gy = placed(arcs_b, j, rel)
+        bx = qa[a0, 0]
+        by = qa[a0, 1]
+        for i in range(a0, a0 + na):
+            k = i + 1 if i + 1 < a0 + na else a0
+            ax = bx
+            ay = by
+            bx = qa[k, 0]
+            by = qa[k, 1]
+            bow = arcs_a[i, 3]
+            if (
+                max(ax, bx) + bow < low_x
+                or min(ax, bx) - bow > high_x
+                or max(ay, by) + bow < low_y
+                or min(ay, by) - bow > high_y
+            ):
+                continue
+            r = arcs_a[i, 2]
+            enters = 1  # of the crossing at (x1, y1)
+            if r == 0.0 and u == 0.0:
+                bits, x1, y1 = line_line(ax, ay, bx, by, cx, cy, dx, dy)
+                if bits & SECOND:
+                    bits = FIRST
+                    enters = -1
+                x2 = x1
+                y2 = y1
+            elif r == 0.0:
+                bits, x1, y1, x2, y2 = line_arc(ax, ay, bx, by, cx, cy, dx, dy, gx, gy, u, True, noise)
+            elif u == 0.0:
+                bits, x1, y1, x2, y2 = line_arc(
+                    cx, cy, dx, dy, ax, ay, bx, by, arcs_a[i, 0], arcs_a[i, 1], r, False, noise
+                )
+                enters = -1  # where B enters A: A leaves B
+            else:
+                bits, x1, y1, x2, y2 = arc_arc(
+                    ax, ay, bx, by, arcs_a[i, 0], arcs_a[i, 1], r, cx, cy, dx, dy, gx, gy, u, noise
+                )
+            if bits == UNSURE:
+                return TANGLED
+            if bits & FIRST:
+                n += 1
+                if enters == 1:
+                    in_a = i
+                    in_b = j
+                    in_x = x1
+                    in_y = y1
+                else:
+                    out_a = i
+                    out_b = j
+                    out_x = x1
+                    out_y = y1
+            if bits & SECOND:
+                n += 1
+                if enters == 1:
+                    out_a = i
+                    out_b = j
+                    out_x = x2
+                    out_y = y2
+                else:
+                    in_a = i
+                    in_b = j
+                    in_x = x2
+                    in_y = y2
+    if n == 0:
+        a_holds_b = b_left >= left and b_right <= right and b_bottom >= bottom and b_top <= top
+        b_holds_a = b_left <= left and b_right >= right and b_bottom <= bottom and b_top >= top
+        return OTHERWISE if a_holds_b or b_holds_a else 0
+    if n != 2 or in_a < 0 or out_a < 0:
+        return OTHERWISE
+    v = 0
+    e = in_a
+    x = in_x
+    y = in_y
+    more = e != out_a
+    if not more:
+        ax = qa[e, 0]
+        ay = qa[e, 1]
+        k = e + 1 if e + 1 < a0 + na else a0
+        bx = qa[k, 0]
+        by = qa[k, 1]
+        fx = arcs_a[e, 0]
+        fy = arcs_a[e, 1]
+        r = arcs_a[e, 2]
+        more = along_edge(ax, ay, bx, by, fx, fy, r, out_x, out_y) < along_edge(
+            ax, ay, bx, by, fx, fy, r, x, y
+        )
+    while True:
+        k = e + 1 if e + 1 < a0 + na else a0
+        qx = qa[k, 0] if more else out_x
+        qy = qa[k, 1] if more else out_y
+        v = put(p, label, bows, v, A_EDGE, x, y, qx, qy, arcs_a[e, 0], arcs_a[e, 1], arcs_a[e, 2])
+        if not more:
+            break
+        e = k
+        x = qx
+        y = qy
+        more = e != out_a
+    e = out_b
+    x = out_x
+    y = out_y
+    more = e != in_b
+    if not more:
+        ax, ay = placed(qb, e, rel)
+        bx, by = placed(qb, e + 1 if e + 1 < b0 + nb else b0, rel)
+        fx, fy = placed(arcs_b, e, rel)
+        r = arcs_b[e, 2]
+        more = along_edge(ax, ay, bx, by, fx, fy, r, in_x, in_y) < along_edge(ax, ay, bx, by, fx, fy, r, x, y)
+    while True:
+        k = e + 1 if e + 1 < b0 + nb else b0
+        fx, fy = placed(arcs_b, e, rel)
+        qx, qy = placed(qb, k, rel)
+        if not more:
+            qx = in_x
+            qy = in_y
+        v = put(p, label, bows, v, B_EDGE, x, y, qx, qy, fx, fy, arcs_b[e, 2])
+        if not more:
+            break
+        e = k
+        x = qx
+        y = qy
+        more = e != in_b
+    if measure(p, label, bows, loops, 0, 0, v, True, noise) == 0 or loops[0].area < 0.0:  # negative: rounding
+        return 0
+    return 1
