@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -85,6 +86,12 @@ class AreaContact:
             recall(self._store, space, self._memory)
             self._memory = None
         self.energy()  # compiled now, not when it is asked for
+        if settings["flexible"] is not None:
+            try:
+                settings["flexible"].enter(space)
+            except Exception:
+                self.detach()
+                raise
 
     def _hide(self, space: pymunk.Space) -> None:
         """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
@@ -130,6 +137,8 @@ class AreaContact:
             return
         if space._locked:
             raise RuntimeError("detach() within a step: call it after the step")
+        if self._settings["flexible"] is not None:
+            self._settings["flexible"].leave(space)
         self._end.detach()
         lib.cpSpaceSetUserData(space._space, ffi.NULL)
         joint, _, pivot = self._hidden
@@ -280,7 +289,20 @@ class AreaContact:
     def _step_alone(self, dt: float) -> bool:
         """Whether pymunk has something to do around each step."""
         space = self.space
-        return bool(space.threaded or space._bodies_to_check or space._handlers[None, None].pre_solve)
+        return bool(
+            space.threaded
+            or space._bodies_to_check
+            or space._handlers[None, None].pre_solve
+            or self._settings["flexible"] is not None
+        )
+
+    def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
+        """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
+        flexible = self._settings["flexible"]
+        if flexible is None:
+            rest()
+        else:
+            flexible.step(dt, rest, int(self._state["idle_kind"]))
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
@@ -308,9 +330,13 @@ class AreaContact:
 
     @property
     def regions(self) -> np.ndarray:
-        """The contact regions of the last substep, one REGIONS row each; the order means nothing."""
+        """The contact regions of the last substep, one REGIONS row each; the order means nothing.
+
+        Of flexible parts too: as they were at the end of their own motion, their speeds left out.
+        """
         assert self.space is not None  # says so if detached
-        return regions_of(self._store, self._shapes)
+        own, flexible = regions_of(self._store, self._shapes), self._settings["flexible"]
+        return own if flexible is None else np.concatenate([own, flexible.rows(own.dtype)])
 
     def energy(self) -> float:
         """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
@@ -385,7 +411,7 @@ _KEY = "_area_contact"  # where a space keeps its contact: they go together, and
 _classes: dict[type, type] = {}
 
 
-def _attached(plain: type) -> type:
+def _attached(plain: Any) -> type:
     if plain not in _classes:
 
         def reduce(self: Any, protocol: Any) -> Any:
@@ -397,7 +423,12 @@ def _attached(plain: type) -> type:
                 self.__class__ = _classes[plain]
             return _copy, (made, contact)
 
-        _classes[plain] = type(plain.__name__, (plain,), {"__reduce_ex__": reduce, "__doc__": plain.__doc__})
+        def step(self: Any, dt: float) -> None:
+            self.__dict__[_KEY]._flexed(dt, lambda: plain.step(self, dt))
+
+        members = {"__reduce_ex__": reduce, "step": step, "__doc__": plain.__doc__}
+        step.__doc__ = plain.step.__doc__
+        _classes[plain] = type(plain.__name__, (plain,), members)
         _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
     return _classes[plain]
 
@@ -448,6 +479,7 @@ def attach(
     exponent: float = 1.0,
     rest_speed: float | None = None,
     integration: str = "implicit",
+    flexible: Any = None,
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 
@@ -460,6 +492,7 @@ def attach(
     integration: "implicit": a frame is a few substeps, in which all contacts and joints are solved together;
         stable at any stiffness and any step. "explicit": a step is one of symplectic Euler with F = k A at the
         step's place, stable up to w h = 2 (in a stack 1), joints after it; for verification.
+    flexible: bodies of the space that yield, a `rigidarea.flexible.Assembly`; None: all are rigid.
 
     Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
     their `friction`, callbacks' overrides included. `space.iterations` is the number of sweeps a substep.
@@ -478,7 +511,10 @@ def attach(
         "exponent": _not_negative(exponent, "exponent"),
         "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
         "integration": _one_of(integration, "integration", INTEGRATIONS),
+        "flexible": flexible,
     }
+    if flexible is not None and not all(hasattr(flexible, name) for name in ("enter", "leave", "step")):
+        raise ValueError(f"flexible must be a rigidarea.flexible.Assembly, got {type(flexible).__name__}")
     if attached(space) is not None:
         raise ValueError("this space is attached already; use attached(space), or detach() it first")
     if lib.cpSpaceGetUserData(space._space) != ffi.NULL:
