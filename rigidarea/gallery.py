@@ -24,7 +24,7 @@ from .outline import Outline
 ENGINES = ("area", "pymunk")
 
 #: Every demo, in the order in which `demo all` shows them.
-NAMES = ("pyramid", "tower", "cradle", "journal", "gears", "geneva", "platformer", "bowl")
+NAMES = ("pyramid", "tower", "cradle", "journal", "gears", "rubber", "geneva", "platformer", "bowl")
 
 #: Steps that Chipmunk's own response gets a frame of 1/60 s, unless a scene says otherwise.
 CHIPMUNK_STEPS = 4

@@ -7,9 +7,7 @@ import pytest
 import shapely
 from shapely import affinity
 
-from rigidarea.shapes import involute_gear
-from rigidarea.shapes.cam import eccentric, flat_follower
-from rigidarea.shapes.internal import internal_gear
+from rigidarea.shapes import eccentric, flat_follower, internal_gear, involute_gear
 
 
 def test_spaces_are_the_external_gears_teeth():

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,14 @@ PENETRATION = 2e-4
 
 class SimulationError(RuntimeError):
     """A step went wrong for a reason that the message names (body and step)."""
+
+
+def _take_out(space: Any, joint: Any, body: Any, pivot: int, *kept: Any) -> None:
+    """Remove the hidden constraint from Chipmunk's space, and free it."""
+    lib.cpSpaceSetUserData(space, ffi.NULL)
+    lib.cpSpaceRemoveConstraint(space, joint)
+    ffi.cast("uintptr_t *", joint)[0] = pivot
+    lib.cpConstraintFree(joint)
 
 
 class AreaContact:
@@ -81,13 +90,18 @@ class AreaContact:
         space.__dict__[_KEY] = self
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
-        self._end = weakref.finalize(space, lib.cpSpaceSetUserData, space._space, ffi.NULL)
+        # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
+        self._end = weakref.finalize(
+            space, _take_out, space._space, *self._hidden, self._classes, self._store
+        )
         try:
             self._register()
             if self._memory is not None:
                 recall(self._store, space, self._memory)
                 self._memory = None
             self.energy()  # compiled now, not when it is asked for
+            if settings["flexible"] is not None:
+                settings["flexible"].enter(space)
         except BaseException:  # a shape that cannot be a contact's, an interrupt
             self.detach()
             raise
@@ -138,12 +152,9 @@ class AreaContact:
             return
         if space._locked:
             raise RuntimeError("detach() within a step: call it after the step")
-        self._end.detach()
-        lib.cpSpaceSetUserData(space._space, ffi.NULL)
-        joint, _, pivot = self._hidden
-        lib.cpSpaceRemoveConstraint(space._space, joint)
-        ffi.cast("uintptr_t *", joint)[0] = pivot
-        lib.cpConstraintFree(joint)
+        if self._settings["flexible"] is not None:
+            self._settings["flexible"].leave(space)
+        self._end()
         if int(self._hook[1]) == int(self._state["pre_solve_at"]):
             self._hook[1] = int(self._state["user_pre_solve"]) or int(self._state["no_pre_solve"])
         at, own = int(self._state["body_position_func"]) // 8, int(self._state["position_func"])
@@ -298,7 +309,16 @@ class AreaContact:
     def _step_alone(self) -> bool:
         """Whether pymunk has something to do around each step."""
         space = self.space
-        return bool(space.threaded or space._bodies_to_check or space._handlers)
+        flexible = self._settings["flexible"] is not None
+        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible)
+
+    def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
+        """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
+        flexible = self._settings["flexible"]
+        if flexible is None:
+            rest()
+        else:
+            flexible.step(dt, rest, int(self._state["idle_kind"]))
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
@@ -332,9 +352,13 @@ class AreaContact:
 
     @property
     def regions(self) -> np.ndarray:
-        """The contact regions of the last substep, one REGIONS row each; the order means nothing."""
+        """The contact regions of the last substep, one REGIONS row each; the order means nothing.
+
+        Of flexible parts too: as they were at the end of their own motion, their speeds left out.
+        """
         assert self.space is not None  # says so if detached
-        return regions_of(self._store, self._shapes)
+        own, flexible = regions_of(self._store, self._shapes), self._settings["flexible"]
+        return own if flexible is None else np.concatenate([own, flexible.rows(own.dtype)])
 
     def energy(self) -> float:
         """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
@@ -416,7 +440,7 @@ _KEY = "_area_contact"  # where a space keeps its contact: they go together, and
 _classes: dict[type, type] = {}
 
 
-def _attached(plain: type) -> type:
+def _attached(plain: Any) -> type:
     if plain not in _classes:
 
         def reduce(self: Any, protocol: Any) -> Any:
@@ -428,7 +452,12 @@ def _attached(plain: type) -> type:
                 self.__class__ = _classes[plain]
             return _copy, (made, contact)
 
-        _classes[plain] = type(plain.__name__, (plain,), {"__reduce_ex__": reduce, "__doc__": plain.__doc__})
+        def step(self: Any, dt: float) -> None:
+            self.__dict__[_KEY]._flexed(dt, lambda: plain.step(self, dt))
+
+        members = {"__reduce_ex__": reduce, "step": step, "__doc__": plain.__doc__}
+        step.__doc__ = plain.step.__doc__
+        _classes[plain] = type(plain.__name__, (plain,), members)
         _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
     return _classes[plain]
 
@@ -479,6 +508,7 @@ def attach(
     exponent: float = 1.0,
     rest_speed: float | None = None,
     integration: str = "implicit",
+    flexible: Any = None,
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 
@@ -491,6 +521,7 @@ def attach(
     integration: "implicit": a frame is a few substeps, in which all contacts and joints are solved together;
         stable at any stiffness and any step. "explicit": a step is one of symplectic Euler with F = k A at the
         step's place, stable up to w h = 2 (in a stack 1), joints after it; for verification.
+    flexible: bodies of the space that yield, a `rigidarea.flexible.Assembly`; None: all are rigid.
 
     Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
     their `friction`, callbacks' overrides included. `space.iterations` is the number of sweeps a substep.
@@ -509,7 +540,10 @@ def attach(
         "exponent": _not_negative(exponent, "exponent"),
         "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
         "integration": _one_of(integration, "integration", INTEGRATIONS),
+        "flexible": flexible,
     }
+    if flexible is not None and not all(hasattr(flexible, name) for name in ("enter", "leave", "step")):
+        raise ValueError(f"flexible must be a rigidarea.flexible.Assembly, got {type(flexible).__name__}")
     if attached(space) is not None:
         raise ValueError("this space is attached already; use attached(space), or detach() it first")
     if lib.cpSpaceGetUserData(space._space) != ffi.NULL:

@@ -16,7 +16,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.constants import FAR_SWEEPS, MOST_SUBSTEPS
+from ..kernel.constants import MOST_SUBSTEPS
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
@@ -295,7 +295,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)
-            elif k < s.sweeps // FAR_SWEEPS:
+            elif k < s.sweeps - 1:
                 length = accelerate(tables, length)
         if s.joint_count > 0:
             for joint in joints_of(s):

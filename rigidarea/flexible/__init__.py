@@ -5,9 +5,10 @@ From an outline's rings to a moving body: ``elastic_body`` meshes (``mesh``), bu
 generalised-alpha, with contact by overlap area (``region``: Alg. 1 and 2, ``nodal``: Alg. 3) or segment to segment
 (``segment``). ``statics.solve`` finds the equilibrium of two elastic bodies pressed together. ``Mechanism``
 (``build``) puts such a system together by name; ``recover`` gives displacements and stresses of a recorded instant,
-``pictures`` draws them.
+``pictures`` draws them. ``Assembly`` (``assembly``, ``inspace``) has flexible bodies in an attached pymunk space.
 """
 
+from rigidarea.flexible.assembly import Assembly
 from rigidarea.flexible.body import LEVELS, elastic_body
 from rigidarea.flexible.build import Mechanism
 from rigidarea.flexible.element import Material
@@ -17,6 +18,7 @@ from rigidarea.flexible.statics import solve
 
 __all__ = [
     "LEVELS",
+    "Assembly",
     "Body",
     "Material",
     "Mechanism",

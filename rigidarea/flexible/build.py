@@ -3,8 +3,7 @@
 A pinion in a ring gear, lengths in metres:
 
     from rigidarea.flexible import Material, Mechanism
-    from rigidarea.shapes import involute_gear
-    from rigidarea.shapes.internal import internal_gear
+    from rigidarea.shapes import internal_gear, involute_gear
 
     steel = Material(young=207e9, poisson=0.29, density=7800.0, thickness=0.02)
     m = Mechanism(k=2e10)  # N/m²: contact force per overlap area
@@ -103,8 +102,8 @@ class Mechanism:
                     f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
                 )
             made, _ = elastic_body(
-                outline.rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp, modes=modes,
-                refine=refine, cache=self._cache, position=at, angle=angle, damping=damping,
+                outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp,
+                modes=modes, refine=refine, cache=self._cache, position=at, angle=angle, damping=damping,
             )  # fmt: skip
         made.velocity = velocity
         self._bodies.append(made)
@@ -124,7 +123,7 @@ class Mechanism:
         c, s = np.cos(angle), np.sin(angle)
         x, y = np.array(at) + np.array([[c, -s], [s, c]]) @ centre
         mass = material.density * material.thickness * outline.area
-        boundary = build([outline.rings[i] - centre for i in contact])
+        boundary = build([outline.polygon_rings[i] - centre for i in contact])
         return Body(
             boundary, mass, outline.moment(mass, (-centre[0], -centre[1])), (float(x), float(y)), angle
         )

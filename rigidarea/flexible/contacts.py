@@ -137,13 +137,14 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         for i in range(n):
             r = s.regions[i]
             kept = buf.regions[total]
-            kept[0], kept[1], kept[2], kept[3], kept[4], kept[5] = (
+            kept[0], kept[1], kept[2], kept[3], kept[4], kept[5], kept[6] = (
                 p,
                 r["force"],
                 r["nx"],
                 r["ny"],
                 r["x"],
                 r["y"],
+                r["chord"],
             )
             buf.force[p, 0] += r["force"] * r["nx"]
             buf.force[p, 1] += r["force"] * r["ny"]

@@ -73,7 +73,7 @@ class Buffers(NamedTuple):
     )
     row: Array  # (3 b,)
     force: Array  # (p, 2) on the second body of each pair
-    regions: Array  # (REGIONS, 6): pair, force, direction, point
+    regions: Array  # (REGIONS, 7): pair, force, direction, point, chord
     modal_residual: Array
     hubs: Array  # (b, 5) see ``hub.Hub``; moment of the frame's inertia
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
@@ -98,7 +98,7 @@ def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
     n, m = bodies, sum(modes)
     return Buffers(
         np.zeros((n, 4)), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
-        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 6)), np.zeros(m), np.zeros((n, 5)),
+        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 7)), np.zeros(m), np.zeros((n, 5)),
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),

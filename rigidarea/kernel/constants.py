@@ -6,8 +6,6 @@ What the user chooses (stiffness or penetration, law, sweeps, substeps) is not h
 #: Substeps of a frame, unless asked otherwise. Two: what the first one met the second one already answers, and the
 #: sweeps, not the substeps, are what piles need.
 SUBSTEPS = 2
-#: Of the sweeps of a substep, one in so many goes on in the direction of the search: those reach far, the rest settle.
-FAR_SWEEPS = 3
 #: Most substeps that a tolerance may ask for.
 MOST_SUBSTEPS = 1024
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler

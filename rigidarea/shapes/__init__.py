@@ -6,7 +6,21 @@ shape again with another one.
 """
 
 from .basic import box, capsule, circle, ring, rounded_polygon
+from .cam import eccentric, flat_follower
 from .gear import involute_gear
 from .geneva import Geneva, geneva
+from .internal import internal_gear
 
-__all__ = ["Geneva", "box", "capsule", "circle", "geneva", "involute_gear", "ring", "rounded_polygon"]
+__all__ = [
+    "Geneva",
+    "box",
+    "capsule",
+    "circle",
+    "eccentric",
+    "flat_follower",
+    "geneva",
+    "internal_gear",
+    "involute_gear",
+    "ring",
+    "rounded_polygon",
+]

@@ -6,9 +6,7 @@ import pytest
 from rigidarea.flexible import Body, Material, Simulation, elastic_body
 from rigidarea.flexible.boundary import build
 from rigidarea.flexible.watch import LinearityWarning
-from rigidarea.shapes import involute_gear
-from rigidarea.shapes.cam import eccentric, flat_follower
-from rigidarea.shapes.internal import internal_gear
+from rigidarea.shapes import eccentric, flat_follower, internal_gear, involute_gear
 
 
 def circle(radius, n=2000):

@@ -10,9 +10,7 @@ import pytest
 
 from rigidarea.flexible import Body, Material, Simulation, elastic_body
 from rigidarea.flexible.boundary import build
-from rigidarea.shapes import geneva, involute_gear
-from rigidarea.shapes.cam import eccentric, flat_follower
-from rigidarea.shapes.internal import internal_gear
+from rigidarea.shapes import eccentric, flat_follower, geneva, internal_gear, involute_gear
 
 THICK = 0.01  # m
 MODES = 10

@@ -85,7 +85,9 @@ def test_levels_on_elastic_bars():
 
 def test_levels_of_steel_are_nearly_rigid():
     """Scenes with rigid answers, bodies of steel: the deforming levels give what the rigid one gives."""
-    keys = {"stiffness": 1e6, "steps": 3, "rho": 0.8}
+    # ten times stiffer, and the contact is thinner than the sagitta of the journal's facets: error 0.0051 rigid on fine
+    # facets, 0.0076 on those of the mesh
+    keys = {"stiffness": 1e5, "steps": 3, "rho": 0.8}
     rigid = error_of("rigidarea-implicit", "journal_swing", sampling=1e-5, **keys)
     for level in ("compliant", "modal"):
         more = {"modes": 10} if level == "modal" else {}

@@ -1,0 +1,431 @@
+"""Flexible bodies in a pymunk space, beside rigid ones: a gear pair that yields, in a game.
+
+    gears = ra.flexible.Assembly(k=6e8)  # N/m²: contact force per overlap area, between its parts
+    gears.part(pinion_shape, steel, mesh=1e-3, hub=1)  # a shape of a body in the space: outline.add_to(body)
+    gears.part(wheel_shape, steel, mesh=1e-3, hub=1, level="modal")
+    contact = ra.attach(space, flexible=gears)
+    space.step(1 / 60)
+
+**Who does what.** A part's rigid motion is its pymunk body's: mass, moment, gravity, damping, forces, joints and motors
+are those of the space. In each frame all parts, and the bodies that joints tie to them, are moved first, in steps as
+short as their contacts ask for (``inspace``): contacts between parts act on deformed boundaries, joints by Chipmunk's
+own functions. Then the rest of the space has its frame as ever, with parts in the places and at the velocities that
+came out. What a part has to do with other bodies is the area contact's: its impulses change the part's velocity,
+and its joints answer, within what is left of their ``max_force``. So every impulse is exchanged between two bodies at
+one time, and momentum is kept to rounding.
+
+What follows from it: rigid bodies feel a part at the end of the frame; a blow on a part reaches its mate in the next
+frame, as a change of velocity. Contacts between parts have neither friction nor damping, and no arbiter: no
+callbacks. A joint's callbacks see the impulse that it has in the second half of the frame, its ``impulse`` afterwards
+is that of both. Parts do not fall asleep.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import combinations
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import ffi, lib
+
+from rigidarea.chipmunk import address_of, kinds_of_joints, layout
+from rigidarea.flexible.body import elastic_body
+from rigidarea.flexible.boundary import build
+from rigidarea.flexible.element import Material
+from rigidarea.flexible.inspace import LINK, MEMBER, OFFSETS, advance, gather, give_back
+from rigidarea.flexible.integrate import Body, Simulation
+from rigidarea.flexible.recover import State
+from rigidarea.flexible.scratch import FULL
+from rigidarea.outline import Outline
+
+Array = NDArray[np.float64]
+
+RESOLVED = 0.3  # step times the highest angular frequency of a contact: symplectic Euler is stable to 2, and
+# its frequency then off by (0.3)²/24 = 0.4 %
+TRAVEL = 0.25  # of the mesh size: how far a boundary moves in a step, before a contact is seen
+COARSER = 2.0  # how fast steps grow again where contacts have gone or become softer, a factor a frame
+TRIES = 8  # a frame whose steps turn out too long is run again with shorter ones, so many times at the most
+_SPRINGS = pymunk.DampedSpring, pymunk.DampedRotarySpring  # joints whose force is not bounded by max_force
+
+
+def _stay(body: pymunk.Body, *_: Any) -> None:
+    """Position and velocity function of a body that the assembly moves."""
+
+
+class Assembly:
+    """Bodies of a pymunk space that yield, and touch each other by their deformed boundaries.
+
+    k: contact stiffness between parts, force per overlap area. q: exponent of the nodal pressures (Alg. 3). step: the
+    longest step of the parts' motion (time); None: as long as their contacts allow. cache: a directory for meshes and
+    reductions. Raises ValueError for settings out of range.
+    """
+
+    def __init__(
+        self, k: float, *, q: float = 1.0, step: float | None = None, cache: Path | str | None = None
+    ) -> None:
+        for name, value in (("k", k), ("step", 1.0 if step is None else step)):
+            if not 0 < value < math.inf:
+                raise ValueError(f"{name} must be positive and finite, got {value!r}")
+        if not 0 <= q < math.inf:
+            raise ValueError(f"q must be finite and not negative, got {q!r}")
+        self._k, self._q, self._longest, self._cache = float(k), float(q), step, cache
+        self._parts: list[tuple[pymunk.Shape, Body]] = []
+        self._size = math.inf
+        self._space: pymunk.Space | None = None
+        self._memory: Any = None  # of the original, in a copy
+        self.simulation: Simulation | None = None
+        """The parts as the flexible stepper has them; None before the space is attached."""
+        self.steps = 0
+        """Steps of the last frame."""
+
+    def part(
+        self,
+        shape: pymunk.Shape,
+        material: Material,
+        *,
+        mesh: float | None = None,
+        level: str = "compliant",
+        hub: int | None = None,
+        contact: Sequence[int] = (0,),
+        modes: int = 40,
+        refine: int = 4,
+        damping: float = 0.0,
+    ) -> int:
+        """Makes the body of ``shape`` a part; returns its number.
+
+        shape: of a body of the space, dynamic or kinematic (``Outline.add_to``, or one of pymunk's with an area); its
+        outline is meshed. material: for elasticity and the inertia of modes; mass and moment of the body are pymunk's.
+        mesh: spacing of the boundary nodes (length). level: "rigid" (then neither mesh nor hub), "compliant" or
+        "modal" with ``modes`` and their ``damping`` ratio. hub: the ring (1 … the holes) that the body's joints hold;
+        None: they pull at all of the body at once. contact: the rings that touch other parts. refine: contact points a
+        mesh edge. Raises ValueError for settings out of range, a body that is a part already or has a position or
+        velocity function of the user's; RuntimeError once attached.
+        """
+        if self._space is not None:
+            raise RuntimeError("part() on an attached assembly: add parts before attach()")
+        body = shape.body
+        if body is None or body.body_type == pymunk.Body.STATIC:
+            raise ValueError("expected the shape of a dynamic or kinematic body, got one of a static body")
+        if any(other.body is body for other, _ in self._parts):
+            raise ValueError("expected one part a body, got a second shape of the same body")
+        if getattr(body, "_position_func", None) or getattr(body, "_velocity_func", None):
+            raise ValueError("expected a body without position_func and velocity_func, got one that has them")
+        outline = Outline.from_pymunk(shape)
+        if level == "rigid":
+            if hub is not None:
+                raise ValueError(f"a rigid part has no mesh: expected no hub, got {hub!r}")
+            centre = np.array(outline.centroid)
+            made = Body(build([outline.polygon_rings[i] - centre for i in contact]), 1.0, 1.0, tuple(centre))
+        else:
+            if mesh is None:
+                raise ValueError(
+                    f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
+                )
+            made, _ = elastic_body(
+                outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, modes=modes,
+                refine=refine, cache=self._cache, damping=damping,
+            )  # fmt: skip
+            self._size = min(self._size, mesh)
+        self._parts.append((shape, made))
+        return len(self._parts) - 1
+
+    # --- what it shows ---
+
+    def forces(self) -> dict[tuple[int, int], tuple[float, float]]:
+        """Contact force on the second of each pair of parts that touch, at the end of the last frame."""
+        sim = self._running()
+        out = {}
+        for (i, j), force in zip(sim.pairs.tolist(), sim._buffers.force, strict=True):
+            if force.any():
+                out[i, j] = (float(force[0]), float(force[1]))
+        return out
+
+    def rows(self, kind: np.dtype) -> NDArray[Any]:
+        """Contact regions between parts at the end of the last frame, as `AreaContact.regions` has them (dtype
+        ``kind``)."""
+        sim = self._running()
+        rows = sim._buffers.regions[: sim.counts()[0]]
+        out = np.zeros(len(rows), kind)
+        for row, (pair, force, nx, ny, x, y, chord) in zip(out, rows.tolist(), strict=True):
+            for side, part in zip("ab", sim.pairs[int(pair)], strict=True):
+                shape = self._parts[part][0]
+                row[f"shape_{side}"], row[f"body_{side}"] = shape, shape.body
+            row["area"], row["stiffness"], row["force"] = force / self._k, self._k, force
+            row["direction"], row["centroid"], row["chord"] = (nx, ny), (x, y), chord
+        return out
+
+    def state(self, part: int) -> State:
+        """Displacements and stresses of a part at the end of the last frame. ValueError for a rigid part."""
+        sim = self._running()
+        if not 0 <= part < len(self._parts):
+            raise ValueError(f"expected a part from 0 to {len(self._parts) - 1}, got {part}")
+        shape = sim.bodies[part].shape
+        if shape is None:
+            raise ValueError(f"part {part} is rigid: expected one with a mesh")
+        work, first = sim.works[part], sim.system.first
+        nodes = work.loaded[: work.loaded[-1]]
+        loads = np.column_stack([nodes, work.node_load[nodes]])
+        modal = sim.state.q[first[part] : first[part + 1]]
+        u = shape.displacement(modal, loads, work.hub_load, float(np.sqrt(work.spin[0])))
+        frame = sim.state.x[part].copy()
+        return State(shape, frame, u, shape.stress(u))
+
+    def _running(self) -> Simulation:
+        if self.simulation is None or self._space is None:
+            raise RuntimeError("this assembly is in no space: rigidarea.attach(space, flexible=…) first")
+        return self.simulation
+
+    # --- in a space: what the area contact calls ---
+
+    def enter(self, space: pymunk.Space) -> None:
+        """Takes its parts' motion over. ValueError for bodies of another space, or parts that overlap too deeply."""
+        if self._space is not None:
+            raise ValueError("this assembly is in a space already: expected one that is free")
+        if len(self._parts) == 0:
+            raise ValueError("an assembly needs at least 1 part, got 0")
+        for n, (shape, _) in enumerate(self._parts):
+            if shape.space is not space or shape.body is None or shape.body.space is not space:
+                raise ValueError(f"part {n}: expected its shape and body in the space, got them elsewhere")
+        self._start(space)
+        self._space = space
+        # a joint that does nothing but keep Chipmunk and the area contact from colliding them, unseen by pymunk
+        self._apart = []
+        for (one, _), (two, _) in combinations(self._parts, 2):
+            joint = lib.cpSimpleMotorNew(one.body._body, two.body._body, 0.0)  # type: ignore[union-attr]
+            lib.cpConstraintSetMaxForce(joint, 0.0)
+            lib.cpConstraintSetCollideBodies(joint, False)
+            lib.cpSpaceAddConstraint(space._space, joint)
+            self._apart.append(joint)
+        self._led: list[pymunk.Body] = []
+        self._tied: tuple[Any, ...] | None = None
+        self._find_members(space)
+        if self._memory is not None:
+            for link, (warm, rest) in zip(self._table, self._memory[3], strict=True):
+                link["warm_x"], link["warm_y"] = warm
+                self._warm[int(link["address"])], self._rest[int(link["address"])] = warm, rest
+            self._memory = None
+
+    def leave(self, space: pymunk.Space) -> None:
+        """Gives the bodies back to pymunk, if they are in this space."""
+        if self._space is not space:
+            return
+        for joint in self._apart:
+            lib.cpSpaceRemoveConstraint(space._space, joint)
+            lib.cpConstraintFree(joint)
+        self._release()
+        self._space = None
+
+    def _start(self, space: pymunk.Space) -> None:
+        """The stepper, with every frame given: it finds loads and modes."""
+        bodies = []
+        for shape, made in self._parts:
+            body = shape.body
+            assert body is not None
+            x, y = body.local_to_world(made.position)
+            bodies.append(replace(made, position=(float(x), float(y)), angle=body.angle, fixed=True))
+        size = min(float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in bodies)
+        self.simulation = Simulation(
+            bodies, list(combinations(range(len(bodies)), 2)), self._k, self._q, margin=0.01 * size
+        )
+        self._step, self._before = math.inf, 0.0
+        #: By the joint's address: impulse of the last step, and in the last second half of a frame.
+        self._warm: dict[int, tuple[float, float]] = {}
+        self._rest: dict[int, Sequence[float]] = {}
+        if self._memory is not None:
+            self._step, self._before, arrays, _ = self._memory
+            for array, old in zip(self._kept(), arrays, strict=True):
+                array[:] = old
+
+    # --- members: the parts, and what joints tie to them ---
+
+    def _release(self) -> None:
+        for body in self._led:
+            body.position_func, body.velocity_func = pymunk.Body.update_position, pymunk.Body.update_velocity
+        self._led = []
+
+    def _find_members(self, space: pymunk.Space) -> None:
+        """Parts first; then all that joints tie to them, through bodies that forces move."""
+        for n, (shape, _) in enumerate(self._parts):
+            if shape.space is not space:
+                raise RuntimeError(f"part {n} has left the space: expected it there until detach()")
+        constraints = tuple(space.constraints)
+        if constraints == self._tied:
+            return
+        self._tied = constraints
+        bodies: list[pymunk.Body] = [shape.body for shape, _ in self._parts if shape.body is not None]
+        joints: list[pymunk.Constraint] = []
+        places = {id(b): i for i, b in enumerate(bodies)}
+        moved = set(places)
+        grown = True
+        while grown:
+            grown = False
+            for joint in constraints:
+                if joint in joints or not (id(joint.a) in moved or id(joint.b) in moved):
+                    continue
+                joints.append(joint)
+                grown = True
+                for body in (joint.a, joint.b):
+                    if id(body) not in places:
+                        places[id(body)] = len(bodies)
+                        bodies.append(body)
+                        if body.body_type == pymunk.Body.DYNAMIC:
+                            moved.add(id(body))
+        self._release()
+        self._links = joints
+        self._limits = [joint.max_force for joint in joints]
+        self._members = np.zeros(len(bodies), MEMBER)
+        for n, body in enumerate(bodies):
+            row: Any = self._members[n]
+            row["address"], row["led"] = address_of(body._body), id(body) not in moved
+            if id(body) in moved:
+                self._led.append(body)
+                body.position_func, body.velocity_func = _stay, _stay
+        for row, (_, made) in zip(self._members, self._parts, strict=False):
+            row["off_x"], row["off_y"] = (
+                made.position
+            )  # from the body's origin: its centre of gravity is 0 so far
+            row["hub_x"], row["hub_y"] = np.add(made.position, made.hub)
+            row["hub"] = made.shape is not None and made.shape.hub is not None
+        kinds = kinds_of_joints()
+        n = len(kinds) // 3
+        self._table = np.zeros(len(joints), LINK)
+        for row, joint in zip(self._table, joints, strict=True):
+            row["address"] = address_of(joint._constraint)
+            row["a"], row["b"] = places[id(joint.a)], places[id(joint.b)]
+            kind = int(ffi.cast("uintptr_t *", joint._constraint)[0])
+            row["at"] = -1
+            if kind in kinds[:n]:
+                row["at"], row["count"] = kinds[n + kinds.index(kind)], kinds[2 * n + kinds.index(kind)]
+            row["warm_x"], row["warm_y"] = self._warm.get(int(row["address"]), (0.0, 0.0))
+        at = layout()
+        self._offsets = np.array([at[name] for name in OFFSETS], np.int64)
+
+    # --- a frame ---
+
+    def step(self, dt: float, rest: Callable[[], None], idle: int) -> None:
+        """A frame of dt: the parts' motion, then ``rest``, the space's own frame.
+
+        idle: address of the class of a joint that does nothing. Raises RuntimeError, all bodies as before, where the
+        parts' motion fails or a part has left the space.
+        """
+        space = self._space
+        assert space is not None
+        if dt > 0:
+            self._find_members(space)
+            self._move(space, dt)
+        self._with_what_is_left(dt, rest, idle)
+
+    def _move(self, space: pymunk.Space, dt: float) -> None:
+        sim = self.simulation
+        assert sim is not None
+        gather(self._members, self._offsets, *space.gravity, space.damping, dt)
+        start, links = self._members.copy(), self._table.copy()
+        kept = [a.copy() for a in self._kept()]
+        steps = max(1, math.ceil(dt / min(self._step, self._longest or math.inf, self._travel(start)) - 1e-9))
+        for _ in range(TRIES):
+            links["x"] = links["y"] = 0.0
+            self._table[:] = links
+            code, stiffest = advance(
+                sim._table, sim.system, sim.state, sim.pairs, sim.settings, sim.scratch, sim._searches, sim._buffers,
+                self._members, self._table, self._offsets, dt / steps, steps, space.iterations,
+                self._before or dt / steps,
+            )  # fmt: skip
+            fits = stiffest * (dt / steps) ** 2 <= (2 * RESOLVED) ** 2
+            if code >= 0 and fits and np.isfinite(self._members["vx"]).all():
+                break
+            if code == FULL:
+                sim._make_room(2 * len(sim.scratch.load.force), sim._buffers)
+            else:
+                steps = max(2 * steps, math.ceil(math.sqrt(stiffest) * dt / RESOLVED))
+                self._step = dt / steps
+            self._members[:] = start
+            for array, old in zip(self._kept(), kept, strict=True):
+                array[:] = old
+        else:
+            self._table[:] = links
+            give_back(start, start, self._offsets, False)
+            told = f"a frame of {dt:g} of the flexible parts (h = {dt / steps:g}, {sim._trouble(code)}"
+            raise RuntimeError(told)
+        self._before, self.steps = dt / steps, steps
+        fastest = RESOLVED / math.sqrt(stiffest) if stiffest > 0 else math.inf
+        self._step = min(fastest, COARSER * self._step)
+        for link in self._table:
+            self._warm[int(link["address"])] = float(link["warm_x"]), float(link["warm_y"])
+        give_back(self._members, start, self._offsets, True)
+
+    def _kept(self) -> list[Any]:
+        """What a frame starts from, beside the members: modes, and the loads of the step before."""
+        sim = self.simulation
+        assert sim is not None
+        return [*sim.state, *(a for w in sim.works for a in (w.node_load, w.node_flag, w.hub_load, w.loaded))]
+
+    def _travel(self, members: Any) -> float:
+        """Time in which no part's boundary moves by more than TRAVEL of the mesh size."""
+        sim = self.simulation
+        assert sim is not None
+        size = self._size if math.isfinite(self._size) else 0.05 * float(sim.system.size.min())
+        parts = members[: len(self._parts)]
+        speed = np.hypot(parts["vx"], parts["vy"]) + np.abs(parts["w"]) * sim.system.size
+        fastest = float(speed.max())
+        return TRAVEL * size / fastest if fastest > 0 else math.inf
+
+    def _with_what_is_left(self, dt: float, rest: Callable[[], None], idle: int) -> None:
+        """The space's frame, in which joints of members have what is left of their force, and springs none."""
+        classes: list[tuple[Any, int]] = []
+        limited: list[tuple[pymunk.Constraint, float]] = []
+        for joint, link in zip(self._links, self._table, strict=True):
+            own = ffi.cast("uintptr_t *", joint._constraint)
+            if dt > 0 and (isinstance(joint, _SPRINGS) or link["at"] < 0):
+                classes.append((own, int(own[0])))
+                own[0] = idle
+                continue
+            if dt > 0 and math.isfinite(joint.max_force):
+                limited.append((joint, joint.max_force))
+                left = joint.max_force - math.hypot(link["x"], link["y"]) / dt
+                joint.max_force = max(0.0, left)
+            self._set_impulse(link, self._rest.get(int(link["address"]), [0.0, 0.0]))
+        try:
+            rest()
+        finally:
+            for own, kind in classes:
+                own[0] = kind
+            for joint, force in limited:
+                joint.max_force = force
+        for link in self._table:
+            if link["count"] > 0:
+                spring = any(int(link["address"]) == address_of(own) for own, _ in classes)
+                more = [0.0, 0.0] if spring else self._impulse(link)
+                self._rest[int(link["address"])] = more
+                self._set_impulse(link, [link["x"] + more[0], link["y"] + more[1]])
+
+    @staticmethod
+    def _impulse(link: Any) -> list[float]:
+        memory = ffi.cast("double *", int(link["address"]) + int(link["at"]))
+        return [float(memory[0]), float(memory[int(link["count"]) - 1]) if link["count"] > 1 else 0.0]
+
+    @staticmethod
+    def _set_impulse(link: Any, value: Sequence[float]) -> None:
+        if link["count"] > 0:
+            memory = ffi.cast("double *", int(link["address"]) + int(link["at"]))
+            memory[0] = value[0]
+            if link["count"] > 1:
+                memory[1] = value[1]
+
+    # --- copies ---
+
+    def __getstate__(self) -> dict[str, Any]:
+        names = ("_k", "_q", "_longest", "_cache", "_parts", "_size", "steps")
+        memory = None
+        if self._space is not None:
+            none = (0.0, 0.0)
+            at = [int(link["address"]) for link in self._table]
+            joints = [(self._warm.get(a, none), tuple(self._rest.get(a, none))) for a in at]
+            memory = self._step, self._before, [a.copy() for a in self._kept()], joints
+        kept = {name: self.__dict__[name] for name in names}
+        return kept | {"_space": None, "simulation": None, "_memory": memory}
