@@ -14,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from .kernel.broad import extents
+from .kernel.conjugate import FACTOR, MOBILITY
 from .kernel.jit import entry, kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
@@ -45,8 +46,8 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("bodies", "shapes", "pairs", "regions", "rows", "near", "apart", "sorted", "keys", "values"),
-    *("counters", "slots", "body_keys", "body_rows", "joints"),
+    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility"),
+    *("near", "apart", "sorted", "keys", "values", "counters", "slots", "body_keys", "body_rows", "joints"),
     *("kept_bodies", "kept_pairs", "kept_regions", "kept_counters"),
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
@@ -251,6 +252,8 @@ def load_tables(s: Any) -> Tables:
         array_at(s.pairs_at, (s.pairs_n,), PAIR),
         array_at(s.regions_at, (s.regions_n,), REGION),
         array_at(s.rows_at, (s.rows_n,), ROW),
+        array_at(s.factors_at, (s.factors_n,), FACTOR),
+        array_at(s.mobility_at, (s.mobility_n,), MOBILITY),
         array_at(s.near_at, (s.near_n,), np.int32),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.sorted_at, (s.sorted_n,), np.int32),
@@ -298,6 +301,8 @@ class Store:
             np.zeros(0, PAIR),
             np.zeros(0, REGION),
             np.zeros(0, ROW),
+            np.zeros(0, FACTOR),
+            np.zeros(16, MOBILITY),
             np.zeros(0, np.int32),
             np.zeros((4, 2), np.int32),
             np.zeros(0, np.int32),
@@ -374,7 +379,7 @@ class Store:
         self.tables.counters[FREE_REGIONS] += len(new) - len(old)
         rows = np.zeros(len(new), ROW)
         rows[: len(self.tables.rows)] = self.tables.rows
-        self.tables = self.tables._replace(regions=new, rows=rows)
+        self.tables = self.tables._replace(regions=new, rows=rows, factors=np.zeros(len(new), FACTOR))
         self.sync()
 
     def grow_joints(self, n: int) -> None:
@@ -436,7 +441,8 @@ class Store:
             if row >= len(self.tables.bodies):
                 bodies = np.zeros(2 * len(self.tables.bodies), BODY)
                 bodies[: len(self.tables.bodies)] = self.tables.bodies
-                self.tables = self.tables._replace(bodies=bodies)
+                mobility = np.zeros(len(bodies), MOBILITY)
+                self.tables = self.tables._replace(bodies=bodies, mobility=mobility)
             self.tables.counters[BODIES] = max(self.tables.counters[BODIES], row + 1)
             self.tables.bodies[row] = np.zeros((), BODY)
             self.tables.bodies[row]["address"], self.tables.bodies[row]["stamp"] = address, -1

@@ -16,12 +16,12 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.constants import MOST_SUBSTEPS
+from ..kernel.conjugate import search_together
+from ..kernel.constants import MOST_SUBSTEPS, SEARCH_SWEEPS
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
 from ..kernel.solve import (
-    accelerate,
     adapt_stiffness,
     drift,
     find_near,
@@ -281,10 +281,11 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         if s.joint_count > 0:
             _start_joints(s, tables, h, 1.0 / s.substeps_before if i == 0 else 1.0)
         warm_start(tables)
+        searches = s.sweeps // SEARCH_SWEEPS
+        sweeps = s.sweeps if s.joint_count > 0 else s.sweeps - 2 * searches
         look = 0
         wait = 1
-        length = 0.0
-        for k in range(s.sweeps):
+        for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
                 joined = _join(s, h)
                 if joined < 0:
@@ -295,8 +296,8 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)
-            elif k < s.sweeps - 1:
-                length = accelerate(tables, length)
+            if k == sweeps // 3:
+                search_together(tables, searches)
         if s.joint_count > 0:
             for joint in joints_of(s):
                 if joint.taken:

@@ -48,3 +48,5 @@ STIFFNESS_CHANGE = 1.05
 STRAIGHT_WAY = 0.1
 #: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
 SPREAD = 1.0
+#: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
+SEARCH_SWEEPS = 5

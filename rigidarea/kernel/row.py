@@ -70,16 +70,7 @@ ROW = record(
         ("l1", "f8"),
         ("l2", "f8"),
         ("lt", "f8"),
-        (
-            "g1",
-            "f8",
-        ),  # what the last visit has changed, and the direction of the search so far (`solve.accelerate`)
-        ("g2", "f8"),
-        ("gt", "f8"),
-        ("p1", "f8"),
-        ("p2", "f8"),
-        ("pt", "f8"),
-        ("weight", "f8"),  # of its change in the length of a sweep: 1/m_eff
+        ("weight", "f8"),  # 1/m_eff
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -225,9 +216,6 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.arm_b = r.arm_b
     row.lean_a = r.lean_a
     row.lean_b = r.lean_b
-    row.p1 = 0.0
-    row.p2 = 0.0
-    row.pt = 0.0
     ia = a.inverse_moment
     ib = b.inverse_moment
     masses = a.inverse_mass + b.inverse_mass
@@ -398,9 +386,6 @@ def visit(row: Any, a: Any, b: Any) -> None:
     lt = min(most, max(-most, lt))
     dt = lt - row.lt
     row.lt = lt
-    row.g1 = d1
-    row.g2 = d2
-    row.gt = dt
     push(row, a, b, d1, d2, dt)
 
 

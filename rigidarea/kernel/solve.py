@@ -339,41 +339,6 @@ def sweep(tables: Tables, up: bool) -> None:
 
 
 @kernel
-def accelerate(tables: Tables, before: float) -> float:
-    """After a sweep: go on in the direction of the search, as conjugate gradients do; the sweep's squared length.
-
-    Sweeps alone pass a load on from body to body, slowly where masses differ. Taken as a gradient, what a sweep has
-    changed makes them conjugate (Silcowitz, Niebur & Erleben, The Visual Computer 26 (2010),
-    doi:10.1007/s00371-010-0502-6: Fletcher & Reeves, begun anew where it grows). `before`: of the last sweep; 0: none.
-    """
-    length = 0.0
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        length += (row.g1 * row.g1 + row.g2 * row.g2 + row.gt * row.gt) * row.weight
-    beta = length / before if before > 0.0 else 2.0
-    if beta > 1.0:
-        for i in range(tables.counters[ROWS]):
-            row = tables.rows[i]
-            row.p1 = row.g1
-            row.p2 = row.g2
-            row.pt = row.gt
-        return length
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        d1 = max(beta * row.p1, -row.l1)
-        d2 = max(beta * row.p2, -row.l2)
-        dt = beta * row.pt
-        row.l1 += d1
-        row.l2 += d2
-        row.lt += dt
-        row.p1 = beta * row.p1 + row.g1
-        row.p2 = beta * row.p2 + row.g2
-        row.pt = dt + row.gt
-        push(row, tables.bodies[row.a], tables.bodies[row.b], d1, d2, dt)
-    return length
-
-
-@kernel
 def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
     for i in range(tables.counters[ROWS]):

@@ -219,6 +219,8 @@ class Tables(NamedTuple):
     pairs: np.ndarray  # (n,) PAIR
     regions: np.ndarray  # (n,) REGION
     rows: np.ndarray  # (n,) ROW
+    factors: np.ndarray  # (n,) FACTOR, of the rows
+    mobility: np.ndarray  # (n,) MOBILITY, of the bodies
     near: np.ndarray  # (n,) int32: pairs that may touch, in the order of the sweeps
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
