@@ -416,9 +416,10 @@ def _go(tables: Tables, part: float) -> None:
 @kernel
 def search_together(tables: Tables, steps: int) -> None:
     """So many steps for all rows that bear."""
-    if steps == 0 or tables.counters[ROWS] == 0:
+    if tables.counters[ROWS] == 0:
         return
-    take_part(tables)
     before = 0.0
     for _ in range(steps):
+        if before == 0.0:
+            take_part(tables)
         before = descend(tables, before)

@@ -41,8 +41,9 @@ MARGIN = 0.1
 WEIGHTLESS_PHASE2 = 40.0
 #: Time over which the load that a pair carries is averaged (time).
 LOAD_TIME = 0.5
-#: A stiffness grows or shrinks by no more than this factor a frame.
-STIFFNESS_CHANGE = 1.05
+#: A stiffness grows by no more than this factor a frame, and shrinks by that one.
+MOST_STIFFER = 2.0
+SOFTER = 1.05
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
-from .constants import LOAD_TIME, SPREAD, STIFFNESS_CHANGE, WEIGHTLESS_PHASE2
+from .constants import LOAD_TIME, MOST_STIFFER, SOFTER, SPREAD, WEIGHTLESS_PHASE2
 from .jit import kernel
 from .tables import LAW_AREA, Law
 
@@ -60,10 +61,9 @@ def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float)
     acceleration = law.gravity if law.gravity > 0.0 else WEIGHTLESS_PHASE2 * depth / (h * h)
     pair.least = acceleration / max(a.inverse_mass, b.inverse_mass)
     pair.load = pair.least
-    pair.allowed = depth * face
+    pair.stiffness = pair.least / (depth * face)
     if law.law != LAW_AREA:
-        pair.allowed *= face / law.length
-    pair.stiffness = pair.least / pair.allowed
+        pair.stiffness *= law.length / face
 
 
 @kernel
@@ -83,19 +83,17 @@ def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
 
 @kernel
 def carry(pair: Any, dt: float) -> None:
-    """Once a frame: the pair's load and what area is to carry it, averaged over LOAD_TIME; its stiffness after them.
+    """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it.
 
-    Averaged both, or what sways on its edges for a moment is made stiffer for good, and sways the more.
+    Too soft, it goes half of the way, in powers, to half as much again as it must be; far too stiff, it softens slowly.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
-        share = dt / (dt + LOAD_TIME)
-        pair.load += share * (pair.carrying / dt - pair.load)
-        pair.allowed += share * (pair.area - pair.allowed)
-        wanted = max(pair.load, pair.least) / pair.allowed
+        pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
+        wanted = max(pair.load, pair.least) / pair.area
         k = pair.stiffness
-        if wanted > k:
-            pair.stiffness = min(STIFFNESS_CHANGE * k, 1.1 * wanted)
+        if 1.2 * wanted > k:
+            pair.stiffness = min(MOST_STIFFER, math.sqrt(1.5 * wanted / k)) * k
         elif wanted < 0.5 * k:  # a load that comes and goes is not followed
-            pair.stiffness = k / STIFFNESS_CHANGE
+            pair.stiffness = k / SOFTER
     pair.carrying = 0.0
     pair.area = 0.0

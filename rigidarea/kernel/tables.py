@@ -116,7 +116,6 @@ PAIR = record(
         ("least", "f8"),  # of its load: the weight of the lighter body
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
-        ("allowed", "f8"),  # that, averaged over LOAD_TIME
         (
             "order",
             "f8",
