@@ -68,7 +68,9 @@ def follow_impact(r: Any, elasticity: float, speed: float, inverse: float, h: fl
     less. So the energy is kept account of: what the opening must give back less is withheld from its force.
     """
     if r.opened:
-        if speed > 1e-9 * r.first_speed or r.withheld == 1.0:  # its load is more than what it has to give back
+        if (
+            speed > 1e-9 * r.first_speed or r.withheld == 1.0
+        ):  # its load is more than what it has to give back
             r.mode = REST
             r.placed = SPENT if r.withheld > 0.5 else 0
         return

@@ -74,7 +74,7 @@ def pose_of(body: Any) -> Pose:
 
 @kernel
 def earlier(body: Any, time: float) -> Pose:
-    """Where they were `time` ago, at the velocity at which it has come; negative: where they will be, at the present."""
+    """Where they were `time` ago, at the velocity at which it has come; negative: will be, at its present velocity."""
     if body.kind != DRIFTS:
         return pose_of(body)
     came = 1.0 if time > 0.0 else 0.0
@@ -563,7 +563,16 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             y += wx * middle
             middle = 0.0
         patch = Patch(
-            min(patch.area, area_cap), x, y, wx, wy, patch.chord, middle, straight, patch.depth, patch.reach,
+            min(patch.area, area_cap),
+            x,
+            y,
+            wx,
+            wy,
+            patch.chord,
+            middle,
+            straight,
+            patch.depth,
+            patch.reach,
             patch.blind,
         )
         region.born = 1 if born else 0
@@ -615,15 +624,13 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
 
 
 @kernel
-def meet_ahead(
-    pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool
-) -> int:
+def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> int:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
-    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step: regions at the list's head.
+    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step: at the list's head.
     DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
     this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the velocities at
-    which bodies come (energy is kept by their being solved together). Others are found when they have happened (`meet`).
+    which bodies come (energy is kept by their being solved together). Others are found when they have happened.
     """
     pair = tables.pairs[p]
     regions = tables.regions
@@ -682,7 +689,7 @@ def meet_ahead(
         r = counters[FREE_REGION]
         region = regions[r]
         _fill(region, patch, ax, ay, bx, by)
-        if patch.reach > 3.0 * patch.depth:  # a plank on end, through and through: not its width is what is to be kept out
+        if patch.reach > 3.0 * patch.depth:  # a plank on end, through and through: its width says nothing
             region.depth = patch.reach
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
