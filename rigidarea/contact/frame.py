@@ -238,13 +238,13 @@ def _contacts(s: Any, space: int, h: float, time: float) -> bool:
 
 
 @kernel
-def _join(s: Any, h: float) -> int:
+def _join(s: Any, h: float, first: bool) -> int:
     """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
     start = 0
     total = 0
     while True:
         status, start, joined = join(
-            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start
+            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start, first
         )
         total += joined
         if status == DONE:
@@ -287,7 +287,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         wait = 1
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h)
+                joined = _join(s, h, k == 0)
                 if joined < 0:
                     return False
                 wait = 1 if joined > 0 else 2 * wait

@@ -68,9 +68,11 @@ def follow_impact(r: Any, elasticity: float, speed: float, inverse: float, h: fl
     less. So the energy is kept account of: what the opening must give back less is withheld from its force.
     """
     if r.opened:
-        if speed > 0.0 or r.withheld == 1.0:
+        if (
+            speed > 1e-9 * r.first_speed or r.withheld == 1.0
+        ):  # its load is more than what it has to give back
             r.mode = REST
-            r.placed = SPENT if r.withheld == 1.0 else 0
+            r.placed = SPENT if r.withheld > 0.5 else 0
         return
     moved = 0.5 * h * (r.speed + speed)
     r.work += r.elastic * moved
@@ -122,5 +124,5 @@ def impact_force(r: Any, elasticity: float, elastic: float, speed: float, invers
         r.work += elastic * moved
         r.loss += r.excess * moved
         _open(r, elasticity, speed, inverse)
-        force = stop + (force - stop) * (1.0 - r.withheld)
+        force = stop + (1.0 - stop / force) * elastic * (1.0 - r.withheld)
     return force

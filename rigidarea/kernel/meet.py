@@ -56,6 +56,7 @@ class Patch(NamedTuple):
     middle: float
     straight: float
     depth: float
+    reach: float  # its extent along the direction
     blind: bool  # the chord is nothing: no direction of its own
 
 
@@ -67,7 +68,7 @@ def pose_of(body: Any) -> Pose:
 
 @kernel
 def earlier(body: Any, time: float) -> Pose:
-    """Where they were `time` ago, at the velocity at which it has come; negative: where they will be."""
+    """Where they were `time` ago, at the velocity at which it has come; negative: will be, at its present velocity."""
     if body.kind != DRIFTS:
         return pose_of(body)
     came = 1.0 if time > 0.0 else 0.0
@@ -82,13 +83,19 @@ def earlier(body: Any, time: float) -> Pose:
 
 
 @kernel
+def _reach_along(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) -> float:
+    """Extent of a loop along (nx, ny), in its own frame (length)."""
+    low, high = extent(work.polygon, work.bows, start, stop, arcs, nx, ny)
+    return high - low
+
+
+@kernel
 def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) -> float:
     """How far a loop's outlines have gone into each other: its least width, of those across n and its longest edges.
 
     Along n alone a thin long strip would seem deep, since its chord runs from corner to opposite corner.
     """
-    low, high = extent(work.polygon, work.bows, start, stop, arcs, nx, ny)
-    least = high - low
+    least = _reach_along(work, start, stop, arcs, nx, ny)
     for own in range(2):
         longest = 0.0
         bx = 0.0
@@ -106,8 +113,7 @@ def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) 
             j = i
         if longest > 0.0:
             length = math.sqrt(longest)
-            low, high = extent(work.polygon, work.bows, start, stop, arcs, -by / length, bx / length)
-            least = min(least, high - low)
+            least = min(least, _reach_along(work, start, stop, arcs, -by / length, bx / length))
     return least
 
 
@@ -136,8 +142,21 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
     depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
+    reach = _reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
     straight = min(loop.straight, chord)
-    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, blind)
+    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, reach, blind)
+
+
+@kernel
+def _reach(work: Work, n: int) -> float:
+    """Largest depth of the work's n loops, along their chords' normals (length)."""
+    most = 0.0
+    for k in range(n):
+        loop = work.loops[k]
+        nx, ny = chord_direction(loop.chord_x, loop.chord_y, loop.area)
+        if nx != 0.0 or ny != 0.0:
+            most = max(most, _reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny))
+    return most
 
 
 @kernel(forceinline=True)
@@ -411,8 +430,9 @@ def _await(
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
-    load = max(gain, law.gravity) / inverse
-    region.rest_depth = min(region.depth, depth_for(law, region, pair.stiffness, load))
+    lying = law.gravity / (inverse * region_stiffness(law, pair.stiffness, face))
+    rest = max(lying, depth_for(law, region, pair.stiffness, gain / inverse))
+    region.rest_depth = min(region.depth, rest)
     region.back = ahead
     return True
 
@@ -532,7 +552,17 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             y += wx * middle
             middle = 0.0
         patch = Patch(
-            min(patch.area, area_cap), x, y, wx, wy, patch.chord, middle, straight, patch.depth, patch.blind
+            min(patch.area, area_cap),
+            x,
+            y,
+            wx,
+            wy,
+            patch.chord,
+            middle,
+            straight,
+            patch.depth,
+            patch.reach,
+            patch.blind,
         )
         region.born = 1 if born else 0
         if born:
@@ -583,11 +613,13 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
 
 
 @kernel
-def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
+def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> int:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
+    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step: at the list's head.
     DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
-    this drift, STRUCK. A bounce in the first half of the next one is found when it has happened (`meet`).
+    this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the velocities at
+    which bodies come (energy is kept by their being solved together). Others are found when they have happened.
     """
     pair = tables.pairs[p]
     regions = tables.regions
@@ -601,6 +633,22 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     if sa.mirror >= 0 or sb.mirror >= 0:
         ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
     looks = jumped(tables, pair, a, b, h)
+    old = pair.head
+    deepest = 0.0
+    if old >= 0:  # it touches: what else of it comes down, turning fast
+        if looks == 1:
+            return DONE
+        deepest = HIT * min(_size(a), _size(b))
+        r = old
+        awaited = 0
+        while r >= 0:
+            if regions[r].mode == NEARING:
+                awaited += 1
+            else:
+                deepest = max(deepest, 2.0 * regions[r].depth)
+            if regions[r].mode == IMPACT or awaited == 2:
+                return DONE
+            r = regions[r].next
     n = 0
     ahead = h
     for i in range(looks):
@@ -608,7 +656,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         pose_a = earlier(a, -ahead)
         pose_b = earlier(b, -ahead)
         n, rel = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
-        if n != 0:
+        if n < 0 or (n > 0 and (old < 0 or _reach(work, n) > deepest)):
             break
     if n == 0:
         return DONE
@@ -625,11 +673,13 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
             continue
         patch = _patch(pool, work, law, k, ia, pose_a)
-        if patch.blind:
+        if patch.blind or patch.reach <= deepest:
             continue
         r = counters[FREE_REGION]
         region = regions[r]
         _fill(region, patch, ax, ay, bx, by)
+        if patch.reach > 3.0 * patch.depth:  # a plank on end, through and through: its width says nothing
+            region.depth = patch.reach
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
             continue
@@ -654,12 +704,13 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     face = _face(pool, sa, sb, a, b)
     if pair.stiffness == 0.0:
         choose_stiffness(law, pair, face, a, b, h)
-    pair.head = -1
     r = kept
     while r >= 0:  # after the loops have been read: looking for the touch takes the work
         region = regions[r]
         after = region.next
-        if _await(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h):
+        if _await(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h) and (
+            region.mode == NEARING or (first and old < 0)
+        ):
             region.next = pair.head
             pair.head = r
         else:

@@ -60,6 +60,7 @@ def kick(tables: Tables, frame: int) -> None:
             body.w += body.kick_w
             body.came_vx = body.vx
             body.came_vy = body.vy
+            body.came_w = body.w
 
 
 @kernel
@@ -237,14 +238,14 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 
 
 @kernel
-def _add_rows(tables: Tables, law: Law, p: int, h: float) -> bool:
-    """Rows for all regions of pair p; False: no room for them."""
+def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
+    """Rows for the regions of pair p, up to region `until` (-1: for all); False: no room for them."""
     counters = tables.counters
     pair = tables.pairs[p]
     first = tables.shapes[pair.a].body
     second = tables.shapes[pair.b].body
     r = pair.head
-    while r >= 0:
+    while r != until:
         region = tables.regions[r]
         if counters[ROWS] == len(tables.rows):
             return False
@@ -284,14 +285,14 @@ def gather(
             return status, i
         if pair.head < 0:
             _part(pool, tables, pair, a, b)
-        elif not _add_rows(tables, law, p, h):
+        elif not _add_rows(tables, law, p, h, -1):
             return GROW_REGIONS, i
     return DONE, counters[NEAR]
 
 
 @kernel
 def join(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, first: bool
 ) -> tuple[int, int, int]:
     """Rows for pairs that the velocities, as solved so far, would bring to overlap in the next drift.
 
@@ -303,8 +304,7 @@ def join(
     for i in range(start, counters[NEAR]):
         p = tables.near[i]
         pair = tables.pairs[p]
-        if pair.head >= 0:
-            continue
+        old = pair.head
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
@@ -313,10 +313,10 @@ def join(
             continue
         if not allowed(tables, pair, frame):
             continue
-        status = meet_ahead(pool, tables, work, law, p, h)
+        status = meet_ahead(pool, tables, work, law, p, h, first)
         if status != DONE:
             return status, i, counters[ROWS] - before
-        if not _add_rows(tables, law, p, h):
+        if not _add_rows(tables, law, p, h, old):
             return GROW_REGIONS, i, counters[ROWS] - before
     return DONE, counters[NEAR], counters[ROWS] - before
 
@@ -354,9 +354,13 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
                 body.x += body.shift_x
                 body.y += body.shift_y
                 body.angle += body.shift_a
-                # what has been shifted by one impulse meets the next with another arm
-                turn = body.shift_x * (body.vy - body.came_vy) - body.shift_y * (body.vx - body.came_vx)
-                if body.inverse_mass > 0.0:
+                # What has been shifted by one impulse meets the next with another arm. (Not a disc without friction:
+                # there the direction goes with the arm, and spin would be energy from nowhere.)
+                vx = body.vx - body.came_vx
+                vy = body.vy - body.came_vy
+                turned = abs(body.w - body.came_w) * body.extent
+                if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
+                    turn = body.shift_x * vy - body.shift_y * vx
                     body.w -= turn * body.inverse_moment / body.inverse_mass
                 place(body)
             body.shift_x = 0.0

@@ -85,14 +85,14 @@ def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
 def carry(pair: Any, dt: float) -> None:
     """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it.
 
-    Too soft, it goes half of the way, in powers, to half as much again as it must be; far too stiff, it softens slowly.
+    Too soft, it goes half of the way, in powers, to a tenth more than it must be; far too stiff, it softens slowly.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
         wanted = max(pair.load, pair.least) / pair.area
         k = pair.stiffness
-        if 1.2 * wanted > k:
-            pair.stiffness = min(MOST_STIFFER, math.sqrt(1.5 * wanted / k)) * k
+        if wanted > k:
+            pair.stiffness = min(MOST_STIFFER, math.sqrt(1.1 * wanted / k)) * k
         elif wanted < 0.5 * k:  # a load that comes and goes is not followed
             pair.stiffness = k / SOFTER
     pair.carrying = 0.0

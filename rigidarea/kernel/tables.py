@@ -42,6 +42,7 @@ BODY = record(
         ("kick_w", "f8"),
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
         ("came_vy", "f8"),
+        ("came_w", "f8"),
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),
