@@ -125,13 +125,14 @@ def tolerance_for_turn(radius: Number, turn: Number) -> Number:
 
 
 def facet_loss(turn: Number, angle: Number, tolerance: Number, depth: Number) -> Number:
-    """Share by which a swing gets smaller over the facets of an arc (dimensionless): turn · angle/2 · t²/(t² + d²).
+    """Share by which a swing gets smaller over the facets of an arc (dimensionless): turn · angle/2 · t²/(t² +
+    (d/10)²).
 
     Each facet's edge takes off the velocity across it, v sin(turn): turn² of the energy, half of that of the amplitude,
-    angle/turn times. A contact that is pressed deeper (d) than the facets' sagitta (t) does not feel their edges:
-    the area that it cuts off changes by t/d only, and gives back what it takes.
+    angle/turn times. A contact that is pressed deeper than ten times the facets' sagitta (t < d/10) does not feel
+    their edges: the area that it cuts off changes by t/d only, and gives back what it takes.
     """
-    return 0.5 * turn * angle * tolerance * tolerance / (tolerance * tolerance + depth * depth)
+    return 0.5 * turn * angle * tolerance * tolerance / (tolerance * tolerance + 0.01 * depth * depth)
 
 
 # --- what bends -----------------------------------------------------------------------------------------------

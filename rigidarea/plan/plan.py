@@ -17,7 +17,9 @@ from ..contact import AreaContact, attach, attached
 from ..outline import positive
 from . import costs, elastic
 from . import estimates as est
-from .predict import AHEAD, FACETS, Cause, Facts, Setting, causes, facts, total
+from .curves import FACETS
+from .facts import AHEAD, Facts, facts
+from .predict import Cause, Setting, causes, total
 from .survey import survey
 
 if TYPE_CHECKING:
@@ -30,6 +32,8 @@ STEPS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
 SWEEPS = (5, 10, 20, 40, 80)
 PENETRATIONS = tuple(10.0 ** (-e / 2.0) for e in range(4, 19))
 """From 1e-2 to 1e-9 of a body's smallest extent, half a decade apart: below, an overlap has lost half its digits."""
+MARGIN = 0.8
+"""Of the tolerance: what is predicted must be within this part of it, for the estimates are not exact."""
 SLOP = 0.1
 """Of the tolerance: the share that Chipmunk's slop may have of it."""
 SECONDS = 10.0
@@ -106,7 +110,7 @@ class Plan:
         for setting in self._candidates(found, given):
             error = total(found, setting)
             cost = _cost(setting, moving, touching)
-            if error <= self.tolerance and (best is None or cost < best[1]):
+            if error <= MARGIN * self.tolerance and (best is None or cost < best[1]):
                 best = error, cost, setting
             if least is None or error < 0.99 * least[0] or (error <= least[0] and cost < least[1]):
                 least = error, cost, setting
@@ -118,7 +122,7 @@ class Plan:
             steps, sweeps, depth = (max(pair) if i < 2 else min(pair) for i, pair in enumerate(pairs))
             chosen = Setting(self.level, int(steps), int(sweeps), depth)
             self.error, cost = total(found, chosen), _cost(chosen, moving, touching)
-            self.reachable = self.error <= self.tolerance
+            self.reachable = self.error <= MARGIN * self.tolerance
         self.level, self.steps, self.sweeps, self.penetration = chosen
         self.causes = causes(found, chosen)
         if keep:
@@ -138,7 +142,10 @@ class Plan:
         piled = found.piled
         tips = found.corner is not None
         least = est.LEAST_PILE_SWEEPS if piled or tips else est.LEAST_SWEEPS
-        sweeps = (given["sweeps"],) if "sweeps" in given else tuple(n for n in SWEEPS if n >= least)
+        most = max(
+            2 * least, found.wanted / 2.0
+        )  # with more of them, more is conjugate: it helps heavy loads alone
+        sweeps = (given["sweeps"],) if "sweeps" in given else tuple(n for n in SWEEPS if least <= n <= most)
         if not piled:
             sweeps = sweeps[:1]
         depths = (given["penetration"],) if "penetration" in given else PENETRATIONS
@@ -148,7 +155,7 @@ class Plan:
             for n in steps:
                 # how deep does not depend on the sweeps: found once for each number of steps
                 errors = [total(found, Setting("rigid", n, sweeps[-1], p)) for p in depths]
-                enough = max(1.1 * min(errors), 0.5 * self.tolerance)
+                enough = max(1.1 * min(errors), 0.6 * self.tolerance)
                 depth = next(p for p, error in zip(depths, errors) if error <= enough)
                 out += [Setting("rigid", n, m, depth) for m in sweeps]
         native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))

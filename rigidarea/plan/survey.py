@@ -7,6 +7,7 @@ Only what pymunk itself tells is used, so that a space may be planned before any
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import Any, NamedTuple
 from weakref import WeakKeyDictionary
 
@@ -47,6 +48,7 @@ class Survey(NamedTuple):
     elasticity: Array
     pairs: Ints  # (pairs, 2) shapes whose boxes meet, or may within the time looked ahead
     gaps: Array  # (pairs,) between their boxes (length); negative: how deep
+    apart: float  # largest velocity of a body that moves, relative to their mean (length/time)
 
     @property
     def g(self) -> float:
@@ -182,6 +184,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     gaps = np.maximum(
         np.maximum(a[:, 0] - b[:, 2], b[:, 0] - a[:, 2]), np.maximum(a[:, 1] - b[:, 3], b[:, 1] - a[:, 3])
     )
+    radii = _inner_radii(table[:, 6], boxes, pairs, shapes)
     return Survey(
         bodies=every,
         shapes=shapes,
@@ -195,14 +198,36 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         owner=owner,
         boxes=boxes,
         thickness=table[:, 5],
-        radius=table[:, 6],
+        radius=radii,
         corners=table[:, 7] > 0.0,
         concave=table[:, 8] > 0.0,
         friction=table[:, 9],
         elasticity=table[:, 10],
         pairs=pairs,
         gaps=gaps,
+        apart=float(np.hypot(*(velocity[free] - velocity[free].mean(axis=0)).T).max()) if free.any() else 0.0,
     )
+
+
+def _inner_radii(radius: Array, boxes: Array, pairs: Ints, shapes: list[pymunk.Shape]) -> Array:
+    """Radii of curvature, of outlines with holes that of the hole which something lies in (negative: hollow)."""
+    found = radius.copy()
+    for pair in pairs:
+        for k, other in (pair, pair[::-1]):
+            outline = getattr(shapes[k], "outline", None)
+            if not isinstance(outline, Outline) or len(outline.rings) < 2:
+                continue
+            inside = (boxes[k, :2] < boxes[other, :2]).all() and (boxes[other, 2:] < boxes[k, 2:]).all()
+            if inside:
+                hole = max(outline.rings[1:], key=len)
+                found[k] = -abs(curvature_radius(_alone(hole.tobytes(), hole.shape)))
+    return found
+
+
+@lru_cache(maxsize=256)
+def _alone(points: bytes, shape: tuple[int, int]) -> Outline:
+    """A hole as an outline of its own."""
+    return Outline(np.frombuffer(points).reshape(shape))
 
 
 def _near(

@@ -26,7 +26,7 @@ from pymunk._chipmunk_cffi import lib
 from .. import contact as area
 from ..outline import Outline
 from ..report import envelope
-from ..study.peers.base import record
+from ..study.peers.base import drive, record
 from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, surface
 from ..study.records import Progress, Row, append_rows, read_rows
 from ..study.scene import (
@@ -40,6 +40,8 @@ from ..study.scene import (
     Scene,
     Segment,
     Trace,
+    X,
+    Y,
     get_scene,
     scenes,
 )
@@ -128,8 +130,7 @@ class Planned(SpaceRun):
     def advance(self, frames: int) -> None:
         """All frames in one call, in machine code."""
         if self.contact is None:
-            for _ in range(1):
-                _drive(self.space, frames * self.steps, self.h)
+            drive(lib.cpSpaceStep, frames * self.steps, self.space._space, self.h)
         elif not self.failed:
             try:
                 self.contact.step(self.frame, frames, steps=self.steps)
@@ -140,12 +141,6 @@ class Planned(SpaceRun):
         """States (n_body, 6); no numbers once a contact has failed."""
         states = super().state()
         return np.full_like(states, np.nan) if self.failed else states
-
-
-def _drive(space: pymunk.Space, steps: int, h: float) -> None:
-    from ..study.peers.base import drive
-
-    drive(lib.cpSpaceStep, steps, space._space, h)
 
 
 def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
@@ -189,27 +184,22 @@ def errors(scene: Scene, build: Callable[[], Planned], reference: Trace | None) 
     trace = record(build(), scene)
     if reference is None:
         return scene.measure(trace)
-    return departure(trace, reference)
+    return departure(trace, reference, scene.size)
 
 
-def departure(trace: Trace, reference: Trace) -> float:
-    """How far bodies are from a reference's, over the way that the body has gone there, or its first frames' least
+def departure(trace: Trace, reference: Trace, size: float) -> float:
+    """How far a body is from where a reference has it, over the way that it goes there or the size of a body
     (relative).
 
-    The largest over bodies and frames; a path shorter than a hundredth of the longest counts as that.
+    The largest over bodies and frames; a turn counts as half the size times its angle.
     """
     if trace.states.shape != reference.states.shape or not np.all(np.isfinite(trace.states)):
         return math.inf
-    apart = np.hypot(*(trace.states - reference.states)[:, :, :2].transpose(2, 0, 1)).max(axis=0)
-    ways = np.hypot(*np.diff(reference.states[:, :, :2], axis=0).transpose(2, 0, 1)).sum(axis=0)
-    longest = float(ways.max(initial=0.0))
-    turned = np.abs(trace.states - reference.states)[:, :, ANGLE].max(axis=0)
-    turns = np.abs(np.diff(reference.states[:, :, ANGLE], axis=0)).sum(axis=0)
-    if longest == 0.0:
-        return math.inf
-    return float(
-        np.max(np.minimum(apart / np.maximum(ways, 0.01 * longest) + 0.0 * turns, 1e9) + 0.0 * turned)
-    )
+    off = np.abs(trace.states - reference.states)
+    apart = np.maximum(np.hypot(off[:, :, X], off[:, :, Y]), 0.5 * size * off[:, :, ANGLE]).max(axis=0)
+    steps = np.diff(reference.states[:, :, : Y + 1], axis=0)
+    ways = np.hypot(steps[:, :, X], steps[:, :, Y]).sum(axis=0)
+    return float(np.max(apart / np.maximum(ways, size)))
 
 
 def seconds_of(scene: Scene, build: Callable[[], Planned]) -> float:
@@ -318,7 +308,7 @@ def study(
 def _reference(scene: Scene) -> tuple[Trace, float]:
     fine, coarse = ({**s, "sampling": 1e-6} for s in (FINEST, NEXT_TO_FINEST))
     trace = record(Planned(scene, fine), scene)
-    return trace, departure(record(Planned(scene, coarse), scene), trace)
+    return trace, departure(record(Planned(scene, coarse), scene), trace, scene.size)
 
 
 def judge(scene: Scene, tolerance: float, swept: Sequence[Row], varied: bool, reference: Trace | None) -> Row:
@@ -458,6 +448,13 @@ def validate(
     for scene, varied in chosen:
         rows += study(scene, tolerances, varied, store, known)
         progress.step(scene.name)
+    settings = {"scenes": names, "variations": count, "tolerances": list(tolerances)}
+    return report(rows, settings)
+
+
+def report(rows: Sequence[Row], settings: Row) -> Row:
+    """The object of the command: what the issue asks, then every row."""
+    tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
     told = {
         "scenes": summary([row for row in rows if not row["varied"]]),
         "variations": summary([row for row in rows if row["varied"]]),
@@ -466,7 +463,6 @@ def validate(
         },
         "plan_ms_1000_bodies": plan_time(),
     }
-    settings = {"scenes": names, "variations": count, "tolerances": list(tolerances)}
     head = {
         k: told["scenes"][k] for k in ("within_tolerance_percent", "cost_ratio_median", "cost_ratio_worst")
     }

@@ -8,7 +8,8 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.plan import elastic
-from rigidarea.plan.predict import Setting, causes, facts, total
+from rigidarea.plan.facts import facts
+from rigidarea.plan.predict import Setting, causes, total
 from rigidarea.plan.survey import survey
 
 G = 9.81
