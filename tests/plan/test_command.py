@@ -1,6 +1,8 @@
 """`rigidarea plan`: a scene, a program, and the validation on one scene."""
 
 import json
+import subprocess
+import sys
 
 import pytest
 
@@ -26,23 +28,29 @@ def test_a_scene(capsys):
     assert text.startswith("plan for 0.01 over 5 s: predicted") and "pile" in text
 
 
-def test_a_program(tmp_path, capsys):
+def command(*words):
+    """In a process of its own: a host serves one program."""
+    return subprocess.run([sys.executable, "-m", "rigidarea", *words], capture_output=True, text=True)
+
+
+def test_a_program(tmp_path):
     script = tmp_path / "game.py"
     script.write_text(PROGRAM)
-    assert main(["plan", str(script), "--tolerance", "0.001", "--json", "-"]) == 0
-    told = json.loads(capsys.readouterr().out)
+    done = command("plan", str(script), "--tolerance", "0.001", "--json", "-")
+    assert done.returncode == 0, done.stderr
+    told = json.loads(done.stdout)
     assert told["command"] == "plan" and told["results"]["reachable"]
     assert told["results"]["lines"][0]["what"] == "space"
+    script.write_text("")
+    done = command("plan", str(script))
+    assert done.returncode == 2 and "nothing to plan" in done.stderr
 
 
 def test_what_makes_no_sense(tmp_path, capsys):
-    empty = tmp_path / "empty.py"
-    empty.write_text("")
     for words, message in (
         (["plan"], "expected one scene or program"),
         (["plan", "nothing"], "unknown scene 'nothing'"),
         (["plan", str(tmp_path / "none.py")], "which is none"),
-        (["plan", str(empty)], "nothing to plan"),
         (["plan", "stack", "--tolerance", "-1"], "tolerance"),
     ):
         with pytest.raises(SystemExit) as end:
@@ -86,3 +94,42 @@ def test_validate_one_scene(tmp_path, capsys):
     kept = (tmp_path / "plan-sweep.jsonl").read_text()
     assert main(words) == 0
     assert (tmp_path / "plan-sweep.jsonl").read_text() == kept  # nothing is swept twice
+
+
+def test_the_page_runs():
+    import re
+    from pathlib import Path
+
+    page = (Path(__file__).parents[2] / "docs" / "plan.md").read_text()
+    (block,) = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
+    names: dict = {}
+    exec(compile(block, "docs/plan.md", "exec"), names)
+    assert names["plan"].steps == 4 and "yours" in str(names["plan"])
+    found = names["watch"].indicators["penetration"]
+    assert 0 < found.measured <= 3 * found.predicted
+
+
+def test_tables_and_picture_of_the_page(tmp_path):
+    from rigidarea.plan import picture
+
+    rows = [
+        {
+            "scene": "one", "varied": False, "tolerance": tolerance, "verdict": verdict, "error": error,
+            "predicted_error": 0.5 * tolerance, "decided_by": "corner", "level": "rigid", "steps": 2, "sweeps": 10,
+            "penetration": 1e-5, "cost_ratio": ratio, "cheapest": "rigid 1 x 5", "reachable": True,
+        }
+        for tolerance, verdict, error, ratio in ((0.1, "within", 0.05, 1.5), (0.01, "outside", 0.02, None))
+    ]  # fmt: skip
+    told = {"rows": rows, "summary": {"scenes": validate.summary(rows), "variations": validate.summary([])}}
+    told["summary"]["by_tolerance"] = {
+        str(t): validate.summary([r for r in rows if r["tolerance"] == t]) for t in (0.1, 0.01)
+    }
+    assert told["summary"]["scenes"]["within_tolerance_percent"] == 50.0
+    assert told["summary"]["scenes"]["cost_ratio_worst"] == 1.5
+    shown = picture.costs_and_errors(rows, tmp_path / "plan.png")
+    picture.renew(tmp_path / "docs", told, shown)
+    page = (tmp_path / "docs" / "plan.md").read_text()
+    assert "| one | 1 % | 0.02 | 5e-3 | corner |" in page and "50 %" in page
+    (tmp_path / "docs" / "plan.md").write_text("no place")
+    with pytest.raises(ValueError, match="no place for the table 'summary'"):
+        picture.renew(tmp_path / "docs", told, shown)

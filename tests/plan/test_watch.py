@@ -124,3 +124,19 @@ def test_energy_from_nowhere():
         body.position += 0, 2.0  # lifted by hand
     with pytest.warns(PlanWarning, match="energy of the space"):
         watch.step(frames=1)
+
+
+def test_penetration_is_set_between_frames():
+    """What rests keeps its stiffness in that frame; it grows to what the new penetration asks for."""
+    space = pile(1)
+    contact = ra.attach(space, penetration=1e-3)
+    contact.step(1 / 60, 60)
+    before, energy = contact.regions["stiffness"][0], contact.energy()
+    contact.penetration = 1e-4
+    assert contact.penetration == 1e-4 and contact.regions["stiffness"][0] == before
+    assert contact.energy() == energy
+    contact.step(1 / 60, 300)
+    assert contact.regions["stiffness"][0] == pytest.approx(10 * before, rel=0.1)
+    with pytest.raises(ValueError, match="penetration"):
+        contact.penetration = 0.0
+    assert contact.penetration == 1e-4
