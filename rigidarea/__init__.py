@@ -9,6 +9,7 @@ from . import shapes
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
 from .overlap import OVERLAP, overlap
+from .plan import Plan, plan
 
 __version__ = "0.1.0"
 
@@ -17,9 +18,11 @@ __all__ = [
     "REGIONS",
     "AreaContact",
     "Outline",
+    "Plan",
     "SimulationError",
     "attach",
     "attached",
     "overlap",
+    "plan",
     "shapes",
 ]

@@ -21,6 +21,7 @@ COMMANDS = {
     "chart": "accuracy against speed",
     "atlas": "stability, where methods fail",
     "compare": "rigid, compliant and modal beside each other",
+    "plan": "the cheapest model and settings within a tolerance, and how often that is right",
     "run": "an existing pymunk program, area contact attached to every space it makes",
     "reference": "the API reference, written from the docstrings",
     "compat": "pymunk's own examples and tests with area contact attached",
@@ -57,6 +58,11 @@ def parser(command: str | None) -> argparse.ArgumentParser:
 
             program.add_arguments(own)
             own.set_defaults(run=program.run)
+        elif name == command == "plan":
+            from .plan import command as planning
+
+            planning.add_arguments(own)
+            own.set_defaults(run=planning.run)
         elif name == command == "reference":
             from . import reference
 

@@ -262,6 +262,19 @@ class AreaContact:
         self._state["stiffness"], self._state["stiffness_given"] = given or 0.0, given is not None
         self._store.tables.pairs["stiffness"] = 0.0
 
+    @property
+    def penetration(self) -> float:
+        """How deep bodies may sink, as a fraction of the smallest extent, where no stiffness is given.
+
+        Set between frames: pairs that touch for the first time take it at once, the others' stiffness follows by a few
+        per cent a frame, so that the energy which they store does not jump.
+        """
+        return float(self._state["penetration"])
+
+    @penetration.setter
+    def penetration(self, value: float) -> None:
+        self._settings["penetration"] = self._state["penetration"] = positive(value, "penetration")
+
     # --- stepping ---
 
     def step(

@@ -1,0 +1,159 @@
+"""The command `plan`: a plan for a program's space or a scene of the studies; with --validate, how often plans are
+right."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import sys
+from pathlib import Path
+from typing import Any
+
+import pymunk
+
+from ..report import envelope, lines, output_arguments, write_json
+from .plan import Plan, plan
+
+TOLD = (
+    *("scene", "tolerance", "verdict", "error", "predicted_error", "decided_by", "level", "steps", "sweeps"),
+    *("penetration", "cost_ratio", "cheapest"),
+)
+"""Columns of --validate's table; the files have all."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """The arguments of `rigidarea plan`."""
+    add = parser.add_argument
+    add(
+        "what",
+        nargs="*",
+        metavar="SCENE|SCRIPT.py",
+        help="a scene of the studies, or a program: its first space is planned",
+    )
+    add(
+        "--tolerance",
+        type=float,
+        default=0.01,
+        metavar="T",
+        help="relative error allowed (default %(default)s)",
+    )
+    add(
+        "--seconds",
+        type=float,
+        metavar="S",
+        help="simulated time that is planned for (default: a scene's own, else 10)",
+    )
+    add(
+        "--validate",
+        action="store_true",
+        help="plans against a brute-force sweep: all scenes, or those named",
+    )
+    add(
+        "--variations",
+        type=int,
+        default=100,
+        metavar="N",
+        help="of --validate: seeded variations (default %(default)s)",
+    )
+    add("--fresh", action="store_true", help="of --validate: forget what an earlier run left in DIR")
+    add("--docs", type=Path, metavar="DIR", help="of --validate: renew there what docs/plan.md shows")
+    output_arguments(parser, Path("out") / "plan")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Run `rigidarea plan`."""
+    if arguments.validate:
+        return _validate(arguments)
+    if len(arguments.what) != 1:
+        raise ValueError(f"expected one scene or program (or --validate), got {len(arguments.what)}")
+    what = arguments.what[0]
+    out = (
+        sys.stderr if arguments.json == "-" else sys.stdout
+    )  # what the program prints must not mix with JSON
+    with contextlib.redirect_stdout(out):
+        made = of_script(what, arguments) if what.endswith(".py") else of_scene(what, arguments)
+    settings = {"what": what, "tolerance": made.tolerance, "seconds": made.seconds}
+    write_json(envelope("plan", settings, told(made)), arguments.json)
+    if arguments.json != "-":
+        print(made)
+    return 0
+
+
+def told(made: Plan) -> dict[str, Any]:
+    """A plan's numbers, keys in snake_case with the unit last."""
+    return {
+        "level": made.level,
+        "steps": made.steps,
+        "sweeps": made.sweeps,
+        "penetration": made.penetration,
+        "stiffness": made.stiffness,
+        "reachable": made.reachable,
+        "predicted_error": made.error,
+        "predicted_cost_s_per_s": made.cost_s_per_s,
+        "lines": [
+            {"what": line.what, "choice": line.choice, "decided_by": line.decided_by, "error": line.error}
+            for line in made.lines
+        ],
+    }
+
+
+def of_scene(name: str, arguments: argparse.Namespace) -> Plan:
+    """The plan of a scene's space. ValueError lists the known scenes."""
+    from ..study.scene import get_scene
+    from .validate import space_of
+
+    scene = get_scene(name)
+    space, _ = space_of(scene)
+    return plan(space, arguments.tolerance, arguments.seconds or scene.duration, frame=scene.frame)
+
+
+class _Found(BaseException):
+    """A program has come to its first step. Not an Exception: its own `except Exception` must not swallow it."""
+
+
+def of_script(name: str, arguments: argparse.Namespace) -> Plan:
+    """The plan of the first space that a program steps, before that step; the program ends there."""
+    from ..compat.host import Host
+
+    if not Path(name).is_file():
+        raise ValueError(f"expected a scene or a Python file, got {name!r}, which is none")
+    spaces: list[tuple[pymunk.Space, float]] = []
+    step = pymunk.Space.step
+
+    def found(space: pymunk.Space, dt: float) -> None:
+        spaces.append((space, dt))
+        raise _Found
+
+    pymunk.Space.step = found  # type: ignore[method-assign, assignment]
+    try:
+        Host("pymunk", None).run(name)
+    except _Found:
+        pass
+    finally:
+        pymunk.Space.step = step  # type: ignore[method-assign]
+    if not spaces:
+        raise ValueError(f"{name} stepped no pymunk space: there is nothing to plan")
+    space, dt = spaces[0]
+    frame = dt if dt > 0.0 else 1.0 / 60.0
+    return plan(space, arguments.tolerance, arguments.seconds, frame=frame)
+
+
+def _validate(arguments: argparse.Namespace) -> int:
+    from ..study.records import write_csv
+    from . import picture
+    from .validate import validate
+
+    report = validate(arguments.out, arguments.what, arguments.variations, fresh=arguments.fresh)
+    write_json(report, arguments.out / "plan-validate.json")
+    write_csv(arguments.out / "plan-validate.csv", report["rows"])
+    shown = picture.costs_and_errors(report["rows"], arguments.out / "plan.png")
+    if arguments.docs:
+        picture.renew(arguments.docs, report, shown)
+    write_json(report, arguments.json)
+    if arguments.json != "-":
+        print("\n".join(lines([{k: row.get(k) for k in TOLD} for row in report["rows"]])))
+        for kind, found in report["summary"].items():
+            print(f"\n{kind}")
+            print("\n".join(lines(found)))
+        print(f"\nFiles: {arguments.out}/")
+    return 0

@@ -1,0 +1,149 @@
+"""Which bodies with a material bend enough to matter, and whether statics will do: rigid, compliant or modal."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any, NamedTuple
+
+import pymunk
+import shapely
+
+from ..outline import Outline
+from . import estimates as est
+
+
+class Choice(NamedTuple):
+    """The level of one body, and the numbers that decided."""
+
+    body: pymunk.Body
+    level: str  # "rigid", "compliant", "modal"
+    modes: int  # of the modal level
+    error: float  # that the level leaves, relative
+    reason: str
+    overridden: bool
+
+
+class Shape(NamedTuple):
+    """What of an outline bears on how it bends."""
+
+    teeth: int  # pockets between the outline and its hull
+    length: float  # what bends: a tooth's pitch, or the longer extent (length)
+    height: float
+    reach: float  # radius of the hull (length)
+    bore: float  # radius of a hole, 0 without (length)
+    area: float
+
+
+def shape_of(outline: Outline) -> Shape:
+    """Read an outline: teeth, slenderness, bore."""
+    polygon = outline.polygon
+    hull = shapely.convex_hull(polygon)
+    solid = shapely.Polygon(polygon.exterior)
+    pockets = [
+        p for p in shapely.get_parts(shapely.difference(hull, solid)) if p.area > 1e-4 * hull.area / 100
+    ]
+    teeth = len(pockets) if len(pockets) > 2 else 0
+    reach = math.sqrt(hull.area / math.pi)
+    holes = [math.sqrt(shapely.Polygon(hole).area / math.pi) for hole in polygon.interiors]
+    box = shapely.oriented_envelope(polygon)
+    corners = shapely.get_coordinates(box)
+    one = math.dist(corners[0], corners[1])
+    other = math.dist(corners[1], corners[2])
+    length, height = max(one, other), min(one, other)
+    if teeth:  # a tooth stands out of the rim by about its own thickness, half a pitch
+        pitch = 2.0 * math.pi * reach / teeth
+        length = height = pitch
+    return Shape(teeth, length, height, reach, max(holes, default=0.0), float(outline.area))
+
+
+def load_on(space: pymunk.Space, body: pymunk.Body, lever: float) -> float:
+    """What presses a body (force): its brake's or motor's torque over its lever, else its weight."""
+    torque = max(
+        (
+            motor.max_force
+            for motor in space.constraints
+            if isinstance(motor, pymunk.SimpleMotor)
+            and body in (motor.a, motor.b)
+            and math.isfinite(motor.max_force)
+        ),
+        default=0.0,
+    )
+    if torque > 0.0:
+        return float(torque) / lever
+    if body.body_type != pymunk.Body.DYNAMIC:
+        return 0.0
+    return float(body.mass * space.gravity.length)
+
+
+def first_frequency(shape: Shape, material: Any) -> float:
+    """First elastic frequency (rad/time): of a ring where there is a bore, of a lump or bar else."""
+    young, density = material.young, material.density
+    if shape.bore > 0.0 and shape.teeth:
+        rim = shape.reach - shape.bore
+        return min(
+            est.ring_frequency(young, density, 0.5 * (shape.reach + shape.bore), rim),
+            est.bar_frequency(young, density, 2.0 * shape.reach, 2.0 * shape.reach),
+        )
+    if shape.teeth:
+        return est.bar_frequency(young, density, 2.0 * shape.reach, 2.0 * shape.reach)
+    return est.bar_frequency(young, density, shape.length, shape.height)
+
+
+def choose(
+    space: pymunk.Space,
+    materials: Mapping[pymunk.Body, Any],
+    tolerance: float,
+    stiffness: float | None,
+    overrides: Mapping[Any, Mapping[str, Any]],
+) -> list[Choice]:
+    """One choice for each body with a material.
+
+    Rigid where the body bends by less than the tolerance allows, as a fraction of a tooth's pitch or of its extent;
+    compliant where what statics leaves out is less than that; else modal, with the modes up to three times the
+    excitation. What excites is the mesh of the teeth at the present spin, or where there are none the contact's
+    own frequency."""
+    out = []
+    loads = {}
+    shapes: dict[pymunk.Body, Shape] = {}
+    for body in materials:
+        outlines = [Outline.from_pymunk(shape) for shape in body.shapes]
+        if not outlines:
+            continue
+        shapes[body] = shape_of(max(outlines, key=lambda outline: outline.area))
+        loads[body] = load_on(space, body, shapes[body].reach)
+    heaviest = max(loads.values(), default=0.0)
+    for body, shape in shapes.items():
+        material = materials[body]
+        load = loads[body] or heaviest  # a driver bears what the driven one is braked with
+        slender = shape.height if not shape.teeth else 0.5 * shape.length
+        height = shape.length if not shape.teeth else 0.5 * shape.length
+        if not shape.teeth:
+            slender, height = shape.length, shape.height
+        bends = est.deflection(load, material.young, material.thickness, slender, height)
+        excitation = shape.teeth * abs(body.angular_velocity)
+        if not shape.teeth and stiffness is not None and body.body_type == pymunk.Body.DYNAMIC:
+            excitation = float(est.contact_frequency(stiffness, shape.height, body.mass))
+        first = first_frequency(shape, material)
+        static = bends / shape.length
+        left = static * est.dynamic_error(excitation, first)
+        sinks = est.penetration(load, stiffness, 0.5 * shape.length) / shape.length if stiffness else 0.0
+        told = f"bends {static:.1e} of {'its pitch' if shape.teeth else 'its length'}"
+        modes = 0
+        if static <= tolerance and left <= tolerance:
+            level, error, reason = "rigid", max(static, left), f"{told} <= {tolerance:g}"
+        elif left <= tolerance:
+            level, error = "compliant", left
+            reason = f"{told} > {tolerance:g}; {excitation:.3g} rad/s against {first:.3g}: statics will do"
+        else:
+            level, error = "modal", 0.0
+            modes = est.modes_below(
+                3.0 * max(excitation, first), shape.area, material.young, material.density
+            )
+            reason = f"{excitation:.3g} rad/s against {first:.3g}: resonance, {modes} modes"
+        if sinks > max(tolerance, static):
+            reason += f"; sinks {sinks:.1e} at this k"
+            error = max(error, sinks)
+        yours = overrides.get(body, {}).get("level")
+        out.append(Choice(body, yours or level, modes, error, reason, yours is not None))
+    return out

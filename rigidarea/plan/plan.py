@@ -1,0 +1,436 @@
+"""`plan(space, tolerance)`: the cheapest settings whose predicted error is within a tolerance, and why.
+
+A plan reads a space and changes nothing; `Plan.apply` makes it so. What it weighs is in `predict`, from the closed
+forms in `estimates`; what it costs in `costs`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pymunk
+
+from ..contact import AreaContact, attach, attached
+from ..outline import positive
+from . import costs, elastic
+from . import estimates as est
+from .curves import FACETS
+from .facts import AHEAD, Facts, facts
+from .predict import Cause, Setting, causes, total
+from .survey import survey
+
+if TYPE_CHECKING:
+    from .watch import Watch
+
+LEVELS = ("rigid", "pymunk")
+ELASTIC = ("compliant", "modal")
+STEPS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128)
+"""Substeps a frame that a plan chooses among."""
+SWEEPS = (5, 10, 20, 40, 80)
+PENETRATIONS = tuple(10.0 ** (-e / 2.0) for e in range(4, 19))
+"""From 1e-2 to 1e-9 of a body's smallest extent, half a decade apart: below, an overlap has lost half its digits."""
+MARGIN = 0.8
+"""Of the tolerance: what is predicted must be within this part of it, for the estimates are not exact."""
+SLOP = 0.1
+"""Of the tolerance: the share that Chipmunk's slop may have of it."""
+SECONDS = 10.0
+"""Time that is planned for, unless it is said."""
+SETTINGS = ("level", "steps", "sweeps", "penetration", "stiffness", "sampling")
+
+
+class Line(NamedTuple):
+    """One line of a plan's table."""
+
+    what: str
+    choice: str
+    decided_by: str
+    error: float
+    cost_s: float  # a frame
+    target: Any  # what `Plan.override` takes for it; None: the whole space
+
+
+class Plan:
+    """What `plan` chose. Printed, it is a table; `apply` makes it so; `override` says otherwise.
+
+    `level`: "rigid" (area contact) or "pymunk" (Chipmunk's own response); `steps` substeps a frame of `frame` (time);
+    `sweeps` a substep; `penetration`, the fraction of a body's smallest extent that contacts may sink by, or
+    `stiffness` where it was given; `sampling`, the sagitta of each curved outline that is sampled anew (length).
+    `error` is predicted, `cost_s_per_s` too (processor time over simulated time). `reachable`: whether any setting
+    is predicted to be within the tolerance; where none is, the plan is the one with the least predicted error.
+    """
+
+    def __init__(
+        self,
+        space: pymunk.Space,
+        tolerance: float,
+        seconds: float | None,
+        frame: float,
+        materials: Mapping[pymunk.Body, Any],
+    ) -> None:
+        self.space = space
+        self.tolerance = positive(tolerance, "tolerance")
+        self.seconds = SECONDS if seconds is None else positive(seconds, "seconds")
+        self.frame = positive(frame, "frame")
+        self.materials = dict(materials)
+        self.overrides: dict[Any, dict[str, Any]] = {}
+        self.level, self.steps, self.sweeps, self.penetration = "rigid", 2, 10, 2e-4
+        self.stiffness: float | None = None
+        self.sampling: dict[pymunk.Shape, float] = {}
+        self.reachable = False
+        self.error = self.cost_s_per_s = math.inf
+        self.causes: list[Cause] = []
+        self.elastic: list[elastic.Choice] = []
+        self.again()
+
+    # --- choosing ---
+
+    def again(self, keep: bool = False) -> Plan:
+        """Look at the space as it is now and choose anew; overrides stay. Changes nothing in the space.
+
+        keep: level and outlines stay, and nothing gets coarser: what can be changed between frames without a jump.
+        """
+        given = dict(self.overrides.get(None, {}))
+        sampled = dict(self.sampling)
+        if keep:
+            given["level"] = self.level
+        before = self.steps, self.sweeps, self.penetration
+        current = attached(self.space)
+        self.stiffness = given.get("stiffness", current.stiffness if current is not None else None)
+        seen = survey(self.space, min(self.seconds, AHEAD * self.frame), self.frame)
+        found = facts(seen, self.frame, self.seconds)
+        self._asked_turns(found)
+        self._survey, self._facts = seen, found
+        touching = int((seen.gaps <= 0.0).sum())
+        moving = int(seen.moves.sum())
+        best: tuple[float, float, Setting] | None = None
+        least: tuple[float, float, Setting] | None = None
+        for setting in self._candidates(found, given):
+            error = total(found, setting)
+            cost = _cost(setting, moving, touching)
+            if error <= MARGIN * self.tolerance and (best is None or cost < best[1]):
+                best = error, cost, setting
+            if least is None or error < 0.99 * least[0] or (error <= least[0] and cost < least[1]):
+                least = error, cost, setting
+        assert least is not None
+        self.reachable = best is not None
+        self.error, cost, chosen = best or least
+        if keep:
+            pairs = zip(before, chosen[1:])
+            steps, sweeps, depth = (max(pair) if i < 2 else min(pair) for i, pair in enumerate(pairs))
+            chosen = Setting(self.level, int(steps), int(sweeps), depth)
+            self.error, cost = total(found, chosen), _cost(chosen, moving, touching)
+            self.reachable = self.error <= MARGIN * self.tolerance
+        self.level, self.steps, self.sweeps, self.penetration = chosen
+        self.causes = causes(found, chosen)
+        if keep:
+            self.sampling = sampled
+        else:
+            self._choose_sampling(found)
+        self.cost_s_per_s = cost / self.frame
+        self._frame_cost = cost
+        self.elastic = elastic.choose(
+            self.space, self.materials, self.tolerance, self.stiffness, self.overrides
+        )
+        return self
+
+    def _candidates(self, found: Facts, given: dict[str, Any]) -> list[Setting]:
+        """Settings to weigh: of each number of steps and sweeps the penetration that suits it best."""
+        steps = (given["steps"],) if "steps" in given else STEPS
+        piled = found.piled
+        tips = found.corner is not None
+        least = est.LEAST_PILE_SWEEPS if piled or tips else est.LEAST_SWEEPS
+        most = max(
+            2 * least, found.wanted / 2.0
+        )  # with more of them, more is conjugate: it helps heavy loads alone
+        sweeps = (given["sweeps"],) if "sweeps" in given else tuple(n for n in SWEEPS if least <= n <= most)
+        if not piled:
+            sweeps = sweeps[:1]
+        depths = (given["penetration"],) if "penetration" in given else PENETRATIONS
+        out = []
+        level = given.get("level")
+        if level in (None, "rigid"):
+            for n in steps:
+                # how deep does not depend on the sweeps: found once for each number of steps
+                errors = [total(found, Setting("rigid", n, sweeps[-1], p)) for p in depths]
+                enough = max(1.1 * min(errors), 0.6 * self.tolerance)
+                depth = next(p for p, error in zip(depths, errors) if error <= enough)
+                out += [Setting("rigid", n, m, depth) for m in sweeps]
+        native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
+        if native:
+            slop = given.get("penetration", SLOP * self.tolerance / found.tower)
+            out += [Setting("pymunk", n, m, slop) for n in steps for m in sweeps]
+        return out
+
+    def _asked_turns(self, found: Facts) -> None:
+        """The share that facets may have, and what has been asked for."""
+        found.facet_share = FACETS * self.tolerance
+        for facet in found.facets:
+            given = self.overrides.get(found.seen.shapes[facet.shape], {}).get("sampling")
+            if given is not None:
+                found.fixed_turns[facet.shape] = float(est.facet_turn(facet.radius, given))
+
+    def _choose_sampling(self, found: Facts) -> None:
+        """The sagitta of curved outlines that know their curve, as the chosen penetration asks for."""
+        self.sampling = {}
+        for facet in found.facets:
+            shape = found.seen.shapes[facet.shape]
+            given = self.overrides.get(shape, {}).get("sampling")
+            if given is not None:
+                self.sampling[shape] = given
+            elif facet.known:
+                turn = facet.turn_for(found.facet_share, self.penetration, found.seen.g > 0.0)
+                self.sampling[shape] = float(est.tolerance_for_turn(facet.radius, turn))
+
+    # --- overriding ---
+
+    def override(self, target: pymunk.Shape | pymunk.Body | None = None, **settings: Any) -> Plan:
+        """Say otherwise, and plan the rest around it; None takes a word back. Returns the plan.
+
+        target None: the whole space: level ("rigid", "pymunk"), steps, sweeps, penetration, stiffness. A shape:
+        sampling (sagitta, length). A body with a material: level ("rigid", "compliant", "modal").
+        Raises ValueError for what is none of these, before anything has changed.
+        """
+        checked = {}
+        for name, value in settings.items():
+            _check(target, name, value, self.materials)
+            checked[name] = value
+        kept = {**self.overrides.get(target, {}), **checked}
+        self.overrides[target] = {name: value for name, value in kept.items() if value is not None}
+        return self.again()
+
+    # --- doing ---
+
+    def apply(self) -> AreaContact | None:
+        """Make it so: attach (or detach) the space, set its iterations, slop, stiffness and outlines.
+
+        Returns the contact, None where Chipmunk's own response will do. Substeps are the plan's, not the space's:
+        step by `Plan.step`, or by `contact.step(dt, steps=plan.steps)`. What is attached already keeps its law and
+        its state where only substeps and sweeps differ; another penetration attaches anew.
+        """
+        space = self.space
+        current = attached(space)
+        space.iterations = self.sweeps
+        for shape, sagitta in self.sampling.items():
+            shape.outline = shape.outline.sample(sagitta)  # type: ignore[attr-defined]
+            if current is not None:
+                current.refresh(shape)
+        if self.level == "pymunk":
+            if current is not None:
+                current.detach()
+            smallest = float(self._survey.extent[self._survey.moves].min(initial=math.inf))
+            if math.isfinite(smallest):
+                space.collision_slop = self.penetration * smallest
+            return None
+        if current is None:
+            return attach(space, self.stiffness, penetration=self.penetration)
+        if current.stiffness != self.stiffness:
+            current.stiffness = self.stiffness
+        current.penetration = self.penetration
+        return current
+
+    def step(self, dt: float | None = None, frames: int = 1) -> None:
+        """Frames (of `frame`, unless dt says otherwise), in as many substeps as planned. After `apply`."""
+        dt = self.frame if dt is None else dt
+        contact = attached(self.space)
+        if self.level == "pymunk":
+            for _ in range(frames * self.steps):
+                self.space.step(dt / self.steps)
+        elif contact is None:
+            raise RuntimeError("expected a plan that is applied: call apply() first")
+        else:
+            contact.step(dt, frames, steps=self.steps)
+
+    def watch(self, adapt: bool = False) -> Watch:
+        """What stands beside the plan while it runs: see `Watch`."""
+        from .watch import Watch
+
+        return Watch(self, adapt)
+
+    # --- reading ---
+
+    @property
+    def lines(self) -> list[Line]:
+        """The table: the space first, then what decides, shapes that are sampled anew, elastic bodies."""
+        mine = self.overrides.get(None, {})
+        head = f"{self.level}, {self.steps} x {self.sweeps} sweeps"
+        if self.level == "pymunk":
+            head += f", slop {self.penetration:.0e}"
+        elif self.stiffness is not None:
+            head += f", k {self.stiffness:.3g}"
+        else:
+            head += f", penetration {self.penetration:.0e}"
+        if mine:
+            head += f" (yours: {', '.join(sorted(mine))})"
+        worst = (
+            self.causes[0]
+            if self.causes
+            else Cause("nothing", 0.0, None, "nothing moves, or nothing touches")
+        )
+        out = [Line("space", head, f"{worst.name}: {worst.number}", self.error, self._frame_cost, None)]
+        seen = self._survey
+        share = self._frame_cost / max(1, int(seen.moves.sum()))
+        for cause in self.causes:
+            out.append(
+                Line(
+                    self._name(cause.who),
+                    "as the space",
+                    f"{cause.name}: {cause.number}",
+                    cause.error,
+                    share,
+                    cause.who,
+                )
+            )
+        for shape, sagitta in self.sampling.items():
+            yours = " (yours)" if "sampling" in self.overrides.get(shape, {}) else ""
+            turn = est.facet_turn(abs(float(seen.radius[seen.shapes.index(shape)])) or 1.0, sagitta)
+            out.append(
+                Line(
+                    self._name(shape),
+                    f"sampled to {sagitta:.1e}{yours}",
+                    f"facets turn by {turn:.1e} rad",
+                    float("nan"),
+                    0.0,
+                    shape,
+                )
+            )
+        for choice in self.elastic:
+            yours = " (yours)" if choice.overridden else ""
+            out.append(
+                Line(
+                    self._name(choice.body),
+                    f"{choice.level}{yours}",
+                    choice.reason,
+                    choice.error,
+                    0.0,
+                    choice.body,
+                )
+            )
+        asleep = self.may_sleep
+        if asleep:
+            out.append(
+                Line(
+                    f"{len(asleep)} bodies",
+                    "may sleep",
+                    f"rest on something, slower than {self.idle_speed:.1e}",
+                    0.0,
+                    0.0,
+                    None,
+                )
+            )
+        return out
+
+    @property
+    def idle_speed(self) -> float:
+        """Speed (length/time) below which a body that sleeps half a second is off by no more than the tolerance."""
+        seen = self._survey
+        smallest = float(seen.extent[seen.moves].min(initial=math.inf))
+        return self.tolerance * smallest / max(self.seconds, 0.5) if math.isfinite(smallest) else 0.0
+
+    @property
+    def may_sleep(self) -> list[pymunk.Body]:
+        """Bodies that lie flush on something and stand still: `space.sleep_time_threshold` is yours to set."""
+        seen = self._survey
+        lies = np.zeros(len(seen.bodies), bool)
+        close = seen.gaps <= 1e-3 * np.min(seen.thickness[seen.pairs], axis=1, initial=math.inf)
+        lies[seen.owner[seen.pairs[close]].ravel()] = True
+        still = (seen.speed <= self.idle_speed) & (seen.spin * seen.reach <= self.idle_speed)
+        rolls = np.zeros(len(seen.bodies), bool)
+        rolls[seen.owner[seen.corners | (seen.radius != 0.0)]] = True
+        return [seen.bodies[i] for i in np.flatnonzero(lies & still & seen.moves & ~rolls)]
+
+    def _name(self, who: Any) -> str:
+        if who is None:
+            return "space"
+        if isinstance(who, pymunk.Shape):
+            body = who.body
+            return f"{type(who).__name__} of {self._name(body)}" if body is not None else type(who).__name__
+        if who is self.space.static_body:
+            return "static_body"
+        for i, body in enumerate(self.space.bodies):
+            if body is who:
+                return f"bodies[{i}]"
+        return "a body that is gone"
+
+    def __str__(self) -> str:
+        rows = [("", "choice", "decided by", "error", "ms a frame")]
+        for line in self.lines:
+            error = "" if math.isnan(line.error) else f"{line.error:.1e}"
+            rows.append(
+                (
+                    line.what,
+                    line.choice,
+                    line.decided_by,
+                    error,
+                    f"{1e3 * line.cost_s:.3g}" if line.cost_s else "",
+                )
+            )
+        widths = [max(len(row[i]) for row in rows) for i in range(5)]
+        table = "\n".join(
+            "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows
+        )
+        verdict = "predicted" if self.reachable else "no setting is predicted to reach it: the least is"
+        return f"plan for {self.tolerance:g} over {self.seconds:g} s: {verdict} {self.error:.1e}\n{table}"
+
+
+def _cost(setting: Setting, bodies: int, pairs: int) -> float:
+    if setting.level == "pymunk":
+        return costs.native_frame(bodies, setting.steps, setting.sweeps)
+    return costs.area_frame(bodies, pairs, setting.steps, setting.sweeps)
+
+
+def _native_will_do(found: Facts, stiffness: float | None) -> bool:
+    """Whether Chipmunk sees the same outlines: none of its shapes stands in for another."""
+    return stiffness is None and not any(hasattr(shape, "outline") for shape in found.seen.shapes)
+
+
+def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]) -> None:
+    if target is None:
+        allowed: tuple[str, ...] = SETTINGS[:-1]
+    elif isinstance(target, pymunk.Shape):
+        allowed = ("sampling",)
+    elif isinstance(target, pymunk.Body) and target in materials:
+        allowed = ("level",)
+    else:
+        raise ValueError(f"expected None, a shape, or a body with a material to override, got {target!r}")
+    if name not in allowed:
+        raise ValueError(f"expected one of {', '.join(allowed)} to override here, got {name!r}")
+    if value is None:
+        return
+    if name == "level":
+        known = LEVELS if target is None else ("rigid", *ELASTIC)
+        if value not in known:
+            raise ValueError(f"level must be one of {', '.join(known)}, got {value!r}")
+    elif name in ("steps", "sweeps"):
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
+            raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+    else:
+        positive(value, name)
+
+
+def plan(
+    space: pymunk.Space,
+    tolerance: float,
+    seconds: float | None = None,
+    *,
+    frame: float = 1 / 60,
+    materials: Mapping[pymunk.Body, Any] | None = None,
+) -> Plan:
+    """Choose the cheapest model and settings for a space whose predicted error is within `tolerance`.
+
+    tolerance: relative, of the study's errors: a velocity's over the approach speed, a path's over its length or the
+        body's size; 0.01 is one per cent.
+    seconds: simulated time over which it must hold, 10 unless said; errors that grow (bounces, curved paths) grow
+    with it. frame: length of a frame (time).
+    materials: what bodies are made of (`flexible.Material`), where it matters whether they bend.
+
+    Nothing is changed before `Plan.apply`. Raises ValueError for settings out of range.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    for body in materials or {}:
+        if not isinstance(body, pymunk.Body):
+            raise ValueError(f"materials must be given by pymunk.Body, got {type(body).__name__}")
+    return Plan(space, tolerance, seconds, frame, materials or {})

@@ -1,0 +1,233 @@
+"""What a setting's error is expected to be, from a survey and the estimates: one line a mechanism.
+
+Errors are those of the study: of a velocity over the approach speed, of a path over its length or the body's size;
+1e-2 is one per cent. Each mechanism names the body or shape that decides it and the number that does.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+from ..kernel.constants import FOLLOWED, TANGENT_STIFFNESS, WEIGHTLESS_PHASE2
+from . import estimates as est
+from .curves import LOST
+from .facts import Facts
+
+#: Error of a bounce whose contact the step follows explicitly: restitution then goes by what the depth law gives back.
+#: Measured: 0.07 to 0.1 in three scenes of the study, at every step that follows; twice that, to stay clear of it.
+FOLLOWED_BOUNCE = 0.2
+
+
+class Setting(NamedTuple):
+    """What a plan chooses for a whole space."""
+
+    level: str  # "rigid" or "pymunk"
+    steps: int
+    sweeps: int
+    penetration: float
+
+
+class Cause(NamedTuple):
+    """One mechanism's share of the error."""
+
+    name: str
+    error: float
+    who: Any  # body, shape, or None for the whole space
+    number: str  # what decided it, to be read
+
+
+# --- the errors of one setting ----------------------------------------------------------------------------------
+
+
+def causes(found: Facts, setting: Setting) -> list[Cause]:
+    """All mechanisms that bear on a space, the worst first."""
+    told = _native(found, setting) if setting.level == "pymunk" else _area(found, setting)
+    return sorted(told, key=lambda cause: -cause.error)
+
+
+def total(found: Facts, setting: Setting) -> float:
+    """The error of a setting: the largest of its mechanisms."""
+    told = _native(found, setting) if setting.level == "pymunk" else _area(found, setting)
+    return max((cause.error for cause in told), default=0.0)
+
+
+def _area(f: Facts, s: Setting) -> list[Cause]:
+    """Area contact: sinking, and what substeps and sweeps leave."""
+    p, h, g = s.penetration, f.frame / s.steps, f.seen.g
+    bodies = f.seen.bodies
+    told = []
+    if f.flat:
+        told.append(
+            Cause(
+                "sinking",
+                p * f.flat.value,
+                bodies[f.flat.body],
+                f"{f.flat.value:.3g} times {p:.0e} of its size",
+            )
+        )
+    if f.rounded:
+        error = p + math.sqrt(p) * f.rounded.value
+        told.append(Cause("sinking", error, bodies[f.rounded.body], f"a round body at {p:.0e}"))
+    if f.corner:
+        falls = 0.5 * g * h * h * f.corner.value
+        text = f"corner sqrt({p:.0e}), and g h²/2s = {falls:.1e}, as it falls over"
+        told.append(Cause("corner", est.TOPPLE * (math.sqrt(p) + falls), bodies[f.corner.body], text))
+    if f.leaning:
+        error = LEAN * math.sqrt(p) + 0.5 * g * h * h * f.leaning.value
+        told.append(Cause("corner", error, bodies[f.leaning.body], f"leans on a corner, sqrt({p:.0e})"))
+    if f.pile:
+        error = est.pile_sag(g, h, 1.0 / f.pile.value, f.wanted, s.sweeps)
+        if s.sweeps < est.LEAST_PILE_SWEEPS or s.steps < est.LEAST_PILE_STEPS:
+            error = max(error, LOST)
+        text = f"{f.wanted:.0f} sweeps carry its load, {f.tower} high" + (
+            f", {f.crossings:.0f} seams" * (f.crossings > 1.0)
+        )
+        told.append(Cause("pile", float(error), bodies[f.pile.body], text))
+    most = est.buckling_penetration(SLENDER * f.column)
+    if f.column > 2 and p > most:
+        told.append(Cause("buckling", LOST, None, f"{f.column} in a row: p <= {most:.0e}"))
+    if f.bounce and not f.elastic_bounce:
+        text = f"g h/v = {g * h * f.bounce.value:.1e} at its last bounce"
+        told.append(
+            Cause("bounce", float(est.bounce_error(g, h, 1.0 / f.bounce.value)), bodies[f.bounce.body], text)
+        )
+    if f.largest > 0.0:
+        presses = g if g > 0.0 else WEIGHTLESS_PHASE2 * p * f.largest / f.frame**2
+        phase2 = est.resting_phase2(presses, h, p, f.largest)
+        if phase2 < FOLLOWED:
+            told.append(Cause("followed", FOLLOWED_BOUNCE, None, f"(w h)² = {phase2:.2g} < {FOLLOWED}"))
+    for rate, extent, rho, who, lasts, bounces in f.curves:
+        pressed = 1.0 + rate * rho / g  # k follows the load, and here it is g + v²/rho
+        lost = est.curve_loss(math.sqrt(rate), 1.0, h, lasts, est.resting_phase2(g * pressed, h, p, extent))
+        told.append(
+            Cause(
+                "curve",
+                min(LOST, lost),
+                bodies[int(who)],
+                f"turns by {math.sqrt(rate) * h:.1e} rad a substep",
+            )
+        )
+        sinks = p * max(pressed, extent / rho) / (TANGENT_STIFFNESS if f.rough else 1.0)
+        told.append(
+            Cause(
+                "sinking",
+                min(LOST, sinks),
+                bodies[int(who)],
+                f"{p * extent / rho:.1e} of its clearance or path",
+            )
+        )
+        if (
+            bounces
+        ):  # about as fast as from its side: how deep that goes over the clearance, and where touch lies
+            deep = float(est.impact_depth(math.sqrt(2.0 * g * rho), p * extent, g, 1.0)) / rho
+            late = float(est.bounce_error(g, h, math.sqrt(2.0 * g * rho)))
+            told.append(
+                Cause("bounce", min(LOST, max(deep, late)), bodies[int(who)], f"in a clearance of {rho:.2g}")
+            )
+    depth, pair = f.overlapped
+    if depth > ALREADY:
+        shape = f.seen.shapes[f.seen.pairs[pair, 0]]
+        told.append(
+            Cause(
+                "overlapped",
+                min(LOST, 2.0 * depth),
+                shape,
+                f"starts {depth:.2g} deep, is let out at its own speed",
+            )
+        )
+    return told + _shared(f, s, h)
+
+
+#: What leans has a corner at either end, and each sinks.
+LEAN = 2.0
+#: A tower is planned as if so many times as high: buckling grows slowly near its limit.
+SLENDER = 3.0
+#: Overlap at the start, over the smaller extent, that somebody has put there.
+ALREADY = 1e-2
+
+
+def _shared(f: Facts, s: Setting, h: float) -> list[Cause]:
+    """What goes wrong alike with either response."""
+    told = []
+    if f.gap[0] < h:
+        told.append(
+            Cause(
+                "two hits at once", LOST, f.seen.bodies[f.gap[1]], f"gap/v = {f.gap[0]:.2g} s < h = {h:.2g} s"
+            )
+        )
+    if f.driven[0] > 0.0:
+        turn = f.driven[0] * h
+        error = 0.5 * turn if f.driven[1] else turn * turn
+        told.append(
+            Cause("drive", min(LOST, error), f.seen.shapes[f.driven[2]], f"turns by {turn:.1e} rad a substep")
+        )
+    if f.teeth[0] > s.steps:
+        told.append(
+            Cause(
+                "teeth", LOST, f.seen.shapes[f.teeth[1]], f"move by {f.teeth[0]:.1f} of their width a frame"
+            )
+        )
+    for facet in f.facets:
+        pressed = f.seen.g > 0.0
+        asked = f.fixed_turns.get(facet.shape)
+        turn = asked or 0.0
+        if asked is None:  # sampled as fine as its share of the tolerance asks for, or as it is
+            turn = facet.turn_for(f.facet_share, s.penetration, pressed) if facet.known else facet.turn
+        error = facet.error(s.penetration, turn, pressed)
+        told.append(Cause("facets", error, f.seen.shapes[facet.shape], f"turn by {turn:.1e} rad"))
+    return told
+
+
+def _native(f: Facts, s: Setting) -> list[Cause]:
+    """Chipmunk's own response: symplectic Euler of the first order, impulses, a slop instead of a depth."""
+    h, g = f.frame / s.steps, f.seen.g
+    bodies = f.seen.bodies
+    told = [Cause("slop", s.penetration * f.tower, None, f"{s.penetration:.0e} of the smallest extent")]
+    if g > 0.0:
+        told.append(Cause("first order", h / f.time, None, f"h/T = {h / f.time:.1e}"))
+    else:  # impulses are exact; the direction in which they act is that of the step after touch
+        late = f.seen.apart * h / float(f.seen.extent.min(initial=math.inf))
+        told.append(Cause("first order", min(LOST, late), None, f"v h/s = {late:.1e}"))
+    if f.landing:
+        error = g * h * f.landing.value
+        told.append(Cause("landing", min(LOST, error), bodies[f.landing.body], f"g h/v = {error:.1e}"))
+    if f.slowest:
+        error = min(LOST, g * h * f.slowest.value)
+        told.append(
+            Cause("first kick", error, bodies[f.slowest.body], f"g h/v = {g * h * f.slowest.value:.1e}")
+        )
+    if f.toppling > 0.0:
+        told.append(
+            Cause("corner", min(LOST, f.toppling * h), None, f"falls over at {f.toppling:.2g} a second")
+        )
+    if f.pile:
+        error = f.crossings * est.pile_sag(g, h, 1.0 / f.pile.value, NATIVE_SWEEPS * f.wanted, s.sweeps)
+        if f.tower > 2:
+            error = LOST
+        told.append(
+            Cause("pile", float(error), bodies[f.pile.body], f"{f.tower} high: impulses want many steps")
+        )
+    if f.bounce:
+        told.append(
+            Cause(
+                "bounce",
+                g * h * f.bounce.value,
+                bodies[f.bounce.body],
+                f"g h/v = {g * h * f.bounce.value:.1e}",
+            )
+        )
+    for rate, _, _, who, _, _ in f.curves:
+        told.append(
+            Cause(
+                "curve",
+                min(LOST, math.sqrt(rate) * h),
+                bodies[int(who)],
+                f"turns by {math.sqrt(rate) * h:.1e} rad a step",
+            )
+        )
+    return told + _shared(f, s, h)
+
+
+#: Sweeps of Chipmunk's for one of ours: its are not conjugate, and it has no area to spread a face's load over.
+NATIVE_SWEEPS = 4.0

@@ -1,0 +1,476 @@
+"""`rigidarea plan --validate`: plans against a brute-force sweep, over the study's scenes and over seeded
+variations of them.
+
+A plan is given a space, never a scene. Of each scene all settings of a grid are run and measured; a plan is right
+where its own run's error is within the tolerance (or where it has said that none will be, and none is), and its
+cost is compared with that of the cheapest setting of the grid that is within it. Errors are those of the study.
+Variations have no exact answer: the finest setting is their reference, and those whose finest two differ by more
+than a third of the tolerance have none.
+"""
+
+from __future__ import annotations
+
+import math
+import statistics
+import time as clock
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+from functools import cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import lib
+
+from .. import contact as area
+from ..outline import Outline
+from ..report import envelope
+from ..study.peers.base import drive, record
+from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, surface
+from ..study.records import Progress, Row, append_rows, read_rows
+from ..study.scene import (
+    ANGLE,
+    Array,
+    Body,
+    Circle,
+    Curve,
+    Polygon,
+    Rings,
+    Scene,
+    Segment,
+    Trace,
+    X,
+    Y,
+    get_scene,
+    scenes,
+)
+from ..study.sweep import key
+from ..study.timing import one_core, timed
+from .plan import Plan, plan
+
+TOLERANCES = (0.1, 0.01, 0.001)
+VARIATIONS = 100
+LONGEST = 2.0
+"""Simulated time of a variation, at most (s): further on, contacts that come and go part any two runs."""
+BUDGET_S = 0.3
+"""Processor time (s) beyond which finer settings of a grid are not tried: they would not be the cheapest of
+anything."""
+TIMED = 4
+"""So many of the settings that are within a tolerance, the cheapest by a first timing, are timed again beside the
+plan."""
+ROUNDS, PATIENCE_S = 3, 0.3
+#: The grid. Sweeps other than ten only where there is a pile; sampling only where a curve is sampled.
+STEPS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64)
+DEPTHS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
+SWEEPS, SWEEPS_PILE = (5,), (5, 10, 20)
+SAMPLINGS = (1e-3, 1e-4, 1e-5, 1e-6)
+SLOPS = (1e-2, 1e-3, 1e-4)
+NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
+FINEST = {"level": "rigid", "steps": 128, "sweeps": 20, "penetration": 1e-8}
+NEXT_TO_FINEST = {"level": "rigid", "steps": 64, "sweeps": 20, "penetration": 1e-8}
+
+
+# --- a scene as a space ---------------------------------------------------------------------------------------
+
+
+def _sampled(curve: Curve, tolerance: float) -> Outline:
+    outer, holes = curve.rings(tolerance)
+    return Outline(outer, holes)
+
+
+@cache
+def _outline(curve: Curve, tolerance: float) -> Outline:
+    """A curve's outline, which knows how to be sampled anew."""
+    return _sampled(curve, tolerance).with_curve(partial(_outline, curve))
+
+
+def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A scene as a user would build it: discs are discs, curves are sampled to a thousandth of its size."""
+    space = pymunk.Space()
+    space.gravity = scene.gravity
+    made: dict[str, pymunk.Body] = {}
+    for body in scene.bodies:
+        made[body.name] = here = make_body(body)
+        shapes: list[pymunk.Shape] = []
+        for shape in body.shapes:
+            if isinstance(shape, Circle):
+                shapes.append(pymunk.Circle(here, shape.radius, shape.center))
+            elif isinstance(shape, Polygon):
+                shapes.append(pymunk.Poly(here, shape.points, radius=shape.radius))
+            elif isinstance(shape, Segment):
+                shapes.append(pymunk.Segment(here, shape.a, shape.b, shape.radius))
+            else:
+                shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
+        for made_shape in shapes:
+            surface(made_shape, scene, body)
+        space.add(here, *shapes)
+    add_joints(scene, space, made)
+    return space, list(made.values())
+
+
+class Planned(SpaceRun):
+    """A scene run with a plan's settings, or those of the grid (`level`, `steps`, `sweeps`, `penetration`,
+    `sampling`)."""
+
+    def __init__(
+        self, scene: Scene, settings: Row, chosen: Callable[[pymunk.Space], Plan] | None = None
+    ) -> None:
+        space, bodies = space_of(scene)
+        super().__init__(scene, space, bodies, int(settings["steps"]) if chosen is None else 1)
+        self.frame, self.failed = scene.frame, False
+        if chosen is not None:
+            self.plan = chosen(space)
+            self.contact = self.plan.apply()
+            self.steps = self.plan.steps
+        else:
+            self.contact = _apply(space, settings, scene.size)
+        self.h = scene.frame / self.steps
+
+    def advance(self, frames: int) -> None:
+        """All frames in one call, in machine code."""
+        if self.contact is None:
+            drive(lib.cpSpaceStep, frames * self.steps, self.space._space, self.h)
+        elif not self.failed:
+            try:
+                self.contact.step(self.frame, frames, steps=self.steps)
+            except area.SimulationError:
+                self.failed = True
+
+    def state(self) -> Array:
+        """States (n_body, 6); no numbers once a contact has failed."""
+        states = super().state()
+        return np.full_like(states, np.nan) if self.failed else states
+
+
+def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
+    space.iterations = settings["sweeps"]
+    if settings.get("sampling"):
+        for shape in space.shapes:
+            outline = getattr(shape, "outline", None)
+            if outline is not None:
+                shape.outline = outline.sample(settings["sampling"] * size)  # type: ignore[attr-defined]
+    if settings["level"] == "pymunk":
+        space.collision_slop = settings["penetration"] * size
+        return None
+    return area.attach(space, penetration=settings["penetration"])
+
+
+def grid(scene: Scene) -> Iterator[Row]:
+    """The settings of the brute-force sweep, by growing number of substeps."""
+    curved = any(isinstance(shape, Curve) for body in scene.bodies for shape in body.shapes)
+    pile = sum(body.kind == "dynamic" for body in scene.bodies) > 1
+    sweeps = SWEEPS_PILE if pile and scene.gravity != (0.0, 0.0) else SWEEPS
+    depths = DEPTHS if scene.gravity != (0.0, 0.0) else DEPTHS[2:3]
+    samplings = SAMPLINGS if curved else (None,)
+    if not curved:
+        for n in NATIVE_STEPS:
+            for m in sweeps:
+                for slop in SLOPS:
+                    yield {"level": "pymunk", "steps": n, "sweeps": m, "penetration": slop}
+    for n in STEPS:
+        for m in sweeps if not curved else SWEEPS:
+            for p in depths:
+                for sampling in samplings:
+                    own = {"level": "rigid", "steps": n, "sweeps": m, "penetration": p}
+                    yield own if sampling is None else {**own, "sampling": sampling}
+
+
+# --- one run -----------------------------------------------------------------------------------------------------
+
+
+def errors(scene: Scene, build: Callable[[], Planned], reference: Trace | None) -> float:
+    """The error of a run, frame by frame: the scene's own, or against a reference."""
+    trace = record(build(), scene)
+    if reference is None:
+        return scene.measure(trace)
+    return departure(trace, reference, scene.size)
+
+
+def departure(trace: Trace, reference: Trace, size: float) -> float:
+    """How far a body is from where a reference has it, over the way that it goes there or the size of a body
+    (relative).
+
+    The largest over bodies and frames; a turn counts as half the size times its angle.
+    """
+    if trace.states.shape != reference.states.shape or not np.all(np.isfinite(trace.states)):
+        return math.inf
+    off = np.abs(trace.states - reference.states)
+    apart = np.maximum(np.hypot(off[:, :, X], off[:, :, Y]), 0.5 * size * off[:, :, ANGLE]).max(axis=0)
+    steps = np.diff(reference.states[:, :, : Y + 1], axis=0)
+    ways = np.hypot(steps[:, :, X], steps[:, :, Y]).sum(axis=0)
+    return float(np.max(apart / np.maximum(ways, size)))
+
+
+def seconds_of(scene: Scene, build: Callable[[], Planned]) -> float:
+    """Processor time (s) of the whole run in one call, the median of several where it is short."""
+    found = [timed(build(), scene.frames)]
+    while sum(found) < 0.02 and len(found) < 5:
+        found.append(timed(build(), scene.frames))
+    return statistics.median(found)
+
+
+# --- variations ------------------------------------------------------------------------------------------------
+
+
+def vary(scene: Scene, seed: int) -> Scene:
+    """The scene with mass, size, friction, elasticity and speed each multiplied by 0.3 to 3, evenly in the
+    logarithm."""
+    rng = np.random.default_rng(seed)
+    mass, size, friction, elasticity, speed = np.exp(rng.uniform(math.log(0.3), math.log(3.0), 5))
+
+    def shape_of(shape: Any) -> Any:
+        if isinstance(shape, Circle):
+            return Circle(shape.radius * size, (shape.center[0] * size, shape.center[1] * size))
+        if isinstance(shape, Polygon):
+            return Polygon(tuple((x * size, y * size) for x, y in shape.points), shape.radius * size)
+        if isinstance(shape, Segment):
+            a, b = ((x * size, y * size) for x, y in (shape.a, shape.b))
+            return Segment(a, b, shape.radius * size)
+
+        def rings(tolerance: float, known: Callable[[float], Rings] = shape.rings) -> Rings:
+            outer, holes = known(tolerance / size)
+            return outer * size, tuple(hole * size for hole in holes)
+
+        return Curve(rings, shape.convex)
+
+    def body_of(body: Body) -> Body:
+        return replace(
+            body,
+            shapes=tuple(shape_of(shape) for shape in body.shapes),
+            position=(body.position[0] * size, body.position[1] * size),
+            velocity=(body.velocity[0] * speed, body.velocity[1] * speed),
+            angular_velocity=body.angular_velocity * speed,
+            mass=body.mass * mass,
+            moment=body.moment * mass * size * size,
+            surface_speed=body.surface_speed * speed,
+        )
+
+    return replace(
+        scene,
+        name=f"{scene.name}-{seed}",
+        bodies=tuple(body_of(body) for body in scene.bodies),
+        friction=scene.friction * friction,
+        elasticity=min(1.0, scene.elasticity * elasticity),
+        pivots=tuple(replace(pivot, brake=pivot.brake * mass * size * size) for pivot in scene.pivots),
+        hinges=tuple(replace(hinge, point=(hinge.point[0] * size, hinge.point[1] * size)) for hinge in scene.hinges),
+        size=scene.size * size,
+        duration=min(scene.duration, LONGEST),
+    )  # fmt: skip
+
+
+def variations(count: int, names: Sequence[str] = ()) -> list[Scene]:
+    """Seeded variations, the scenes in turn."""
+    known = [scene for name, scene in scenes().items() if not scene.deforms and (not names or name in names)]
+    return [vary(known[seed % len(known)], seed) for seed in range(count)]
+
+
+# --- the study -----------------------------------------------------------------------------------------------------
+
+
+def study(
+    scene: Scene, tolerances: Sequence[float], varied: bool, store: Path | None, known: dict[str, Row]
+) -> list[Row]:
+    """One scene: the sweep (kept in `store`, so that the same command goes on), then a plan and its run a tolerance."""
+    reference = None
+    if varied:
+        reference, doubt = _reference(scene)
+    swept = []
+    done: set[tuple[Any, ...]] = set()  # finer steps of these are the cheapest of nothing
+    for settings in grid(scene):
+        branch = tuple(value for name, value in settings.items() if name != "steps")
+        if branch in done:
+            continue
+        task = {"scene": scene.name, "varied": varied, **settings}
+        row = known.get(key(task))
+        if row is None:
+            build = partial(Planned, scene, settings)
+            begin = clock.thread_time()
+            error = errors(scene, build, reference)
+            rough = clock.thread_time() - begin
+            row = {"task": task, "error": error if math.isfinite(error) else None, "rough_s": rough}
+            if store is not None:
+                append_rows(store, [row])
+        if row["rough_s"] > BUDGET_S or (row["error"] is not None and row["error"] <= min(tolerances)):
+            done.add(branch)
+        swept.append({**settings, "error": row["error"], "rough_s": row["rough_s"]})
+    rows = []
+    for tolerance in tolerances:
+        if varied and doubt > tolerance / 3.0:
+            rows.append(
+                {"scene": scene.name, "varied": True, "tolerance": tolerance, "verdict": "no reference"}
+            )
+            continue
+        rows.append(judge(scene, tolerance, swept, varied, reference))
+    return rows
+
+
+def _reference(scene: Scene) -> tuple[Trace, float]:
+    fine, coarse = ({**s, "sampling": 1e-6} for s in (FINEST, NEXT_TO_FINEST))
+    trace = record(Planned(scene, fine), scene)
+    return trace, departure(record(Planned(scene, coarse), scene), trace, scene.size)
+
+
+def judge(scene: Scene, tolerance: float, swept: Sequence[Row], varied: bool, reference: Trace | None) -> Row:
+    """A plan for one tolerance: its own run, and the cheapest settings of the sweep that are within the tolerance."""
+    chosen = partial(plan, tolerance=tolerance, seconds=scene.duration, frame=scene.frame)
+    build = partial(Planned, scene, {}, chosen)
+    run = build()
+    error = errors(scene, build, reference)
+    good = sorted(
+        (row for row in swept if row["error"] is not None and row["error"] <= tolerance), key=_likely_cost
+    )
+    cheapest = [
+        partial(Planned, scene, {k: v for k, v in row.items() if k not in ("error", "rough_s")})
+        for row in good[:TIMED]
+    ]
+    times: list[list[float]] = [[] for _ in range(1 + len(cheapest))]
+    with one_core():
+        for _ in range(ROUNDS):
+            for each, found in zip((build, *cheapest), times):
+                if sum(found) < PATIENCE_S:  # the noise of a long run is small beside it
+                    found.append(seconds_of(scene, each))
+    costs = [statistics.median(found) for found in times]
+    within = error <= tolerance
+    least = min(costs[1:], default=math.inf)
+    own = run.plan
+    if within:
+        verdict = "within"
+    elif not good:
+        verdict = "none reaches it" + ("" if own.reachable else ", and the plan says so")
+    else:
+        verdict = "outside" + ("" if own.reachable else ", and the plan says so")
+    return {
+        "scene": scene.name,
+        "varied": varied,
+        "tolerance": tolerance,
+        "verdict": verdict,
+        "error": error if math.isfinite(error) else None,
+        "predicted_error": own.error,
+        "decided_by": own.causes[0].name if own.causes else "",
+        "level": own.level,
+        "steps": own.steps,
+        "sweeps": own.sweeps,
+        "penetration": own.penetration,
+        "cost_s_per_s": costs[0] / scene.duration,
+        "predicted_cost_s_per_s": own.cost_s_per_s,
+        "cheapest_s_per_s": least / scene.duration if good else None,
+        "cheapest": _told(good, costs),
+        "cost_ratio": costs[0] / min(least, costs[0]) if within else None,
+        "reachable": bool(good) or within,
+    }
+
+
+def _likely_cost(row: Row) -> float:
+    """Order in which adequate settings are tried: steps and sweeps decide, Chipmunk's steps are shorter."""
+    per = 1.0 if row["level"] == "pymunk" else 1.5 + 0.05 * row["sweeps"]
+    return float(row["steps"] * per - math.log10(row.get("sampling") or 1e-3) * 1e-3)
+
+
+def _told(good: Sequence[Row], costs: Sequence[float]) -> str:
+    if not good:
+        return ""
+    row = good[int(np.argmin(costs[1:]))]
+    finer = f", sampling {row['sampling']:.0e}" if row.get("sampling") else ""
+    return f"{row['level']} {row['steps']} x {row['sweeps']}, {row['penetration']:.0e}{finer}"
+
+
+def summary(rows: Sequence[Row]) -> Row:
+    """What the issue asks, of one kind of scene: how often within, how much dearer, how often it said so beforehand."""
+    judged = [row for row in rows if row["verdict"] != "no reference"]
+    reachable = [row for row in judged if row["reachable"]]
+    within = [row for row in reachable if row["verdict"] == "within"]
+    ratios = [row["cost_ratio"] for row in within]
+    hopeless = [row for row in judged if not row["reachable"]]
+    return {
+        "cells": len(judged),
+        "without_reference": len(rows) - len(judged),
+        "reachable": len(reachable),
+        "within_tolerance_percent": 100.0 * len(within) / max(1, len(reachable)),
+        "cost_ratio_median": statistics.median(ratios) if ratios else math.nan,
+        "cost_ratio_worst": max(ratios, default=math.nan),
+        "unreachable": len(hopeless),
+        "unreachable_said_percent": 100.0
+        * sum("says so" in row["verdict"] for row in hopeless)
+        / max(1, len(hopeless)),
+    }
+
+
+def plan_time(bodies: int = 1000) -> Row:
+    """How long planning takes (ms) for a pile of boxes, and what a second of the planned run does (ms)."""
+    space = pymunk.Space()
+    space.gravity = 0.0, -9.81
+    ground = pymunk.Segment(space.static_body, (-100.0, 0.0), (200.0, 0.0), 0.0)
+    ground.friction = 0.6
+    space.add(ground)
+    for i in range(bodies):
+        body = pymunk.Body(1.0, 1.0 / 6.0)
+        body.position = 1.2 * (i % 50), 0.5 + i // 50
+        box = pymunk.Poly.create_box(body, (1.0, 1.0))
+        box.friction = 0.6
+        space.add(body, box)
+    plan(space, 0.01)
+    found = []
+    for _ in range(5):
+        begin = clock.thread_time()
+        made = plan(space, 0.01)
+        found.append(clock.thread_time() - begin)
+    made.apply()
+    made.step(frames=2)
+    begin = clock.thread_time()
+    made.step(frames=30)
+    second = (clock.thread_time() - begin) / 30 / made.frame
+    return {
+        "bodies": bodies,
+        "plan_ms": 1e3 * statistics.median(found),
+        "planned_run_ms_per_s": 1e3 * second,
+        "planned_s": made.seconds,
+        "share_of_run_percent": 100.0 * statistics.median(found) / (second * made.seconds),
+    }
+
+
+def validate(
+    out: Path,
+    scene_names: Sequence[str] = (),
+    count: int = VARIATIONS,
+    tolerances: Sequence[float] = TOLERANCES,
+    fresh: bool = False,
+) -> Row:
+    """The whole study; returns the object written to `out`/plan-validate.json. What was swept is kept in `out`."""
+    store = out / "plan-sweep.jsonl"
+    if fresh:
+        store.unlink(missing_ok=True)
+    known = {key(row["task"]): row for row in read_rows(store)}
+    names = list(scene_names) or [name for name, scene in scenes().items() if not scene.deforms]
+    chosen = [(get_scene(name), False) for name in names]
+    chosen += [(scene, True) for scene in variations(count, scene_names)]
+    progress = Progress("plan", len(chosen))
+    rows: list[Row] = []
+    for scene, varied in chosen:
+        rows += study(scene, tolerances, varied, store, known)
+        progress.step(scene.name)
+    settings = {"scenes": names, "variations": count, "tolerances": list(tolerances)}
+    return report(rows, settings)
+
+
+def report(rows: Sequence[Row], settings: Row) -> Row:
+    """The object of the command: what the issue asks, then every row."""
+    tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
+    told = {
+        "scenes": summary([row for row in rows if not row["varied"]]),
+        "variations": summary([row for row in rows if row["varied"]]),
+        "by_tolerance": {
+            str(t): summary([r for r in rows if not r["varied"] and r["tolerance"] == t]) for t in tolerances
+        },
+        "plan_ms_1000_bodies": plan_time(),
+    }
+    head = {
+        k: told["scenes"][k] for k in ("within_tolerance_percent", "cost_ratio_median", "cost_ratio_worst")
+    }
+    return envelope(
+        "plan",
+        settings,
+        {**head, "plan_ms_1000_bodies": told["plan_ms_1000_bodies"]["plan_ms"]},
+        rows=rows,
+        summary=told,
+    )

@@ -1,0 +1,253 @@
+"""What stands beside a plan while it runs: measured numbers next to the predicted ones, one warning each, a new
+plan."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+import pymunk
+
+from ..contact import attached
+from ..kernel.constants import HIT
+from . import estimates as est
+
+if TYPE_CHECKING:
+    from .plan import Plan
+
+#: A measured number so many times the predicted one has outgrown the plan: below, it is what estimates are off by.
+OUTGROWN = 3.0
+#: Frames after the start in which contacts find their loads: nothing is warned of.
+SETTLING = 3
+
+
+class PlanWarning(UserWarning):
+    """A scene has outgrown its plan."""
+
+
+class Indicator(NamedTuple):
+    """A measured number and the predicted one, in the same unit, and the pair or body where it is largest."""
+
+    measured: float
+    predicted: float
+    where: str
+
+    @property
+    def outgrown(self) -> bool:
+        """Whether the measured one is more than `OUTGROWN` times the predicted one."""
+        return self.measured > OUTGROWN * self.predicted
+
+
+class Watch:
+    """Looks between frames. `step` steps by the plan and looks; or step yourself and call `look` after each frame.
+
+    indicators, a dict by name, as of the last look:
+
+    - "penetration": depth over the smaller body's extent, of contacts that are not being hit;
+    - "phase": w h of the stiffest contact (radians a substep);
+    - "load": the largest force over the smaller body's weight;
+    - "speed": the fastest body, its rim included (length/time);
+    - "sweeps": what contacts still close by in a substep, over the extent: what the sweeps have left;
+    - "energy": gain since the last look over the largest so far, of a space that nothing drives (dimensionless);
+    - "strain": contact pressure over Young's modulus, of bodies with a material.
+
+    "bodies" warns where some have come or gone. An indicator that outgrows the plan warns once (`PlanWarning`),
+    naming pair and number. With adapt=True the plan is made anew there and then: substeps and sweeps may grow,
+    stiffness and outlines stay, so that no state jumps."""
+
+    def __init__(self, plan: Plan, adapt: bool = False) -> None:
+        self.plan = plan
+        self.adapt = adapt
+        self.indicators: dict[str, Indicator] = {}
+        self.warned: set[str] = set()
+        self._frames = 0
+        self._energy: float | None = None
+        self._scale = 0.0
+        self._bodies = len(plan.space.bodies), len(plan.space.shapes)
+        self._promise()
+
+    def _promise(self) -> None:
+        """What the plan's own numbers are, as of now."""
+        plan = self.plan
+        found, seen = plan._facts, plan._survey
+        moves = seen.moves
+        h = plan.frame / plan.steps
+        smallest = float(seen.extent[moves].min(initial=math.inf))
+        presses = seen.g
+        loads = found.flat.value if found.flat else 1.0
+        phase2 = est.resting_phase2(presses, h, plan.penetration, smallest) if presses > 0.0 else math.inf
+        if plan.stiffness is not None:
+            phase2 = math.inf  # the user's own: nothing is promised
+        rim = seen.speed + seen.spin * np.where(np.isfinite(seen.reach), seen.reach, 0.0)
+        falls = math.sqrt(float(np.max(seen.speed**2, initial=0.0)) + 2.0 * seen.g * _height(seen))
+        pile = max((cause.error for cause in plan.causes if cause.name == "pile"), default=0.0)
+        promised = {
+            "penetration": plan.penetration * max(1.0, loads) if plan.stiffness is None else math.inf,
+            "phase": math.sqrt(phase2 * max(1.0, loads)),
+            "load": max(1.0, loads) if presses > 0.0 else math.inf,
+            "speed": max(float(rim.max(initial=0.0)), falls),
+            "sweeps": max(pile, plan.tolerance),
+            "energy": plan.tolerance / OUTGROWN,
+            "strain": plan.tolerance,
+        }
+        if not hasattr(self, "promised"):
+            self.promised = promised
+        else:  # planned anew: for what it has grown to
+            self.promised = {name: max(value, promised[name]) for name, value in self.promised.items()}
+
+    # --- looking ---
+
+    def step(self, dt: float | None = None, frames: int = 1) -> None:
+        """Frames by the plan, a look after each."""
+        for _ in range(frames):
+            self.plan.step(dt)
+            self.look()
+
+    def look(self) -> dict[str, Indicator]:
+        """Measure, warn, and with `adapt` plan anew. Returns the indicators."""
+        self._frames += 1
+        found = len(self.plan.space.bodies), len(self.plan.space.shapes)
+        if found != self._bodies:
+            self._warn("bodies", "the space", float(found[0]), float(self._bodies[0]))
+            self._bodies = found
+            self._energy = None
+            self._frames = 0  # what has come anew has to find its loads
+            if self.adapt:
+                self._plan_anew([])
+        self.indicators = {
+            name: Indicator(value, self.promised[name], where)
+            for name, (value, where) in self._measure().items()
+        }
+        if self._frames <= SETTLING:
+            return self.indicators
+        grown = [name for name, indicator in self.indicators.items() if indicator.outgrown]
+        for name in grown:
+            indicator = self.indicators[name]
+            self._warn(name, indicator.where, indicator.measured, indicator.predicted)
+        if grown and self.adapt:
+            self._plan_anew(grown)
+        return self.indicators
+
+    def _warn(self, name: str, where: str, measured: float, predicted: float) -> None:
+        if name not in self.warned:
+            self.warned.add(name)
+            text = f"the scene has outgrown its plan: {name} of {where} is {measured:.3g}, planned for {predicted:.3g}"
+            warnings.warn(text, PlanWarning, stacklevel=4)
+
+    def _plan_anew(self, grown: list[str]) -> None:
+        plan = self.plan
+        plan.again(keep=True)
+        plan.apply()
+        self._promise()
+        for name in grown:  # what has been answered is what is now expected
+            if name in self.indicators:
+                self.promised[name] = max(self.promised[name], self.indicators[name].measured)
+
+    def _measure(self) -> dict[str, tuple[float, str]]:
+        plan = self.plan
+        space = plan.space
+        contact = attached(space)
+        found: dict[str, tuple[float, str]] = {}
+        fastest, who = 0.0, None
+        for body in space.bodies:
+            if body.body_type == pymunk.Body.STATIC:
+                continue
+            rim = abs(body.angular_velocity)
+            if rim > 0.0:
+                rim *= _reach(body)
+            speed = body.velocity.length + rim
+            if speed > fastest:
+                fastest, who = speed, body
+        found["speed"] = fastest, plan._name(who)
+        if contact is None:
+            return found
+        h = plan.frame / plan.steps
+        gravity = space.gravity.length
+        extents = dict(zip(plan._survey.shapes, plan._survey.thickness))
+        worst: dict[str, tuple[float, Any]] = {}
+
+        def most(name: str, value: float, pair: Any) -> None:
+            if value > worst.get(name, (0.0, None))[0]:
+                worst[name] = value, pair
+
+        for region in contact.regions:
+            a, b = region["body_a"], region["body_b"]
+            free = [body for body in (a, b) if body.body_type == pymunk.Body.DYNAMIC]
+            if not free or region["chord"] <= 0.0:
+                continue
+            shapes = region["shape_a"], region["shape_b"]
+            sizes = [
+                extents.get(shape) or _extent(shape) for shape, body in zip(shapes, (a, b)) if body in free
+            ]
+            extent = min(sizes)
+            hit = region["speed"] * h > HIT * extent
+            if not hit:
+                most("penetration", float(region["area"] / region["chord"]) / extent, shapes)
+                most("sweeps", max(0.0, float(region["speed"])) * h / extent, shapes)
+            lightest = min(body.mass for body in free)
+            if gravity > 0.0:
+                most("load", float(region["force"]) / (lightest * gravity), shapes)
+            inverse = sum(1.0 / body.mass for body in free)
+            most("phase", h * math.sqrt(float(region["stiffness"] * region["chord"]) * inverse), shapes)
+            for body in free:
+                material = plan.materials.get(body)
+                if material is not None:
+                    pressure = float(region["force"] / (region["chord"] * material.thickness))
+                    most("strain", pressure / material.young, shapes)
+        for name, (value, shapes) in worst.items():
+            found[name] = value, " and ".join(plan._name(shape) for shape in shapes)
+        if not _driven(space):
+            energy = contact.energy()
+            kinetic = sum(
+                body.kinetic_energy for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC
+            )
+            self._scale = max(self._scale, kinetic, _weight_energy(plan))
+            if self._energy is not None and self._scale > 0.0:
+                found["energy"] = max(0.0, energy - self._energy) / self._scale, "the space"
+            self._energy = energy
+        return found
+
+
+def _height(seen: Any) -> float:
+    """The height of what there is, along gravity: how far anything may fall (length)."""
+    if not len(seen.boxes) or seen.g == 0.0:
+        return 0.0
+    axis = 1 if abs(seen.gravity[1]) >= abs(seen.gravity[0]) else 0
+    free = seen.moves[seen.owner]
+    if not free.any():
+        return 0.0
+    low = float(seen.boxes[:, axis][free].min())
+    return float(seen.boxes[:, axis + 2][free].max()) - low
+
+
+def _weight_energy(plan: Plan) -> float:
+    """What the space's bodies would get in falling by their own extent (force length)."""
+    seen = plan._survey
+    moves = seen.moves
+    return float(
+        np.sum(seen.mass[moves] * seen.g * np.where(np.isfinite(seen.extent[moves]), seen.extent[moves], 0.0))
+    )
+
+
+def _driven(space: pymunk.Space) -> bool:
+    """Whether something may do work on the bodies: motors, springs, belts, kinematic bodies that move."""
+    if any(isinstance(joint, pymunk.SimpleMotor | pymunk.DampedSpring) for joint in space.constraints):
+        return True
+    if any(
+        body.body_type == pymunk.Body.KINEMATIC and (body.velocity.length or body.angular_velocity)
+        for body in space.bodies
+    ):
+        return True
+    return any(shape.surface_velocity != (0.0, 0.0) for shape in space.shapes)
+
+
+def _reach(body: pymunk.Body) -> float:
+    boxes = [shape.bb for shape in body.shapes]
+    return max((0.5 * math.hypot(box.right - box.left, box.top - box.bottom) for box in boxes), default=0.0)
+
+
+def _extent(shape: pymunk.Shape) -> float:
+    box = shape.bb
+    return min(box.right - box.left, box.top - box.bottom)
