@@ -24,7 +24,7 @@ TOUCH = 1e-12
 SHALLOW = 1e-3
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _square(a: float) -> tuple[float, float]:
     """a^2 = high + low, exactly (Dekker)."""
     high = a * a
@@ -313,7 +313,7 @@ def disc_convex(
     return 1
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _put_there(p: np.ndarray, bows: np.ndarray, loops: np.ndarray, place: Relative) -> None:
     """Place the first loop."""
     loop = loops[0]

@@ -325,7 +325,7 @@ def _whole_rings(
     return n, v
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _link_two(
     ring_a: np.ndarray, ring_b: np.ndarray, cross: np.ndarray, param: np.ndarray, order: np.ndarray
 ) -> bool:
