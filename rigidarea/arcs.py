@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Points = NDArray[np.float64]
 
@@ -110,6 +110,33 @@ def segments(points: Points, arcs: Points) -> tuple[Points, Points, Points]:
     return area, first, sign * ((along**2 + across**2) * sector).sum(axis=1) / 4
 
 
+def area_and_first_moment(ring: Points) -> tuple[float, Points]:
+    """Signed area and ∫ r dA (2,) of a polygon by Green's theorem (the paper's Eq. 4 and 7)."""
+    following = _following(ring)
+    cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
+    return float(cross.sum()) / 2, cross @ (ring + following) / 6
+
+
+def measures(ring: Points, arcs: Points | None) -> tuple[float, Points, float]:
+    """Signed area, ∫ r dA (2,) and ∫ |r|² dA of a ring: of its chords, and of what lies between them and arcs."""
+    area, first = area_and_first_moment(ring)
+    following = _following(ring)
+    cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
+    square = (ring * ring + ring * following + following * following).sum(axis=1)
+    polar = float((cross * square).sum()) / 12
+    if arcs is None:
+        return area, first, polar
+    areas, moments, polars = segments(ring, arcs)
+    middle = (ring + following) / 2
+    polar += float((polars + 2 * (middle * moments).sum(axis=1) + (middle**2).sum(axis=1) * areas).sum())
+    return area + float(areas.sum()), first + (moments + areas[:, None] * middle).sum(axis=0), polar
+
+
+def about(arcs: Points | None, center: ArrayLike) -> Points | None:
+    """The arcs relative to a centre (2,)."""
+    return None if arcs is None else arcs - np.array((*np.asarray(center), 0.0))
+
+
 def extremes(points: Points, arcs: Points) -> Points:
     """The ring's points and, of its arcs, those that lie furthest to -x, +x, -y, +y: their bounds are the ring's."""
     found = [points]
@@ -196,6 +223,22 @@ def bulging(points: Points, bulges: Points) -> tuple[Points, Points]:
             kept.append((p + q) / 2 + right * b / 2)
             arcs.append(arc)
     return np.array(kept), np.array(arcs)
+
+
+def grown(points: Points, radius: float) -> tuple[Points, Points]:
+    """(points, arcs) of a convex polygon, counter-clockwise, grown by `radius`; of two points: a capsule."""
+    edge = _following(points) - points
+    normal = np.column_stack((edge[:, 1], -edge[:, 0])) / np.hypot(*edge.T)[:, None]
+    ring, arcs = [], []
+    for i, center in enumerate(points):
+        before, after = normal[i - 1], normal[i]
+        turn = math.atan2(before[0] * after[1] - before[1] * after[0], float(before @ after))
+        if abs(turn) > 1e-6:  # else the corner is none: an arc of no length is worth no edge
+            ring.append(center + radius * before)
+            arcs.append((*center, radius))
+        ring.append(center + radius * after)
+        arcs.append((0.0, 0.0, 0.0))
+    return np.array(ring), np.array(arcs)
 
 
 def _following(points: Points) -> Points:

@@ -16,7 +16,6 @@ feels area, not vertices. The inertia of a disc is then right to fourth order in
 from __future__ import annotations
 
 import math
-import re
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, lru_cache, partial
 from typing import Any
@@ -28,6 +27,8 @@ from numpy.typing import ArrayLike
 
 from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
+from .gate import check_valid, checked_bulges, checked_ring, positive
+from .stand_in import stand_in
 
 DEFAULT_TOLERANCE = 5e-5
 """Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
@@ -38,11 +39,7 @@ SEGMENT_THICKNESS = 2.0
 """Depth of the solid behind a segment of radius 0 over the segment's length (dimensionless). See
 `Outline.from_pymunk`."""
 
-MAX_STAND_IN_VERTICES = 8
-"""Most vertices of a polygonal stand-in: Chipmunk's GJK walks them all."""
-
 _EPS = float(np.finfo(np.float64).eps)
-_LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 __all__ = [
     "DEFAULT_TOLERANCE",
@@ -86,9 +83,9 @@ class Outline:
     else None."""
 
     def __init__(self, points: ArrayLike, holes: Iterable[ArrayLike] = ()) -> None:
-        rings = [_ring(points, "points")]
-        rings += [_ring(hole, f"holes[{i}]") for i, hole in enumerate(holes)]
-        _check_valid(rings)
+        rings = [checked_ring(points, "points")]
+        rings += [checked_ring(hole, f"holes[{i}]") for i, hole in enumerate(holes)]
+        check_valid(rings)
         self._set(rings)
 
     @classmethod
@@ -133,9 +130,11 @@ class Outline:
         Raises ValueError as the constructor does; crossings are looked for on the boundary sampled to
         `DEFAULT_TOLERANCE`.
         """
-        found = [_bulged(ring, "ring")] + [_bulged(hole, f"holes[{i}]") for i, hole in enumerate(holes)]
+        found = [checked_bulges(ring, "ring")] + [
+            checked_bulges(hole, f"holes[{i}]") for i, hole in enumerate(holes)
+        ]
         outline = cls.from_curve([points for points, _ in found], arcs=[arcs for _, arcs in found])
-        _check_valid([_ring(ring, "ring") for ring in outline.polygon_rings])
+        check_valid([checked_ring(ring, "ring") for ring in outline.polygon_rings])
         return outline
 
     def with_curve(self, resample: Callable[..., Outline]) -> Outline:
@@ -160,8 +159,8 @@ class Outline:
         total, first = 0.0, np.zeros(2)
         oriented, bent = [], []
         for i, ring in enumerate(rings):
-            arc = _about(arcs[i], middle) if arcs else None
-            area, moment, _ = _measures(ring - middle, arc)
+            arc = curves.about(arcs[i], middle) if arcs else None
+            area, moment, _ = curves.measures(ring - middle, arc)
             if (area > 0) == (i > 0):
                 area, moment = -area, -moment
                 if arcs:
@@ -269,8 +268,8 @@ class Outline:
     def _gyration(self) -> float:
         """Squared radius of gyration about the centroid (length²)."""
         rings = self._with_arcs()
-        about = [(ring - self.centroid, _about(arc, self.centroid)) for ring, arc in rings]
-        return sum(_measures(ring, arc)[2] for ring, arc in about) / self.area
+        about = [(ring - self.centroid, curves.about(arc, self.centroid)) for ring, arc in rings]
+        return sum(curves.measures(ring, arc)[2] for ring, arc in about) / self.area
 
     def _with_arcs(self) -> list[tuple[Points, Points | None]]:
         return list(zip(self.rings, self.arcs or (None,) * len(self.rings)))
@@ -400,17 +399,7 @@ class Outline:
             x, y, radius = self.arcs[0][0].tolist()
             return pymunk.Circle, (radius, (x, y))
         outer = curves.around(self.rings[0], self.arcs[0]) if self.arcs else self.rings[0]
-        hull = shapely.get_coordinates(shapely.convex_hull(shapely.MultiPoint(outer)))[:-1]
-        if len(hull) <= MAX_STAND_IN_VERTICES:
-            return pymunk.Poly, (hull.tolist(),)
-        octagon = _bounding_octagon(hull)
-        center = shapely.get_coordinates(shapely.minimum_bounding_circle(shapely.MultiPoint(hull)).centroid)[
-            0
-        ]
-        radius = float(np.hypot(*(hull - center).T).max())
-        if _area_and_first_moment(octagon - center)[0] > 0.9 * math.pi * radius**2:
-            return pymunk.Circle, (radius, center.tolist())
-        return pymunk.Poly, (octagon.tolist(),)
+        return stand_in(outer)
 
     def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
         """A dynamic pymunk body with this outline's mass, moment and centre of gravity (no shape on it yet).
@@ -446,131 +435,6 @@ class Outline:
         return f"<Outline of {points} points{bent}, area {self.area:.6g}, bounds {self.bounds}>"
 
 
-def positive(value: float, name: str) -> float:
-    """The value as a float; ValueError with its name unless it is positive and finite."""
-    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0):
-        raise ValueError(f"{name} must be positive and finite, got {value!r}")
-    return float(value)
-
-
-# --- the gate: what comes in ---
-
-
-def _ring(points: ArrayLike, name: str) -> Points:
-    """A clean copy: float64 (n, 2), finite, n >= 3, no repeated or closing point, area not zero. Either
-    sense."""
-    try:
-        ring = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} must be numbers of shape (n, 2), got {points!r:.80}") from error
-    if ring.ndim != 2 or ring.shape[1] != 2:
-        raise ValueError(f"{name} must have shape (n, 2) with n >= 3, got shape {ring.shape}")
-    finite = np.isfinite(ring).all(axis=1)
-    if not finite.all():
-        bad = int(np.argmin(finite))
-        raise ValueError(f"{name} must be finite, got {tuple(ring[bad].tolist())} at point {bad}")
-    given = len(ring)
-    if given:
-        reach = float(np.abs(ring).max())
-        if reach > _LARGEST:
-            raise ValueError(f"{name} must have coordinates below {_LARGEST:g}, got {reach:.6g}")
-        # nearer than this two points are one, rounded differently
-        apart = np.abs(ring - np.concatenate((ring[-1:], ring[:-1]))) > 2 * _EPS * reach
-        keep = apart.any(axis=1)
-        if not keep.all():
-            ring = ring[keep]
-    if len(ring) < 3:
-        raise ValueError(f"{name} must have at least 3 distinct points, got {len(ring)} (of {given} given)")
-    middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
-    size = float(np.abs(ring - middle).max())
-    area = _area_and_first_moment(ring - middle)[0]
-    if abs(area) <= 8 * _EPS * reach * size:  # what rounded coordinates of collinear points can enclose
-        far = ring[np.argmax(((ring - ring[0]) ** 2).sum(axis=1))] - ring[0]
-        width = np.abs((ring - ring[0]) @ (-far[1], far[0])).max()
-        if width <= 8 * _EPS * reach * size:  # else a figure of eight: it crosses itself
-            raise ValueError(f"{name} must enclose an area, got {abs(area):.3g} for a size of {2 * size:.3g}")
-    return ring
-
-
-def _bulged(ring: ArrayLike, name: str) -> tuple[Points, Points]:
-    """(points (n, 2), arcs (n, 3)) of a ring of x, y, bulge; ValueError naming what is wrong with it."""
-    try:
-        rows = np.array(ring, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
-    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:
-        raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")
-    if not np.isfinite(rows).all() or np.abs(rows).max() > _LARGEST:
-        raise ValueError(f"{name} must be finite and below {_LARGEST:g}")
-    if (rows[:, :2] == np.roll(rows[:, :2], -1, axis=0)).all(axis=1).any():
-        raise ValueError(f"{name} must not repeat a point, nor its first at the end")
-    if len(rows) == 2 and rows[:, 2].sum() == 0:
-        raise ValueError(f"{name} must enclose an area, got two edges on each other")
-    return curves.bulging(rows[:, :2], rows[:, 2])
-
-
-def _check_valid(rings: list[Points]) -> None:
-    """ValueError naming the fault and the place, unless the rings bound a simple region (GEOS judges)."""
-    whole = shapely.Polygon(rings[0], rings[1:])
-    if shapely.is_valid(whole):
-        return
-    names = ["points"] + [f"holes[{i}]" for i in range(len(rings) - 1)]
-    alone = [shapely.Polygon(ring) for ring in rings]
-    for name, polygon in zip(names, alone):
-        if not shapely.is_valid(polygon):
-            raise ValueError(f"{name} must not cross or touch itself; it does {_place(polygon)}")
-    for name, hole in zip(names[1:], alone[1:]):
-        if not alone[0].covers(hole):
-            x, y = hole.difference(alone[0]).representative_point().coords[0]
-            raise ValueError(f"{name} must lie inside the outer ring; ({x:.6g}, {y:.6g}) of it is outside")
-        if hole.boundary.intersection(alone[0].boundary).length > 0:
-            raise ValueError(f"{name} must not share an edge with the outer ring; it does {_place(whole)}")
-    for i, first in enumerate(alone[1:]):
-        for j, second in enumerate(alone[i + 2 :], start=i + 1):
-            common = first.intersection(second)
-            if common.area > 0 or common.length > 0:
-                x, y = common.representative_point().coords[0]
-                raise ValueError(f"holes[{i}] and holes[{j}] must be apart; they meet at ({x:.6g}, {y:.6g})")
-    raise ValueError(f"rings must bound one connected region, got: {shapely.is_valid_reason(whole)}")
-
-
-def _place(polygon: shapely.Polygon) -> str:
-    """Where GEOS says it is: its reason reads like "Self-intersection[x y]"."""
-    reason = str(shapely.is_valid_reason(polygon))
-    found = re.search(r"\[(\S+) ([^\]\s]+)", reason)
-    return f"at ({float(found[1]):.6g}, {float(found[2]):.6g})" if found else f"({reason})"
-
-
-# --- sums over a ring, relative to a point near it ---
-
-
-def _area_and_first_moment(ring: Points) -> tuple[float, Points]:
-    """Signed area and ∫ r dA (2,) of a polygon by Green's theorem (the paper's Eq. 4 and 7)."""
-    following = np.concatenate((ring[1:], ring[:1]))
-    cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
-    return float(cross.sum()) / 2, cross @ (ring + following) / 6
-
-
-def _measures(ring: Points, arcs: Points | None) -> tuple[float, Points, float]:
-    """Signed area, ∫ r dA (2,) and ∫ |r|² dA of a ring: of its chords, and of what lies between them and arcs."""
-    area, first = _area_and_first_moment(ring)
-    following = np.concatenate((ring[1:], ring[:1]))
-    cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
-    square = (ring * ring + ring * following + following * following).sum(axis=1)
-    polar = float((cross * square).sum()) / 12
-    if arcs is None:
-        return area, first, polar
-    areas, moments, polars = curves.segments(ring, arcs)
-    middle = (ring + following) / 2
-    polar += float((polars + 2 * (middle * moments).sum(axis=1) + (middle**2).sum(axis=1) * areas).sum())
-    return area + float(areas.sum()), first + (moments + areas[:, None] * middle).sum(axis=0), polar
-
-
-def _about(arcs: Points | None, center: ArrayLike) -> Points | None:
-    """The arcs relative to a centre (2,)."""
-    return None if arcs is None else arcs - np.array((*np.asarray(center), 0.0))
-
-
 # --- pymunk's shapes ---
 
 
@@ -581,24 +445,14 @@ def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance
     if not np.isfinite(points).all():
         raise ValueError(f"coordinates of a pymunk shape must be finite, got {vertices}")
     if radius == 0 and len(vertices) > 2:
-        return Outline.from_curve([_ring(points, "vertices")])  # a hull is simple, but may be flat
+        return Outline.from_curve([checked_ring(points, "vertices")])  # a hull is simple, but may be flat
     positive(radius, "radius of a pymunk shape")
     if tolerance is not None:
         return _rounded(vertices, radius, None).sample(tolerance)
     if len(points) == 1:
         return Outline.circle(radius, vertices[0])
-    edge = np.roll(points, -1, axis=0) - points
-    normal = np.column_stack((edge[:, 1], -edge[:, 0])) / np.hypot(*edge.T)[:, None]
-    ring, arcs = [], []
-    for i, center in enumerate(points):
-        before, after = normal[i - 1], normal[i]
-        turn = math.atan2(before[0] * after[1] - before[1] * after[0], float(before @ after))
-        if abs(turn) > 1e-6:  # else the corner is none: an arc of no length is worth no edge
-            ring.append(center + radius * before)
-            arcs.append((*center, radius))
-        ring.append(center + radius * after)
-        arcs.append((0.0, 0.0, 0.0))
-    return Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)])
+    ring, arcs = curves.grown(points, radius)
+    return Outline.from_curve([ring], arcs=[arcs])
 
 
 @lru_cache(maxsize=4096)
@@ -625,24 +479,6 @@ def _half_space(
 
 def _face_each_other(one: Outline, other: Outline) -> None:
     one.mirror, other.mirror = other, one
-
-
-def _bounding_octagon(hull: Points) -> Points:
-    """The smallest of a few octagons of 45° corners around a convex hull (m, 2): 8 support lines, met two
-    by two."""
-    best, best_area = hull, math.inf
-    for turn in np.arange(8) * (math.pi / 32):
-        angle = turn + np.arange(9) * (math.pi / 4)
-        normal = np.column_stack((np.cos(angle), np.sin(angle)))
-        support = (hull @ normal.T).max(axis=0)
-        # n·x = s and n'·x = s' with n' 45° on
-        s, t, n, m = support[:-1, None], support[1:, None], normal[:-1], normal[1:]
-        corners = s * np.column_stack((m[:, 1], -m[:, 0])) - t * np.column_stack((n[:, 1], -n[:, 0]))
-        corners /= math.sin(math.pi / 4)
-        area = abs(_area_and_first_moment(corners - corners[0])[0])
-        if area < best_area:
-            best, best_area = corners, area
-    return best
 
 
 def _resample_moved(

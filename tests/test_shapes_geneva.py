@@ -12,7 +12,7 @@ ALL = range(3, 13)
 
 
 def placed(outline, x, angle):
-    turned = affinity.rotate(outline.polygon, angle, origin=(0, 0), use_radians=True)
+    turned = affinity.rotate(outline.sample(1e-6).polygon, angle, origin=(0, 0), use_radians=True)
     return affinity.translate(turned, x, 0)
 
 
@@ -33,6 +33,17 @@ def test_the_papers_table_3():
     assert drive.entry_angle == pytest.approx(math.radians(60))
     assert drive.pin.centroid == pytest.approx((0.025, 0), abs=1e-12)
     assert drive.pin.area == pytest.approx(math.pi * 0.004**2, rel=1e-12)
+
+
+def test_round_parts_are_arcs():
+    drive = geneva(bore=0.004)
+    assert [int((arc[:, 2] != 0).sum()) for arc in drive.wheel.arcs] == [4 * 6, 2]
+    assert drive.wheel.arcs[0][:, 2].min() == pytest.approx(-(drive.locking_radius + 1e-5))
+    for part in (drive.wheel, drive.pin, drive.locking_disc):
+        assert part.arcs and part.sample(1e-7).area == pytest.approx(part.area, rel=1e-12)
+    sampled = geneva(bore=0.004, tolerance=1e-6)
+    assert not sampled.wheel.arcs
+    assert sampled.wheel.area == pytest.approx(drive.wheel.area, rel=1e-12)
 
 
 @pytest.mark.parametrize("slots", ALL)

@@ -9,12 +9,12 @@ wheel's centre, so the straight walls of a slot end there, on the circle of radi
 from __future__ import annotations
 
 import math
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from ..outline import DEFAULT_TOLERANCE, Outline, arc_points, circle_points, positive
+from ..arcs import circle_ring
+from ..outline import Outline, positive
 
 
 class Geneva(NamedTuple):
@@ -76,8 +76,8 @@ def geneva(
         mouths.
     locking_clearance: radial play of the wheel's locking arcs (length), default `clearance`.
     bore: radius of the wheel's central hole (length), 0 for none.
-    tolerance: largest sagitta (length), default a tenth of the clearance, at most a thousandth of the pin's
-        radius: a 64-sided pin of 8 mm is off by the whole clearance of 0.01 mm.
+    tolerance: length; if given, the arcs are sampled to it. Keep it well below the clearance: a 64-sided pin of
+        8 mm is off by the whole 0.01 mm.
 
     Raises ValueError, with the number concerned, for parameters out of range, slots that run into each
     other, into the bore or past the wheel's centre, locking arcs that cut slots, and a driver's disc that
@@ -91,10 +91,8 @@ def geneva(
     for name, value in (("clearance", clearance), ("locking_clearance", locking_clearance), ("bore", bore)):
         if not (math.isfinite(value) and value >= 0):
             raise ValueError(f"{name} must be finite and not negative, got {value!r}")
-    if tolerance is None:
-        tolerance = DEFAULT_TOLERANCE * pin_radius
-        tolerance = min(tolerance, clearance / 10) if clearance > 0 else tolerance
-    positive(tolerance, "tolerance")
+    if tolerance is not None:
+        positive(tolerance, "tolerance")
 
     half_index = math.pi / slots
     r, mouth = c * math.sin(half_index), c * math.cos(half_index)
@@ -130,42 +128,45 @@ def geneva(
     arc_radius = locking_radius + locking_clearance
     # of the arc's ends from its middle, seen from the wheel
     gamma = _meeting_angle(wheel_radius, c, arc_radius)
-    delta = _meeting_angle(arc_radius, c, wheel_radius)  # the same, seen from the driver
-    mouth_angle = math.asin(half_width / wheel_radius)
-    parts = []
+    ring, arcs = [], []
     for k in range(slots):
         slot, lock = 2 * half_index * k, 2 * half_index * k + half_index
-        sweep = half_index - gamma - mouth_angle
         x, y = math.cos(slot), math.sin(slot)
-        parts += [
-            arc_points((0, 0), wheel_radius, slot - mouth_angle - sweep, sweep, tolerance),
-            arc_points((bottom * x, bottom * y), half_width, slot - math.pi / 2, -math.pi, tolerance),
-            arc_points((0, 0), wheel_radius, slot + mouth_angle, sweep, tolerance)[:-1],
-            arc_points(
-                (c * math.cos(lock), c * math.sin(lock)),
-                arc_radius,
-                lock + math.pi + delta,
-                -2 * delta,
-                tolerance,
-            )[:-1],
-        ]
-    holes = [circle_points((0, 0), bore, tolerance)] if bore > 0 else []
-    wheel = np.concatenate(parts)
+        straight, rim = (0.0, 0.0, 0.0), (0.0, 0.0, wheel_radius)
+        for along, across, arc in (
+            (mouth, -half_width, straight),
+            (bottom, -half_width, (bottom * x, bottom * y, -half_width)),
+            (bottom, half_width, straight),
+            (mouth, half_width, rim),
+        ):
+            ring.append((along * x - across * y, along * y + across * x))
+            arcs.append(arc)
+        for angle, arc in (
+            (lock - gamma, (c * math.cos(lock), c * math.sin(lock), -arc_radius)),
+            (lock + gamma, rim),
+        ):
+            ring.append((wheel_radius * math.cos(angle), wheel_radius * math.sin(angle)))
+            arcs.append(arc)
+    rings = [(np.array(ring), np.array(arcs))]
+    if bore > 0:
+        rings.append(circle_ring((0.0, 0.0), bore))
 
     # the disc: full outside the entry angles, relieved within
     entry = math.pi / 2 - half_index
-    disc = np.concatenate(
-        (
-            arc_points((0, 0), locking_radius, entry, 2 * (math.pi - entry), tolerance),
-            arc_points((0, 0), relief, -entry, 2 * entry, tolerance),
-        )
-    )
-    again = partial(_part, slots, center_distance, pin_diameter, clearance)
-    again = partial(again, locking_radius=locking_radius, locking_clearance=locking_clearance, bore=bore)
+    full, hollow = (0.0, 0.0, locking_radius), (0.0, 0.0, relief)
+    x, y = math.cos(entry), math.sin(entry)
+    disc = [
+        (locking_radius * x, locking_radius * y),
+        (-locking_radius, 0.0),
+        (locking_radius * x, -locking_radius * y),
+        (relief * x, -relief * y),
+        (relief * x, relief * y),
+    ]
+    disc_arcs = np.array([full, full, (0.0, 0.0, 0.0), hollow, (0.0, 0.0, 0.0)])
     return Geneva(
-        wheel=Outline(wheel, holes).with_curve(partial(again, "wheel")),
-        pin=Outline.from_curve([circle_points((r, 0), pin_radius, tolerance)], partial(again, "pin")),
-        locking_disc=Outline(disc).with_curve(partial(again, "locking_disc")),
+        wheel=_checked(rings, tolerance),
+        pin=_checked([circle_ring((r, 0.0), pin_radius)], tolerance),
+        locking_disc=_checked([(np.array(disc), disc_arcs)], tolerance),
         slots=int(slots),
         center_distance=c,
         crank_radius=r,
@@ -175,12 +176,12 @@ def geneva(
     )
 
 
-def _part(
-    slots: int, center_distance: float, pin_diameter: float, clearance: float, name: str, **settings: float
-) -> Outline:
-    """One part of a drive, made anew: `Outline.sample` calls it."""
-    part: Outline = getattr(geneva(slots, center_distance, pin_diameter, clearance, **settings), name)
-    return part
+def _checked(rings: list[tuple[np.ndarray, np.ndarray]], tolerance: float | None) -> Outline:
+    """The outline of rings of points and arcs, sampled if asked; ValueError if it crosses itself."""
+    outline = Outline.from_curve([ring for ring, _ in rings], arcs=[arcs for _, arcs in rings])
+    outer, *holes = outline.polygon_rings
+    Outline(outer, holes)
+    return outline if tolerance is None else outline.sample(tolerance)
 
 
 def _meeting_angle(own: float, distance: float, other: float) -> float:

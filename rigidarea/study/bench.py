@@ -150,11 +150,9 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
     mesh = (0.08, 0.0, math.pi + math.pi / 57 - 2.6e-3)  # flanks pressed 0.15 mm into each other
     parts = geneva.drive()
     crank = 0.3
-    driver = Outline(parts.pin.rotated(crank).rings[0])
-    wheel: Outline = parts.wheel
     turned: float = parts.wheel_angle(crank) + 5e-3
     rounded = rounded_polygon(box(1, 1).rings[0], 0.1)
-    wheel = involute_gear(0.002, 57, tolerance=7.5e-6)  # 1,254 points
+    gear = involute_gear(0.002, 57, tolerance=7.5e-6)  # 1,254 points
     return {
         "boxes": (box(1, 1), box(1, 1), (0.3, 0.98, 0.1)),
         "box, slab": (box(1, 1), box(100, 1), (0.3, -0.99, 0.0)),
@@ -164,13 +162,13 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
         "disc, box": (circle(0.5), box(1, 1), (0.3, 0.98, 0.1)),
         "disc, capsule": (circle(0.5), capsule(1, 0.25), (0.3, 0.74, 0.1)),
         "disc, 64-gon": (circle(1.0), _gon(64), (1.98, 0.05, 0.1)),
-        "disc, gear": (circle(0.02), wheel, (0.0786, 0.0, math.pi / 57)),
+        "disc, gear": (circle(0.02), gear, (0.0786, 0.0, math.pi / 57)),
         "disc in ring": (circle(0.45), ring(0.5, 0.6), (0.0, 0.0505, 0.0)),
         "capsules": (capsule(1, 0.25), capsule(1, 0.25), (0.3, 0.48, 0.1)),
         "rounded boxes": (rounded, rounded, (0.3, 0.98, 0.1)),
         "gears": (coarse[0], coarse[1], mesh),
         "fine gears": (fine[0], fine[1], mesh),
-        "geneva": (driver, wheel, (0.05, 0.0, turned)),
+        "geneva": (parts.pin.rotated(crank), parts.wheel, (0.05, 0.0, turned)),
         "1000-gons": (_gon(1000), _gon(1000), (1.99, 0.0, 0.0)),
     }
 

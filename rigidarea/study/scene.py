@@ -18,7 +18,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..outline import arc_points, circle_points
+from ..arcs import circle_ring
+from ..outline import Outline, arc_points, circle_points
 
 Array = NDArray[np.float64]
 Rings = tuple[Array, tuple[Array, ...]]
@@ -62,11 +63,13 @@ class Curve:
     """An outline that may be curved, concave, holed.
 
     `rings(tolerance)` gives (outer ring (n, 2), hole rings), none closed, chords within `tolerance` (length)
-    of the true curve. `convex` says that the outer ring is convex and there are no holes.
+    of the true curve. `convex` says that the outer ring is convex and there are no holes. `exact()` gives the same
+    with its arcs, for whoever takes them; None where there are other curves than arcs.
     """
 
     rings: Callable[[float], Rings]
     convex: bool = False
+    exact: Callable[[], Outline] | None = None
 
 
 Shape = Circle | Polygon | Segment | Curve
@@ -242,7 +245,11 @@ def full_circle(radius: float, tolerance: float) -> Array:
 def slab_with_hole(radius: float, half: float) -> Curve:
     """A square of half-side `half` with a circular hole of `radius` about the origin."""
     outer = np.array([(-half, -half), (half, -half), (half, half), (-half, half)], dtype=float)
-    return Curve(lambda tolerance: (outer, (full_circle(radius, tolerance),)))
+    straight, (hole, round_) = np.zeros((4, 3)), circle_ring((0.0, 0.0), radius)
+    return Curve(
+        lambda tolerance: (outer, (full_circle(radius, tolerance),)),
+        exact=lambda: Outline.from_curve([outer, hole], arcs=[straight, round_]),
+    )
 
 
 def rest_error(trace: Trace, names: Iterable[str], size: float, last: float = 1.0) -> float:

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import quad, solve_ivp
 from scipy.optimize import linprog
+from shapely import Polygon
 
-from rigidarea.study.scene import OMEGA, VX, VY, G, Trace, X, Y, scenes
+from rigidarea.study.scene import OMEGA, VX, VY, Curve, G, Trace, X, Y, scenes
 from rigidarea.study.scenes import (
     arch,
     bars,
@@ -48,6 +49,18 @@ def still(scene):
     start = [(*b.position, b.angle, 0.0, 0.0, 0.0) for b in scene.bodies]
     states = np.repeat(np.array(start)[None], len(times), axis=0)
     return Trace(tuple(body.name for body in scene.bodies), times, states)
+
+
+@pytest.mark.parametrize("name", list(scenes()))
+def test_exact_outlines_are_the_sampled_ones(name):
+    """What is taken with its arcs is what the peers get in chords."""
+    for body in scenes()[name].bodies:
+        for shape in body.shapes:
+            if isinstance(shape, Curve) and shape.exact is not None:
+                outer, holes = shape.rings(1e-6)
+                exact = shape.exact().sample(1e-6).polygon
+                apart = exact.symmetric_difference(Polygon(outer, holes)).area
+                assert apart < 5e-6 * exact.length
 
 
 @pytest.mark.parametrize("name", list(scenes()))

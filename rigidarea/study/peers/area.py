@@ -11,8 +11,8 @@ import shapely
 
 import rigidarea
 
-from ..scene import Array, Body, Circle, Polygon, Scene, Segment
-from .base import Run, Settings, has_curves, rigid_only
+from ..scene import Array, Body, Circle, Curve, Polygon, Scene, Segment
+from .base import Run, Settings, rigid_only
 from .chipmunk import SpaceRun, add_joints, make_body, surface
 
 STEPPING = ("steps", "tolerance", "phase")
@@ -22,7 +22,7 @@ BUILDING = ("stiffness", "sampling", "iterations")
 
 
 def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[pymunk.Shape]:
-    """Shapes for area contact: outlines as they are, concave or holed. tolerance None: the library's own."""
+    """Shapes for area contact: outlines as they are, concave or holed; arcs are arcs, unless a tolerance is given."""
     shapes: list[pymunk.Shape] = []
     for shape in body.shapes:
         if isinstance(shape, Circle):
@@ -34,6 +34,8 @@ def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[
             shapes.append(pymunk.Poly(made, shape.points, radius=shape.radius))
         elif isinstance(shape, Segment):
             shapes.append(pymunk.Segment(made, shape.a, shape.b, shape.radius))
+        elif tolerance is None and shape.exact is not None:
+            shapes.append(shape.exact().add_to(made))
         else:
             outer, holes = shape.rings(1e-3 if tolerance is None else tolerance)
             shapes.append(rigidarea.Outline(outer, holes).add_to(made))
@@ -139,15 +141,11 @@ def _faces(polygon: shapely.Polygon) -> list[tuple[float, float]]:
 
 
 def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
-    """Chord tolerances over body size: finer than the peers', whose discs are exact and whose pieces are many."""
-    values: tuple[float, ...] = ()
-    if "gears" in scene.tags:
-        values = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5)
-    elif scene.tags & {"curved", "rolling"}:
-        values = (1e-3, 1e-5) if quick else (1e-3, 1e-4, 1e-5, 1e-6)
-    elif has_curves(scene):
-        values = (1e-4,) if quick else (1e-3, 1e-4, 1e-5)
-    return [{"sampling": value} for value in values] or [{}]
+    """Chord tolerances over body size for curves that are no arcs; finer than the peers', whose pieces are many."""
+    shapes = [shape for body in scene.bodies for shape in body.shapes]
+    if all(shape.exact is not None for shape in shapes if isinstance(shape, Curve)):
+        return [{}]
+    return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
 
 
 class Area:

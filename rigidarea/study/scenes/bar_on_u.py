@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ...outline import Outline
 from ..scene import Body, Curve, Scene, block, rest_error
 
 GAP, PRONG, DEPTH = 1.0, 0.3, 1.0
@@ -22,7 +23,7 @@ def u_shape() -> Curve:
             (-inner, 0.0),
         ]
     )
-    return Curve(lambda tolerance: (points, ()))
+    return Curve(lambda tolerance: (points, ()), exact=lambda: Outline(points))
 
 
 def scene() -> Scene:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ...outline import Outline
 from ..scene import Body, Curve, G, Rings, Scene, Trace, arc, disc
 
 BOWL, RADIUS, START = 2.0, 0.2, math.radians(60)
@@ -37,7 +38,12 @@ def bowl_rings(radius: float) -> Curve:
         outer = np.array([(-wall, 0.0), (-wall, -depth), (wall, -depth), (wall, 0.0)])
         return np.vstack((outer, inner)), ()
 
-    return Curve(rings)
+    def exact() -> Outline:
+        outer, _ = rings(radius)
+        corners = [(*point, 0.0) for point in outer[:4]]
+        return Outline.from_bulges([*corners, (radius, 0.0, -1.0), (-radius, 0.0, 0.0)])
+
+    return Curve(rings, exact=exact)
 
 
 def bowl(radius: float) -> Body:

@@ -55,8 +55,8 @@ def scene() -> Scene:
     """Half a turn a second, from locked to locked; a brake keeps the wheel on the pin."""
     parts = drive()
     start = -parts.entry_angle - LEAD
-    lock = Curve(lambda tolerance: _rings(drive(tolerance).locking_disc))
-    wheel = Curve(lambda tolerance: _rings(drive(tolerance).wheel))
+    lock = Curve(lambda tolerance: _rings(drive(tolerance).locking_disc), exact=lambda: drive().locking_disc)
+    wheel = Curve(lambda tolerance: _rings(drive(tolerance).wheel), exact=lambda: drive().wheel)
     bodies = (
         Body(
             "driver",

@@ -2,6 +2,7 @@
 
 import math
 
+from ...shapes import ring as annulus
 from ..scene import Body, Circle, Curve, G, Rings, Scene, full_circle
 from .bowl_slide import path_error, period, swing
 
@@ -19,7 +20,7 @@ def ring() -> Curve:
     def rings(tolerance: float) -> Rings:
         return full_circle(OUTER, tolerance), (full_circle(INNER, tolerance),)
 
-    return Curve(rings)
+    return Curve(rings, exact=lambda: annulus(INNER, OUTER))
 
 
 def scene() -> Scene:

@@ -4,6 +4,7 @@ import math
 
 import numpy as np
 
+from ...outline import Outline
 from ..scene import OMEGA, Body, Curve, G, Rings, Scene, Trace, disc
 
 RADIUS, MU, SPIN, PHI = 0.5, 0.2, 20.0, math.radians(45)
@@ -41,7 +42,7 @@ def groove(half: float, depth: float) -> Curve:
     def rings(tolerance: float) -> Rings:
         return points, ()
 
-    return Curve(rings)
+    return Curve(rings, exact=lambda: Outline(points))
 
 
 def scene() -> Scene:

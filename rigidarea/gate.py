@@ -1,0 +1,107 @@
+"""The gate of outlines: rings as they come from users, cleaned, or a ValueError that names the fault and the place."""
+
+from __future__ import annotations
+
+import math
+import re
+
+import numpy as np
+import shapely
+from numpy.typing import ArrayLike
+
+from .arcs import Points, area_and_first_moment, bulging
+
+_EPS = float(np.finfo(np.float64).eps)
+_LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
+
+
+def positive(value: float, name: str) -> float:
+    """The value as a float; ValueError with its name unless it is positive and finite."""
+    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0):
+        raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    return float(value)
+
+
+def checked_ring(points: ArrayLike, name: str) -> Points:
+    """A clean copy: float64 (n, 2), finite, n >= 3, no repeated or closing point, area not zero. Either
+    sense."""
+    try:
+        ring = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be numbers of shape (n, 2), got {points!r:.80}") from error
+    if ring.ndim != 2 or ring.shape[1] != 2:
+        raise ValueError(f"{name} must have shape (n, 2) with n >= 3, got shape {ring.shape}")
+    finite = np.isfinite(ring).all(axis=1)
+    if not finite.all():
+        bad = int(np.argmin(finite))
+        raise ValueError(f"{name} must be finite, got {tuple(ring[bad].tolist())} at point {bad}")
+    given = len(ring)
+    if given:
+        reach = float(np.abs(ring).max())
+        if reach > _LARGEST:
+            raise ValueError(f"{name} must have coordinates below {_LARGEST:g}, got {reach:.6g}")
+        # nearer than this two points are one, rounded differently
+        apart = np.abs(ring - np.concatenate((ring[-1:], ring[:-1]))) > 2 * _EPS * reach
+        keep = apart.any(axis=1)
+        if not keep.all():
+            ring = ring[keep]
+    if len(ring) < 3:
+        raise ValueError(f"{name} must have at least 3 distinct points, got {len(ring)} (of {given} given)")
+    middle = (ring.min(axis=0) + ring.max(axis=0)) / 2
+    size = float(np.abs(ring - middle).max())
+    area = area_and_first_moment(ring - middle)[0]
+    if abs(area) <= 8 * _EPS * reach * size:  # what rounded coordinates of collinear points can enclose
+        far = ring[np.argmax(((ring - ring[0]) ** 2).sum(axis=1))] - ring[0]
+        width = np.abs((ring - ring[0]) @ (-far[1], far[0])).max()
+        if width <= 8 * _EPS * reach * size:  # else a figure of eight: it crosses itself
+            raise ValueError(f"{name} must enclose an area, got {abs(area):.3g} for a size of {2 * size:.3g}")
+    return ring
+
+
+def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
+    """(points (n, 2), arcs (n, 3)) of a ring of x, y, bulge; ValueError naming what is wrong with it."""
+    try:
+        rows = np.array(ring, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
+    if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:
+        raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")
+    if not np.isfinite(rows).all() or np.abs(rows).max() > _LARGEST:
+        raise ValueError(f"{name} must be finite and below {_LARGEST:g}")
+    if (rows[:, :2] == np.roll(rows[:, :2], -1, axis=0)).all(axis=1).any():
+        raise ValueError(f"{name} must not repeat a point, nor its first at the end")
+    if len(rows) == 2 and rows[:, 2].sum() == 0:
+        raise ValueError(f"{name} must enclose an area, got two edges on each other")
+    return bulging(rows[:, :2], rows[:, 2])
+
+
+def check_valid(rings: list[Points]) -> None:
+    """ValueError naming the fault and the place, unless the rings bound a simple region (GEOS judges)."""
+    whole = shapely.Polygon(rings[0], rings[1:])
+    if shapely.is_valid(whole):
+        return
+    names = ["points"] + [f"holes[{i}]" for i in range(len(rings) - 1)]
+    alone = [shapely.Polygon(ring) for ring in rings]
+    for name, polygon in zip(names, alone):
+        if not shapely.is_valid(polygon):
+            raise ValueError(f"{name} must not cross or touch itself; it does {_place(polygon)}")
+    for name, hole in zip(names[1:], alone[1:]):
+        if not alone[0].covers(hole):
+            x, y = hole.difference(alone[0]).representative_point().coords[0]
+            raise ValueError(f"{name} must lie inside the outer ring; ({x:.6g}, {y:.6g}) of it is outside")
+        if hole.boundary.intersection(alone[0].boundary).length > 0:
+            raise ValueError(f"{name} must not share an edge with the outer ring; it does {_place(whole)}")
+    for i, first in enumerate(alone[1:]):
+        for j, second in enumerate(alone[i + 2 :], start=i + 1):
+            common = first.intersection(second)
+            if common.area > 0 or common.length > 0:
+                x, y = common.representative_point().coords[0]
+                raise ValueError(f"holes[{i}] and holes[{j}] must be apart; they meet at ({x:.6g}, {y:.6g})")
+    raise ValueError(f"rings must bound one connected region, got: {shapely.is_valid_reason(whole)}")
+
+
+def _place(polygon: shapely.Polygon) -> str:
+    """Where GEOS says it is: its reason reads like "Self-intersection[x y]"."""
+    reason = str(shapely.is_valid_reason(polygon))
+    found = re.search(r"\[(\S+) ([^\]\s]+)", reason)
+    return f"at ({float(found[1]):.6g}, {float(found[2]):.6g})" if found else f"({reason})"
