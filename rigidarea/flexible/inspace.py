@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import work_at
 from rigidarea.flexible.jit import inner
+from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
 from rigidarea.kernel.jit import kernel
 from rigidarea.kernel.memory import array_at, caller, record
@@ -159,6 +160,15 @@ def _place_frame(state, members, b, h):  # type: ignore[no-untyped-def]
 
 
 @inner
+def _rate(rate, a):  # type: ignore[no-untyped-def]
+    """The velocity of a part's frame."""
+    c, s = np.cos(a.angle), np.sin(a.angle)
+    rate[0] = a.vx - a.w * (s * a.off_x + c * a.off_y)
+    rate[1] = a.vy + a.w * (c * a.off_x - s * a.off_y)
+    rate[2] = a.w
+
+
+@inner
 def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-untyped-def]
     """All joints' impulses of one step, on the members' velocities; ``factor``: this step over the last.
 
@@ -236,6 +246,7 @@ def advance(  # type: ignore[no-untyped-def]
             a.angle += h * a.w
         for b in range(count):
             _place_frame(state, members, b, h)
+            _rate(buf.rate[b], members[b])
             w, mu, angle = work_at(bodies, b), state.mu[b], members[b].angle
             c, sn = np.cos(angle), np.sin(angle)
             w.hub_load[0], w.hub_load[1], w.hub_load[2] = (
@@ -246,6 +257,7 @@ def advance(  # type: ignore[no-untyped-def]
         code = step(bodies, sy, state, pairs, st, s, found, buf, 0.0, h)
         if code < 0:
             return code, stiffest
+        keep_springs(buf, 0, 1)
         stiffest = max(stiffest, _stiffest(members, pairs, st, buf))
         for m in range(len(members)):
             a = members[m]
