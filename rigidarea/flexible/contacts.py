@@ -10,7 +10,7 @@ from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 #: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
 #: differ, and have no small ratio, so that no edge of a drawing is along it.
