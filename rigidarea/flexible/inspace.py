@@ -18,7 +18,7 @@ from rigidarea.flexible.bodies import work_at
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry
 from rigidarea.kernel.memory import array_at, caller, record
 
 Ints = NDArray[np.int64]
@@ -77,7 +77,7 @@ def _floats(address, n):  # type: ignore[no-untyped-def]
     return array_at(np.uint64(address), (n,), np.float64)
 
 
-@kernel
+@entry
 def gather(members: Any, offsets: Ints, gx: float, gy: float, damping: float, dt: float) -> None:
     """Where Chipmunk has the members, how they move, and what acts on them for a frame of dt."""
     for m in range(len(members)):
@@ -128,7 +128,7 @@ def _write_motion(a, offsets):  # type: ignore[no-untyped-def]
     _floats(a.address + np.uint64(offsets[SPIN]), 1)[0] = a.w
 
 
-@kernel
+@entry
 def give_back(members: Any, start: Any, offsets: Ints, used: bool) -> None:
     """Chipmunk's bodies where the members are, their forces ``used`` up; those that are led as in ``start``."""
     for m in range(len(members)):
@@ -227,7 +227,7 @@ def _stiffest(members, pairs, st, buf):  # type: ignore[no-untyped-def]
     return most
 
 
-@kernel
+@entry
 def advance(  # type: ignore[no-untyped-def]
     bodies, sy, state, pairs, st, s, found, buf, members, links, offsets, h, steps, iterations, before
 ):
