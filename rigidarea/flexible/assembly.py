@@ -15,9 +15,9 @@ and its joints answer, within what is left of their ``max_force``. So every impu
 one time, and momentum is kept to rounding.
 
 What follows from it: rigid bodies feel a part at the end of the frame; a blow on a part reaches its mate in the next
-frame, as a change of velocity. Contacts between parts have neither friction nor damping, and no arbiter: no
-callbacks. A joint's callbacks see the impulse that it has in the second half of the frame, its ``impulse`` afterwards
-is that of both. Parts do not fall asleep.
+frame, as a change of velocity. Contacts between parts have the friction and elasticity of their shapes (``resist``),
+but no arbiter: no callbacks. A joint's callbacks see the impulse that it has in the second half of the frame, its
+``impulse`` afterwards is that of both. Parts do not fall asleep.
 """
 
 from __future__ import annotations
@@ -32,16 +32,17 @@ from typing import Any
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
-from pymunk._chipmunk_cffi import ffi, lib
+from pymunk._chipmunk_cffi import lib
 
-from rigidarea.chipmunk import address_of, kinds_of_joints, layout
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.boundary import build
 from rigidarea.flexible.element import Material
-from rigidarea.flexible.inspace import LINK, MEMBER, OFFSETS, advance, gather, give_back
+from rigidarea.flexible.inspace import advance, gather, give_back
 from rigidarea.flexible.integrate import Body, Simulation
 from rigidarea.flexible.recover import State
 from rigidarea.flexible.scratch import FULL
+from rigidarea.flexible.tied import Tied
+from rigidarea.kernel.impact import damping_ratio
 from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
@@ -50,12 +51,8 @@ RESOLVED = 0.3  # step times the highest angular frequency of a contact: symplec
 # its frequency then off by (0.3)²/24 = 0.4 %
 TRAVEL = 0.25  # of the mesh size: how far a boundary moves in a step, before a contact is seen
 COARSER = 2.0  # how fast steps grow again where contacts have gone or become softer, a factor a frame
+SPRINGS_KEPT = 256  # contact regions whose friction a frame that is run again remembers
 TRIES = 8  # a frame whose steps turn out too long is run again with shorter ones, so many times at the most
-_SPRINGS = pymunk.DampedSpring, pymunk.DampedRotarySpring  # joints whose force is not bounded by max_force
-
-
-def _stay(body: pymunk.Body, *_: Any) -> None:
-    """Position and velocity function of a body that the assembly moves."""
 
 
 class Assembly:
@@ -202,13 +199,9 @@ class Assembly:
             lib.cpConstraintSetCollideBodies(joint, False)
             lib.cpSpaceAddConstraint(space._space, joint)
             self._apart.append(joint)
-        self._led: list[pymunk.Body] = []
-        self._tied: tuple[Any, ...] | None = None
-        self._find_members(space)
+        self._tied = Tied(self._parts, tuple(space.constraints))
         if self._memory is not None:
-            for link, (warm, rest) in zip(self._table, self._memory[3], strict=True):
-                link["warm_x"], link["warm_y"] = warm
-                self._warm[int(link["address"])], self._rest[int(link["address"])] = warm, rest
+            self._tied.recall(self._memory[3])
             self._memory = None
 
     def leave(self, space: pymunk.Space) -> None:
@@ -218,7 +211,7 @@ class Assembly:
         for joint in self._apart:
             lib.cpSpaceRemoveConstraint(space._space, joint)
             lib.cpConstraintFree(joint)
-        self._release()
+        self._tied.release()
         self._space = None
 
     def _start(self, space: pymunk.Space) -> None:
@@ -234,77 +227,10 @@ class Assembly:
             bodies, list(combinations(range(len(bodies)), 2)), self._k, self._q, margin=0.01 * size
         )
         self._step, self._before = math.inf, 0.0
-        #: By the joint's address: impulse of the last step, and in the last second half of a frame.
-        self._warm: dict[int, tuple[float, float]] = {}
-        self._rest: dict[int, Sequence[float]] = {}
         if self._memory is not None:
             self._step, self._before, arrays, _ = self._memory
             for array, old in zip(self._kept(), arrays, strict=True):
                 array[:] = old
-
-    # --- members: the parts, and what joints tie to them ---
-
-    def _release(self) -> None:
-        for body in self._led:
-            body.position_func, body.velocity_func = pymunk.Body.update_position, pymunk.Body.update_velocity
-        self._led = []
-
-    def _find_members(self, space: pymunk.Space) -> None:
-        """Parts first; then all that joints tie to them, through bodies that forces move."""
-        for n, (shape, _) in enumerate(self._parts):
-            if shape.space is not space:
-                raise RuntimeError(f"part {n} has left the space: expected it there until detach()")
-        constraints = tuple(space.constraints)
-        if constraints == self._tied:
-            return
-        self._tied = constraints
-        bodies: list[pymunk.Body] = [shape.body for shape, _ in self._parts if shape.body is not None]
-        joints: list[pymunk.Constraint] = []
-        places = {id(b): i for i, b in enumerate(bodies)}
-        moved = set(places)
-        grown = True
-        while grown:
-            grown = False
-            for joint in constraints:
-                if joint in joints or not (id(joint.a) in moved or id(joint.b) in moved):
-                    continue
-                joints.append(joint)
-                grown = True
-                for body in (joint.a, joint.b):
-                    if id(body) not in places:
-                        places[id(body)] = len(bodies)
-                        bodies.append(body)
-                        if body.body_type == pymunk.Body.DYNAMIC:
-                            moved.add(id(body))
-        self._release()
-        self._links = joints
-        self._limits = [joint.max_force for joint in joints]
-        self._members = np.zeros(len(bodies), MEMBER)
-        for n, body in enumerate(bodies):
-            row: Any = self._members[n]
-            row["address"], row["led"] = address_of(body._body), id(body) not in moved
-            if id(body) in moved:
-                self._led.append(body)
-                body.position_func, body.velocity_func = _stay, _stay
-        for row, (_, made) in zip(self._members, self._parts, strict=False):
-            row["off_x"], row["off_y"] = (
-                made.position
-            )  # from the body's origin: its centre of gravity is 0 so far
-            row["hub_x"], row["hub_y"] = np.add(made.position, made.hub)
-            row["hub"] = made.shape is not None and made.shape.hub is not None
-        kinds = kinds_of_joints()
-        n = len(kinds) // 3
-        self._table = np.zeros(len(joints), LINK)
-        for row, joint in zip(self._table, joints, strict=True):
-            row["address"] = address_of(joint._constraint)
-            row["a"], row["b"] = places[id(joint.a)], places[id(joint.b)]
-            kind = int(ffi.cast("uintptr_t *", joint._constraint)[0])
-            row["at"] = -1
-            if kind in kinds[:n]:
-                row["at"], row["count"] = kinds[n + kinds.index(kind)], kinds[2 * n + kinds.index(kind)]
-            row["warm_x"], row["warm_y"] = self._warm.get(int(row["address"]), (0.0, 0.0))
-        at = layout()
-        self._offsets = np.array([at[name] for name in OFFSETS], np.int64)
 
     # --- a frame ---
 
@@ -317,53 +243,68 @@ class Assembly:
         space = self._space
         assert space is not None
         if dt > 0:
-            self._find_members(space)
+            for n, (shape, _) in enumerate(self._parts):
+                if shape.space is not space:
+                    raise RuntimeError(f"part {n} has left the space: expected it there until detach()")
+            constraints = tuple(space.constraints)
+            if constraints != self._tied.constraints:
+                self._tied.release()
+                self._tied = Tied(self._parts, constraints, self._tied)
             self._move(space, dt)
-        self._with_what_is_left(dt, rest, idle)
+        self._tied.rest_of_frame(dt, rest, idle)
 
     def _move(self, space: pymunk.Space, dt: float) -> None:
-        sim = self.simulation
+        sim, tied = self.simulation, self._tied
         assert sim is not None
-        gather(self._members, self._offsets, *space.gravity, space.damping, dt)
-        start, links = self._members.copy(), self._table.copy()
+        gather(tied.members, tied.offsets, *space.gravity, space.damping, dt)
+        self._read_shapes(sim)
+        start, links = tied.members.copy(), tied.links.copy()
         kept = [a.copy() for a in self._kept()]
         steps = max(1, math.ceil(dt / min(self._step, self._longest or math.inf, self._travel(start)) - 1e-9))
         for _ in range(TRIES):
             links["x"] = links["y"] = 0.0
-            self._table[:] = links
+            tied.links[:] = links
             code, stiffest = advance(
                 sim._table, sim.system, sim.state, sim.pairs, sim.settings, sim.scratch, sim._searches, sim._buffers,
-                self._members, self._table, self._offsets, dt / steps, steps, space.iterations,
+                tied.members, tied.links, tied.offsets, dt / steps, steps, space.iterations,
                 self._before or dt / steps,
             )  # fmt: skip
             fits = stiffest * (dt / steps) ** 2 <= (2 * RESOLVED) ** 2
-            if code >= 0 and fits and np.isfinite(self._members["vx"]).all():
+            if code >= 0 and fits and np.isfinite(tied.members["vx"]).all():
                 break
             if code == FULL:
                 sim._make_room(2 * len(sim.scratch.load.force), sim._buffers)
             else:
                 steps = max(2 * steps, math.ceil(math.sqrt(stiffest) * dt / RESOLVED))
                 self._step = dt / steps
-            self._members[:] = start
+            tied.members[:] = start
             for array, old in zip(self._kept(), kept, strict=True):
                 array[:] = old
         else:
-            self._table[:] = links
-            give_back(start, start, self._offsets, False)
+            tied.links[:] = links
+            give_back(start, start, tied.offsets, False)
             told = f"a frame of {dt:g} of the flexible parts (h = {dt / steps:g}, {sim._trouble(code)}"
             raise RuntimeError(told)
         self._before, self.steps = dt / steps, steps
         fastest = RESOLVED / math.sqrt(stiffest) if stiffest > 0 else math.inf
         self._step = min(fastest, COARSER * self._step)
-        for link in self._table:
-            self._warm[int(link["address"])] = float(link["warm_x"]), float(link["warm_y"])
-        give_back(self._members, start, self._offsets, True)
+        give_back(tied.members, start, tied.offsets, True)
+
+    def _read_shapes(self, sim: Simulation) -> None:
+        """Inertia, and each pair's friction and elasticity: the products of its shapes', as pymunk has them."""
+        for n, a in enumerate(self._tied.members[: len(self._parts)]):
+            sim.system.inverse[n] = a["inverse_mass"], a["inverse_moment"]
+        for p, (i, j) in enumerate(sim.pairs.tolist()):
+            one, two = self._parts[i][0], self._parts[j][0]
+            sim.system.friction[p] = one.friction * two.friction
+            sim.system.ratio[p] = damping_ratio(one.elasticity * two.elasticity)
 
     def _kept(self) -> list[Any]:
-        """What a frame starts from, beside the members: modes, and the loads of the step before."""
+        """What a frame starts from, beside the members: modes, loads and friction's springs of the step before."""
         sim = self.simulation
         assert sim is not None
-        return [*sim.state, *(a for w in sim.works for a in (w.node_load, w.node_flag, w.hub_load, w.loaded))]
+        loads = [a for w in sim.works for a in (w.node_load, w.node_flag, w.hub_load, w.loaded)]
+        return [*sim.state, *loads, sim._buffers.held, sim._buffers.springs[1, :SPRINGS_KEPT]]
 
     def _travel(self, members: Any) -> float:
         """Time in which no part's boundary moves by more than TRAVEL of the mesh size."""
@@ -375,57 +316,12 @@ class Assembly:
         fastest = float(speed.max())
         return TRAVEL * size / fastest if fastest > 0 else math.inf
 
-    def _with_what_is_left(self, dt: float, rest: Callable[[], None], idle: int) -> None:
-        """The space's frame, in which joints of members have what is left of their force, and springs none."""
-        classes: list[tuple[Any, int]] = []
-        limited: list[tuple[pymunk.Constraint, float]] = []
-        for joint, link in zip(self._links, self._table, strict=True):
-            own = ffi.cast("uintptr_t *", joint._constraint)
-            if dt > 0 and (isinstance(joint, _SPRINGS) or link["at"] < 0):
-                classes.append((own, int(own[0])))
-                own[0] = idle
-                continue
-            if dt > 0 and math.isfinite(joint.max_force):
-                limited.append((joint, joint.max_force))
-                left = joint.max_force - math.hypot(link["x"], link["y"]) / dt
-                joint.max_force = max(0.0, left)
-            self._set_impulse(link, self._rest.get(int(link["address"]), [0.0, 0.0]))
-        try:
-            rest()
-        finally:
-            for own, kind in classes:
-                own[0] = kind
-            for joint, force in limited:
-                joint.max_force = force
-        for link in self._table:
-            if link["count"] > 0:
-                spring = any(int(link["address"]) == address_of(own) for own, _ in classes)
-                more = [0.0, 0.0] if spring else self._impulse(link)
-                self._rest[int(link["address"])] = more
-                self._set_impulse(link, [link["x"] + more[0], link["y"] + more[1]])
-
-    @staticmethod
-    def _impulse(link: Any) -> list[float]:
-        memory = ffi.cast("double *", int(link["address"]) + int(link["at"]))
-        return [float(memory[0]), float(memory[int(link["count"]) - 1]) if link["count"] > 1 else 0.0]
-
-    @staticmethod
-    def _set_impulse(link: Any, value: Sequence[float]) -> None:
-        if link["count"] > 0:
-            memory = ffi.cast("double *", int(link["address"]) + int(link["at"]))
-            memory[0] = value[0]
-            if link["count"] > 1:
-                memory[1] = value[1]
-
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
         names = ("_k", "_q", "_longest", "_cache", "_parts", "_size", "steps")
         memory = None
         if self._space is not None:
-            none = (0.0, 0.0)
-            at = [int(link["address"]) for link in self._table]
-            joints = [(self._warm.get(a, none), tuple(self._rest.get(a, none))) for a in at]
-            memory = self._step, self._before, [a.copy() for a in self._kept()], joints
+            memory = self._step, self._before, [a.copy() for a in self._kept()], self._tied.memory()
         kept = {name: self.__dict__[name] for name in names}
         return kept | {"_space": None, "simulation": None, "_memory": memory}

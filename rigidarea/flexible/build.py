@@ -24,6 +24,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -58,10 +59,17 @@ class Mechanism:
         reach: float = 0.0,
         cache: Path | str | None = None,
     ) -> None:
-        self._settings = {"k": k, "gravity": gravity, "rho": rho, "contact": contact, "reach": reach}
+        self._settings: dict[str, Any] = {
+            "k": k,
+            "gravity": gravity,
+            "rho": rho,
+            "contact": contact,
+            "reach": reach,
+        }
         self._cache = cache
         self._bodies: list[Body] = []
         self._pairs: list[tuple[int, int]] = []
+        self._held: list[tuple[float, float]] = []  # friction and restitution of each
         self.simulation: Simulation | None = None
         """The simulation of the last ``run``; None before."""
 
@@ -154,16 +162,25 @@ class Mechanism:
         b = self._own(body)
         b.torque, b.damper = torque, damper
 
-    def contact(self, a: int, b: int) -> None:
-        """Lets two bodies touch; forces are recorded on ``b``."""
+    def contact(self, a: int, b: int, friction: float = 0.0, restitution: float = 1.0) -> None:
+        """Lets two bodies touch; forces are recorded on ``b``. The laws of friction and damping: ``resist``."""
         self._own(a), self._own(b)
         self._pairs.append((a, b))
+        self._held.append((friction, restitution))
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
         """Runs the mechanism from its start; see ``Simulation.run``. Raises ValueError where parts do not fit."""
         size = [float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in self._bodies if not b.fixed]
         margin = MARGIN * min(size, default=1.0)
-        self.simulation = Simulation(self._bodies, self._pairs, margin=margin, **self._settings)  # type: ignore[arg-type]
+        friction, restitution = ([h[i] for h in self._held] for i in range(2))
+        self.simulation = Simulation(
+            self._bodies,
+            self._pairs,
+            margin=margin,
+            friction=friction,
+            restitution=restitution,
+            **self._settings,
+        )  # type: ignore[arg-type]
         return self.simulation.run(duration, h, every, shapes)
 
     def state(self, record: Record, row: int, body: int) -> State:

@@ -52,6 +52,16 @@ def check_pairs(pairs: Sequence[tuple[int, int]], bodies: int) -> NDArray[np.int
     return np.ascontiguousarray(given, np.int64)
 
 
+def of_pairs(name: str, values: float | Sequence[float], pairs: int) -> NDArray[np.float64]:
+    """One value a pair (p,) of one for all or one each: finite and not negative."""
+    given = np.array(values, float)
+    if given.shape not in ((), (pairs,)):
+        raise ValueError(f"{name} must be a number or {pairs}, one a pair, got shape {given.shape}")
+    if not (np.isfinite(given).all() and (given >= 0).all()):
+        raise ValueError(f"{name} must be finite and not negative, got {values!r}")
+    return np.ascontiguousarray(np.broadcast_to(given, (pairs,)).copy())
+
+
 def check_bodies(bodies: Sequence[Any], rho: float) -> None:
     """Each ``integrate.Body``; ``rho`` of the scheme, which constraints keep below 1."""
     if len(bodies) == 0:

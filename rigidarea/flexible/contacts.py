@@ -8,8 +8,13 @@ from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import clear_loads, to_nodes
+from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
 from rigidarea.kernel.jit import entry as kernel
+
+#: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
+#: differ, and have no small ratio, so that no edge of a drawing is along it.
+ASIDE = (1e-12, 0.618e-12)
 
 
 @inner(forceinline=True)
@@ -87,6 +92,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
     buf.load[:] = 0.0
     buf.tangent[:] = 0.0
     buf.force[:] = 0.0
+    buf.held[0] = 0
     s.load.made[0] = 0
     _bend(bodies, sy, buf, q)
     for b in range(len(sy.mass)):
@@ -124,10 +130,19 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
         first = s.load.made[0]
+        # a little beside its place: boundaries that share lines or points, to the last bit, then cross in pairs
+        size = min(sy.size[ia], sy.size[ib])
+        moved_b = buf.moved
+        moved_b[0], moved_b[1], moved_b[2], moved_b[3] = (
+            pb[0] + ASIDE[0] * size,
+            pb[1] + ASIDE[1] * size,
+            pb[2],
+            pb[3],
+        )
         if st.sts:
-            n = segment.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = segment.contact(a, wa, pa, qa, b, wb, moved_b, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         else:
-            n = nodal.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = nodal.contact(a, wa, pa, qa, b, wb, moved_b, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         if n < 0:
             return n
         for i in range(first, s.load.made[0]):
@@ -149,6 +164,8 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             buf.force[p, 0] += r["force"] * r["nx"]
             buf.force[p, 1] += r["force"] * r["ny"]
             _assemble(sy, buf, st, r, ia, ib)
+            if sy.friction[p] > 0.0 or sy.ratio[p] > 0.0:
+                resist(sy, buf, st.k, r, p, ia, ib)
             total += 1
     if st.spread and (st.sts or total > 0):
         for b in range(len(sy.mass)):

@@ -16,8 +16,9 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import work_at
 from rigidarea.flexible.jit import inner
+from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry
 from rigidarea.kernel.memory import array_at, caller, record
 
 Ints = NDArray[np.int64]
@@ -76,7 +77,7 @@ def _floats(address, n):  # type: ignore[no-untyped-def]
     return array_at(np.uint64(address), (n,), np.float64)
 
 
-@kernel
+@entry
 def gather(members: Any, offsets: Ints, gx: float, gy: float, damping: float, dt: float) -> None:
     """Where Chipmunk has the members, how they move, and what acts on them for a frame of dt."""
     for m in range(len(members)):
@@ -127,7 +128,7 @@ def _write_motion(a, offsets):  # type: ignore[no-untyped-def]
     _floats(a.address + np.uint64(offsets[SPIN]), 1)[0] = a.w
 
 
-@kernel
+@entry
 def give_back(members: Any, start: Any, offsets: Ints, used: bool) -> None:
     """Chipmunk's bodies where the members are, their forces ``used`` up; those that are led as in ``start``."""
     for m in range(len(members)):
@@ -156,6 +157,15 @@ def _place_frame(state, members, b, h):  # type: ignore[no-untyped-def]
     state.acc[b, 2] = state.aux[b, 2] = a.turn
     state.v[b, 2] = a.w - h * a.turn
     state.x[b, 2] = a.angle - h * state.v[b, 2] - 0.5 * h * h * a.turn
+
+
+@inner
+def _rate(rate, a):  # type: ignore[no-untyped-def]
+    """The velocity of a part's frame."""
+    c, s = np.cos(a.angle), np.sin(a.angle)
+    rate[0] = a.vx - a.w * (s * a.off_x + c * a.off_y)
+    rate[1] = a.vy + a.w * (c * a.off_x - s * a.off_y)
+    rate[2] = a.w
 
 
 @inner
@@ -217,7 +227,7 @@ def _stiffest(members, pairs, st, buf):  # type: ignore[no-untyped-def]
     return most
 
 
-@kernel
+@entry
 def advance(  # type: ignore[no-untyped-def]
     bodies, sy, state, pairs, st, s, found, buf, members, links, offsets, h, steps, iterations, before
 ):
@@ -236,6 +246,7 @@ def advance(  # type: ignore[no-untyped-def]
             a.angle += h * a.w
         for b in range(count):
             _place_frame(state, members, b, h)
+            _rate(buf.rate[b], members[b])
             w, mu, angle = work_at(bodies, b), state.mu[b], members[b].angle
             c, sn = np.cos(angle), np.sin(angle)
             w.hub_load[0], w.hub_load[1], w.hub_load[2] = (
@@ -246,6 +257,7 @@ def advance(  # type: ignore[no-untyped-def]
         code = step(bodies, sy, state, pairs, st, s, found, buf, 0.0, h)
         if code < 0:
             return code, stiffest
+        keep_springs(buf, 0, 1)
         stiffest = max(stiffest, _stiffest(members, pairs, st, buf))
         for m in range(len(members)):
             a = members[m]

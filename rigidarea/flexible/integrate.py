@@ -16,12 +16,13 @@ from numpy.typing import NDArray
 from rigidarea.flexible import nodal
 from rigidarea.flexible.bodies import table
 from rigidarea.flexible.boundary import Boundary, workspace
-from rigidarea.flexible.check import check_bodies, check_pairs, check_settings
+from rigidarea.flexible.check import check_bodies, check_pairs, check_settings, of_pairs
 from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 from rigidarea.flexible.watch import watch
+from rigidarea.kernel.impact import damping_ratio
 
 Array = NDArray[np.float64]
 
@@ -123,8 +124,8 @@ class Simulation:
     pairs: of body numbers; forces are recorded on the second of each. k: contact stiffness, force per area. q: pressure
     exponent of Alg. 3. contact: "area" or "sts". reach: STS only, the deepest penetration looked at (length). margin:
     length a leaf pair may move before the search is renewed. rho: spectral radius at infinity ρ∞, in [0, 1]; below 1
-    where there are constraints (index 3). Raises ValueError for bodies, pairs or settings out of range, or an overlap
-    at t = 0 deeper than ``depth_limit``.
+    where there are constraints (index 3). friction, restitution: of all pairs, or one a pair (``resist``). Raises
+    ValueError for bodies, pairs or settings out of range, or an overlap at t = 0 deeper than ``depth_limit``.
     """
 
     def __init__(
@@ -139,10 +140,16 @@ class Simulation:
         rho: float = 0.8,
         gravity: tuple[float, float] = (0.0, 0.0),
         depth_limit: float = np.inf,
+        friction: float | Sequence[float] = 0.0,
+        restitution: float | Sequence[float] = 1.0,
     ) -> None:
         check_settings(k, q, contact, reach, margin, rho, gravity)
         check_bodies(bodies, rho)
         self.pairs = check_pairs(pairs, len(bodies))
+        held = (
+            of_pairs("friction", friction, len(self.pairs)),
+            of_pairs("restitution", restitution, len(self.pairs)),
+        )
         self.bodies = list(bodies)
         count = [len(b.frequency) for b in bodies]
         first = np.concatenate([[0], np.cumsum(count)])
@@ -162,6 +169,8 @@ class Simulation:
             np.concatenate([np.asarray(b.stretch, float) for b in bodies]),
             column([np.linalg.norm(b.boundary.points, axis=1).max() for b in bodies]),
             np.concatenate([np.hypot(b.boundary.modes[:-3:2], b.boundary.modes[1:-3:2]).max(0) for b in bodies]),
+            column([(0.0, 0.0) if b.fixed else (1 / b.mass, 1 / b.inertia) for b in bodies]),
+            held[0], np.array([damping_ratio(e) for e in held[1]]),
         )  # fmt: skip
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
@@ -191,6 +200,7 @@ class Simulation:
         made = buffers(len(self.bodies), len(self.pairs), [len(b.frequency) for b in self.bodies], loads)
         if old is not None:
             made.counts[1], made.most[:] = old.counts[1], old.most
+            made.springs[:], made.held[:] = old.springs, old.held
         self._buffers: Buffers = made
         # regions are numbered anew: no node belongs to one
         for w in self.works:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.hub import hub_displacement, hub_rate
 from rigidarea.flexible.jit import inner
+from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
 from rigidarea.kernel.jit import entry as kernel
@@ -91,6 +92,7 @@ def run_steps(  # type: ignore[no-untyped-def]
         parts = 1
         while True:
             _copy(state, saved)
+            keep_springs(buf, 1, 2)
             code = 0
             used = 0
             for part in range(parts):
@@ -98,10 +100,12 @@ def run_steps(  # type: ignore[no-untyped-def]
                 code = step(bodies, sy, state, pairs, st, s, found, buf, at, h / parts)
                 if code < 0:
                     break
+                keep_springs(buf, 0, 1)
                 used += code
             if code > 0:
                 break
             _copy(saved, state)
+            keep_springs(buf, 2, 1)
             if code == FULL:
                 return n, code
             parts *= 2

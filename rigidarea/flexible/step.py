@@ -34,6 +34,8 @@ NEWTON_LIMIT = (
 )
 HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn where the contact seems lost
 TOLERANCE = 1e-7  # residual force over the largest force of the step
+FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
+SURE = 10.0  # and the next may still take this much less off
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
 SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
@@ -324,11 +326,15 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - sy.first[b]] = 1.0 / stiffness
     end = _number(sy, buf)
-    change = 1.0
+    buf.clock[0], buf.clock[1] = h, scheme.vel
+    change, before, regions = 1.0, 0.0, -1
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
             work_at(bodies, b).spin[0] = state.v[b, 2] ** 2
+            if sy.fixed[b] == 0:
+                for i in range(3):
+                    buf.rate[b, i] = state.v[b, i]
         code = evaluate(bodies, sy, buf, state.q, pairs, st, s, found)
         if code == 0 and st.spread and not st.sts:
             code = _touch_again(bodies, sy, buf, state.q, pairs, st, s, found)
@@ -377,6 +383,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
         if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
             return iteration
+        # one correction more is enough where the last took so much off that the next leaves less than the tolerance
+        rate = worst / before if before > 0.0 else 1.0
+        sure = rate < FAST and SURE * rate * worst <= TOLERANCE * reference and rate * open_most <= CLOSURE
+        before = worst
         solve(buf.matrix, buf.rhs, end)
         if st.spread and not st.sts:
             renew_loads(bodies, sy, buf, s.load, scheme.scale)
@@ -387,4 +397,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 _correct(boundary_at(bodies, b), work_at(bodies, b), sy, buf, s.load, state, scheme, b),
             )
         buf.rhs[-2], buf.rhs[-1] = worst, reference
+        if sure and regions == buf.counts[0]:
+            return iteration
+        regions = buf.counts[0]
     return NO_CONVERGENCE

@@ -33,6 +33,9 @@ class System(NamedTuple):
     stretch: Array  # (m,)
     size: Array  # (b,) largest radius of each boundary
     amplitude: Array  # (m,) largest displacement of the boundary in each mode
+    inverse: Array  # (b, 2) inverse mass and moment of inertia, 0 where a body does not yield to forces
+    friction: Array  # (p,) coefficient of each pair
+    ratio: Array  # (p,) damping ratio of its contacts
 
 
 class Settings(NamedTuple):
@@ -91,6 +94,12 @@ class Buffers(NamedTuple):
     system: Array  # (c, c)
     right: Array  # (c, 6 b + 1)
     answer: Array  # (c,) change of each load
+    # friction and damping, see ``resist``
+    rate: Array  # (b, 3) velocities of the frames
+    clock: Array  # (2,) step length, change of a velocity by that of its position
+    springs: Array  # (3, REGIONS, 4) pair, place (2), stretch: of this evaluation, the last step, the step before it
+    held: Ints  # (3,) how many
+    moved: Array  # (4,) pose of a pair's second body, a little aside
 
 
 def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
@@ -102,5 +111,6 @@ def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
-        np.zeros(room),
+        np.zeros(room), np.zeros((n, 3)), np.zeros(2), np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64),
+        np.zeros(4),
     )  # fmt: skip

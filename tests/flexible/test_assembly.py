@@ -29,7 +29,8 @@ def gears_and_boxes(boxes: int, level: str = "compliant", drive: str = "kinemati
     )
     wheel = outlines[1].body(density=density)
     wheel.position, wheel.angle = (gearbox.CENTRES, 0), math.pi + math.pi / gearbox.TEETH[1]
-    parts = [o.add_to(b) for o, b in zip(outlines, (pinion, wheel), strict=True)]
+    # the case has neither friction nor damping
+    parts = [o.add_to(b, elasticity=1.0) for o, b in zip(outlines, (pinion, wheel), strict=True)]
     pivot = pymunk.PivotJoint(space.static_body, wheel, (gearbox.CENTRES, 0))
     damper = pymunk.DampedRotarySpring(space.static_body, wheel, 0, 0, gearbox.DAMPER)
     space.add(pinion, wheel, *parts, pivot, damper)
@@ -182,6 +183,53 @@ def test_pymunks_joints_hold_a_part():
     )  # of the first order
     # a step leaves the pivot by (w h)²/2 of the arm, error_bias takes 6 times the error back a second
     assert body.local_to_world((-length / 2, 0)).length < 5e-4 * length
+
+
+def test_joints_between_a_part_and_a_rigid_body():
+    """A rubber link on a pivot, a rigid one on its end: a double pendulum keeps its energy, and its joint closed."""
+    space = pymunk.Space()
+    space.gravity = 0, -9.81
+    link = shapes.box(0.4, 0.05)
+    one, two = (link.body(density=100.0) for _ in range(2))
+    one.position, two.position = (0.2, 0), (0.6, 0)
+    shape, other = link.add_to(one), link.add_to(two)
+    hinge = pymunk.PivotJoint(one, two, (0.4, 0))
+    hinge.collide_bodies = False
+    space.add(one, two, shape, other, pymunk.PivotJoint(space.static_body, one, (0, 0)), hinge)
+    assembly = Assembly(k=1e7, step=1e-4)
+    assembly.part(shape, RUBBER, mesh=0.025)
+    contact = ra.attach(space, flexible=assembly)
+    before, fallen = contact.energy(), 0.0
+    for _ in range(60):
+        space.step(1 / 120)
+        fallen = min(fallen, two.position.y)
+    assert contact.energy() == pytest.approx(before, abs=5e-3 * two.mass * 9.81 * 0.8)
+    assert one.local_to_world((0.2, 0)).get_distance(two.local_to_world((-0.2, 0))) < 1e-3 * 0.4
+    assert fallen < -0.3
+
+
+def test_a_spring_acts_once():
+    """A part on a DampedSpring without damping: the period of a mass on a spring, 2 π √(m / k)."""
+    space = pymunk.Space()
+    block = shapes.box(0.2, 0.2)
+    body = block.body(density=100.0)
+    body.position = 1.1, 0
+    shape = block.add_to(body)
+    space.add(body, shape, pymunk.DampedSpring(space.static_body, body, (0, 0), (0, 0), 1.0, 400.0, 0.0))
+    assembly = Assembly(k=1e7, step=1e-3)
+    assembly.part(shape, RUBBER, mesh=0.05)
+    ra.attach(space, flexible=assembly)
+    frame = 1 / 120
+    x = [1.1]
+    for _ in range(60):
+        space.step(frame)
+        x.append(body.position.x)
+    crossings = np.flatnonzero(np.diff(np.sign(np.array(x) - 1.0)))
+    exact = [c + (x[c] - 1.0) / (x[c] - x[c + 1]) for c in crossings]
+    half = np.diff(exact).mean() * frame
+    assert half == pytest.approx(
+        math.pi * math.sqrt(body.mass / 400.0), rel=1e-3
+    )  # chords of the sine, steps of 1 ms
 
 
 def test_a_limited_motor_has_its_force_once():
