@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 
 from .kernel.broad import extents
-from .kernel.jit import kernel
+from .kernel.jit import entry, kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
 from .kernel.pool import HEAD, HasRings, Pool, pack
@@ -174,7 +174,7 @@ def keep_tables(s: Any, back: bool) -> bool:
     return bool(fits)
 
 
-@kernel
+@entry
 def enter_bodies(keys: np.ndarray, rows: np.ndarray, addresses: np.ndarray, values: np.ndarray) -> None:
     """Fill the hash table of bodies."""
     mask = len(keys) - 1
@@ -186,7 +186,7 @@ def enter_bodies(keys: np.ndarray, rows: np.ndarray, addresses: np.ndarray, valu
         rows[i] = values[k]
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def row_of_body(s: Any, address: int) -> int:
     """The row of Chipmunk's body at `address`; -1: not known."""
     keys = array_at(s.body_keys_at, (s.body_keys_n,), np.uint64)
@@ -250,7 +250,7 @@ def load_tables(s: Any) -> Tables:
     )
 
 
-@kernel(inline="always")
+@entry(inline="always")
 def load_law(s: Any) -> Law:
     """The force law of the space whose state record is s."""
     return Law(

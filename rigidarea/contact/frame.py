@@ -71,7 +71,7 @@ _cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
 _step = function("cpSpaceStep", types.void(types.uintp, types.float64))
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _space_of(constraint: int) -> int:
     return words(constraint + 8, 1)[0]
 
@@ -132,7 +132,7 @@ def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> None:
             body.kick_w = body.w - body.old_w
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def write_place(s: Any, body: Any) -> None:
     """Put a body where the solve has taken it."""
     p = floats(body.address + s.body_position, 2)
@@ -148,7 +148,7 @@ def write_place(s: Any, body: Any) -> None:
     t[5] = body.oy
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def write_motion(s: Any, body: Any) -> None:
     """Give it its velocity."""
     v = floats(body.address + s.body_velocity, 2)
@@ -157,7 +157,7 @@ def write_motion(s: Any, body: Any) -> None:
     floats(body.address + s.body_spin, 1)[0] = body.w
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _read_velocity(s: Any, body: Any) -> None:
     v = floats(body.address + s.body_velocity, 2)
     body.vx = v[0]

@@ -97,7 +97,7 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
             tables.bodies[tables.apart[i, 1]].joined = 1
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _joint_of(s: Any, constraint: int) -> int:
     joints = joints_of(s)
     for i in range(len(joints)):
@@ -193,7 +193,7 @@ def add_impulse(joint: Any) -> None:
             joint.y += impulse[1]
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def run(joint: Any, which: int, x: float) -> None:
     """One of its own functions."""
     _call(_words(joint.kind, 4)[which], joint.address, x)

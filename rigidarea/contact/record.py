@@ -81,7 +81,7 @@ def members(space: int, offset: int) -> np.ndarray:
     return words(words(at, 2)[1], array_at(at, (2,), np.int32)[0])
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _shapes_there(s: Any, space: int) -> int:
     """How many shapes the space has: its static and its dynamic index count theirs (struct cpSpatialIndex)."""
     n = 0
@@ -90,7 +90,7 @@ def _shapes_there(s: Any, space: int) -> int:
     return n
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def changed(s: Any, space: int) -> bool:
     """Whether shapes or callbacks have come or gone since Python last looked."""
     handlers = array_at(words(space + s.space_handlers, 1)[0], (1,), np.int32)[0]
@@ -101,7 +101,7 @@ def changed(s: Any, space: int) -> bool:
     )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def read_place(s: Any, address: int, body: Any) -> None:
     """Where a body is."""
     p = floats(address + s.body_position, 2)
@@ -114,7 +114,7 @@ def read_place(s: Any, address: int, body: Any) -> None:
     place(body)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def read_motion(s: Any, address: int, body: Any) -> None:
     """How it moves, and how it lets itself be moved."""
     v = floats(address + s.body_velocity, 2)
@@ -166,7 +166,7 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
                 body.stamp = s.frame  # moved by hand
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _take_back(body: Any, dt: float) -> None:
     """Undo Chipmunk's own drift."""
     body.x -= dt * body.vx
@@ -235,7 +235,7 @@ def hold(body: int, dt: float) -> None:
         begin(s, space, dt)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _surface_velocity(
     ax: float, ay: float, bx: float, by: float, nx: float, ny: float, given_x: float, given_y: float
 ) -> tuple[float, float]:
@@ -252,7 +252,7 @@ def _surface_velocity(
     return x, y
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _row_of_shape(s: Any, shape: int) -> int:
     ident = np.int64(hash_id(shape))
     if ident >= s.slots_n:

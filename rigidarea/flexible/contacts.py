@@ -9,7 +9,7 @@ from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 
 @inner(forceinline=True)

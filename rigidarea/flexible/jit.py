@@ -1,11 +1,7 @@
-"""Kernels that only kernels call: without entry points from Python and C, which take long to compile."""
+"""Kernels that only kernels call."""
 
 from __future__ import annotations
 
-import functools
-from typing import Any
+from rigidarea.kernel.jit import kernel as inner
 
-from rigidarea.kernel.jit import kernel
-
-#: ``kernel`` for functions that Python never calls.
-inner: Any = functools.partial(kernel, no_cpython_wrapper=True, no_cfunc_wrapper=True)
+__all__ = ["inner"]

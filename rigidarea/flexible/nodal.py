@@ -39,7 +39,7 @@ from rigidarea.flexible.region import all_arcs, arcs, area_and_centroid, find_re
 from rigidarea.flexible.scratch import FULL, MANY, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
 from rigidarea.flexible.search import search as search
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

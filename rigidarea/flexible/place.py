@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.jit import inner
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

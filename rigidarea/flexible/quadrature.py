@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from rigidarea.flexible.boundary import Boundary
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

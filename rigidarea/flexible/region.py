@@ -28,7 +28,7 @@ from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import place_near, place_one
 from rigidarea.flexible.scratch import MANY, SLICED, TORN, Scratch
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -7,7 +7,7 @@ from rigidarea.flexible.hub import hub_displacement, hub_rate
 from rigidarea.flexible.jit import inner
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
 BODY = 8  # columns of a body in a row of the record: frame, its velocity, hub's angle and its rate

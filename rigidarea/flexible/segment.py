@@ -18,7 +18,7 @@ from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import add_load, displace_near, place_near
 from rigidarea.flexible.region import strip
 from rigidarea.flexible.scratch import MANY, Scratch
-from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.jit import entry as kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import math
 
-from .jit import kernel
+from .jit import entry, kernel
 from .predicates import side
 
 #: Bits of what `line_arc` and `arc_arc` return.
@@ -41,7 +41,7 @@ _F0, _F1, _F2, _F3, _F4, _F5, _F6, _F7 = _F
 _M0, _M1, _M2, _M3, _M4, _M5, _M6, _M7 = _M
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def flat_segment(x: float, x2: float) -> tuple[float, float]:
     """`segment` of a flat one: x = half chord / radius, x2 its square, below FLAT."""
     f = _F4 + x2 * (_F5 + x2 * (_F6 + x2 * _F7))
@@ -52,7 +52,7 @@ def flat_segment(x: float, x2: float) -> tuple[float, float]:
     return x3 * f, x3 * x2 * m
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def segment(half: float, apothem: float, radius: float) -> tuple[float, float]:
     """(area, first moment about the chord, away from the centre) between a chord and its arc (length^2, length^3).
 
@@ -70,7 +70,7 @@ def segment(half: float, apothem: float, radius: float) -> tuple[float, float]:
     return r2 * area, r2 * radius * moment
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def inside(x: float, y: float, cx: float, cy: float, r: float) -> float:
     """Radius squared less distance squared of a point from the centre: positive inside the circle."""
     dx = x - cx
@@ -78,19 +78,19 @@ def inside(x: float, y: float, cx: float, cy: float, r: float) -> float:
     return r * r - (dx * dx + dy * dy)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def across(x: float, y: float, cx: float, cy: float, r: float) -> bool:
     """Whether a point lies inside a circle."""
     return inside(x, y, cx, cy, r) > 0.0
 
 
-@kernel(inline="always")
+@entry(forceinline=True)
 def on_arc(px: float, py: float, qx: float, qy: float, r: float, x: float, y: float) -> bool:
     """Whether a point of the circle lies on its arc p -> q."""
     return ((qx - px) * (y - py) - (qy - py) * (x - px)) * r < 0.0
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def top(px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float) -> tuple[float, float]:
     """The middle of the arc p -> q. (Any point of it will do for its measures: halves add up.)"""
     gx = 0.5 * (px + qx) - cx
@@ -105,7 +105,7 @@ def top(px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: flo
     return cx + f * gx, cy + f * gy
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def turned(px: float, py: float, cx: float, cy: float, r: float, x: float, y: float) -> float:
     """How far along the arc from p a point lies: grows from 0 to 2 over half a turn, as the angle does.
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import Any
 
 from .constants import MARGIN
-from .jit import kernel
+from .jit import entry, kernel
 from .pool import Pool
 from .tables import (
     APART,
@@ -170,7 +170,7 @@ def kept_apart(tables: Tables, a: int, b: int) -> bool:
     return False
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def passes(one: Any, other: Any) -> bool:
     """Chipmunk's filter: whether the two shapes may collide."""
     return (one.group == 0 or one.group != other.group) and (
@@ -178,7 +178,7 @@ def passes(one: Any, other: Any) -> bool:
     )
 
 
-@kernel
+@entry
 def extents(tables: Tables) -> None:
     """Every body's smallest extent, from its shapes'."""
     for i in range(tables.counters[BODIES]):

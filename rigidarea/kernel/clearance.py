@@ -12,7 +12,7 @@ from .pool import LEAF, Pool
 from .work import Relative, Work, placed
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _to_edge2(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> float:
     """Squared distance of a point from an edge."""
     ux = bx - ax
@@ -127,7 +127,7 @@ def _curved_leaves2(
     return best
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _boxes2(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative) -> float:
     """Squared distance of two hierarchy boxes, or less. (An empty box has half widths of -1e300.)"""
     if qa[na, 2] < 0.0 or qb[nb, 2] < 0.0:

@@ -20,7 +20,7 @@ from .work import A_EDGE, OVERFLOW, Relative, Work, noise_of, placed
 FEW = 128
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
     """Separating axes of two hierarchy boxes: the two of A's frame and the two of B's."""
     ac = abs(rel.c)

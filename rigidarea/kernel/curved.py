@@ -10,7 +10,7 @@ from .predicates import side
 from .work import OVERFLOW, TANGLED, Relative, placed
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _along(
     ax: float, ay: float, bx: float, by: float, cx: float, cy: float, r: float, x: float, y: float
 ) -> float:

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from .jit import kernel
+from .jit import entry, kernel
 from .overlap import A_EDGE, B_EDGE
 
 #: A chord below this fraction of sqrt(area) is rounding: the direction is then taken from memory, or anew.
@@ -86,7 +86,7 @@ def nodal_direction(
     return total_x / length, total_y / length
 
 
-@kernel
+@entry
 def chord_direction(chord_x: float, chord_y: float, area: float) -> tuple[float, float]:
     """Unit direction A to B: A's outward normal integrated over its arcs is the chord turned by -90 degrees.
 

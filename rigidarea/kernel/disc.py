@@ -23,7 +23,7 @@ TOUCH = 1e-12
 SHALLOW = 1e-3
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _square(a: float) -> tuple[float, float]:
     """a^2 = high + low, exactly (Dekker)."""
     high = a * a

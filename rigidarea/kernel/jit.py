@@ -16,9 +16,10 @@ from pathlib import Path
 from typing import Any
 
 import numba
-from numba.core import caching
+from numba.core import caching, types
+from numba.core.registry import CPUDispatcher
 
-from . import cache
+from . import cache, whole
 
 
 @functools.lru_cache(maxsize=1)
@@ -47,18 +48,69 @@ def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[...,
         numba.config.CACHE_DIR, caching.IndexDataCacheFile = cache_folder(), cache.CheckedFile
         try:
             decorate = functools.partial(compiler(cache=True, **options), function)
-            return cache.notice.eagerly(decorate) if at_once else decorate()
+            made = cache.notice.eagerly(decorate) if at_once else decorate()
         finally:
             numba.config.CACHE_DIR, caching.IndexDataCacheFile = before
+        if isinstance(made, CPUDispatcher):
+            made.__class__ = _Whole
+        return made
 
     return compile_cached
 
 
+def _general(kind: Any) -> Any:
+    """The type for which one is compiled, where numba would compile one for each constant and size of integer."""
+    kind = types.unliteral(kind)  # type: ignore[attr-defined]
+    return types.int64 if kind in (types.int32, types.uint8) else kind
+
+
+class _Whole(CPUDispatcher):  # type: ignore[misc]
+    """What runs for itself, though a part may be what calls it first."""
+
+    parts = False
+
+    def compile(self, sig: Any) -> Any:
+        with whole.compiling(self.targetctx, self.parts):
+            return super().compile(sig)
+
+    def get_call_template(self, args: Any, kws: Any) -> Any:
+        return super().get_call_template(tuple(map(_general, args)), kws)
+
+
 #: `@njit` for functions that may allocate.
 njit: Any = cached(functools.partial(numba.njit, error_model="numpy"))
-#: Decorator for kernels, `@kernel` or `@kernel(inline="always")`. They look at arrays that somebody else keeps
-#: alive; counting references to them would cost more than clipping two boxes. The price: a kernel cannot allocate.
-kernel: Any = functools.partial(njit, _nrt=False)
+#: Decorator for kernels that Python too calls. They look at arrays that somebody else keeps alive; counting references
+#: to them would cost more than clipping two boxes. The price: a kernel cannot allocate.
+entry: Any = functools.partial(njit, _nrt=False)
+
+
+class _Part(_Whole):
+    """A kernel that is compiled into those that call it, and not for itself (`whole`)."""
+
+    parts = True
+
+    def __call__(self, *arguments: Any) -> Any:
+        if "way_in" not in self.__dict__:
+            inner = self
+
+            def way_in(*given: Any) -> Any:
+                return inner(*given)
+
+            self.way_in = entry(way_in)
+        return self.way_in(*arguments)
+
+
+def kernel(function: Any = None, **options: Any) -> Any:
+    """Decorator for kernels that kernels call: `@kernel`, `@kernel(forceinline=True)`. As `entry`, but quicker made."""
+    if function is None:
+        return functools.partial(kernel, **options)
+    if numba.config.DISABLE_JIT:
+        return function
+    made = numba.njit(
+        _nrt=False, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
+    )(function)
+    made.__class__ = _Part
+    return made
 
 
 class _Interpreted:

@@ -16,9 +16,8 @@ import numpy as np
 from .constants import HIT, LOOK, MOST_ARRIVED, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .jit import kernel
-from .overlap import A_EDGE, OVERFLOW, Relative, Work
-from .place import Pose, push_out, seen_from
-from .place import overlap_of_outlines as _inlined_overlap
+from .overlap import A_EDGE, OVERFLOW, Work
+from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness, depth_for
@@ -57,13 +56,7 @@ class Patch(NamedTuple):
     blind: bool  # the chord is nothing: no direction of its own
 
 
-@kernel
-def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
-    """`place.overlap_of_outlines`, compiled once for all who look from here."""
-    return _inlined_overlap(pool, ia, a, ib, b, work)
-
-
-@kernel(inline="always")
+@kernel(forceinline=True)
 def pose_of(body: Any) -> Pose:
     """Where a body's outlines are."""
     return Pose(body.ox, body.oy, body.c, body.s)
@@ -173,7 +166,7 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
     return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, blind)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> int:
     """The region of the list nearest to (x, y) that is not yet taken in this substep; -1: none."""
     best = -1
@@ -207,7 +200,7 @@ def _fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float)
     region.lean_b = (patch.x - bx) * patch.nx + (patch.y - by) * patch.ny
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _centre(body: Any, pose: Pose) -> tuple[float, float]:
     """A body's centre of gravity, its outlines at `pose`."""
     return (
@@ -216,7 +209,7 @@ def _centre(body: Any, pose: Pose) -> tuple[float, float]:
     )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def closing(r: Any, a: Any, b: Any, full: float) -> float:
     """Closing speed at the region (length/time), with the part `full` of the substep's kick taken off."""
     return (
@@ -227,7 +220,7 @@ def closing(r: Any, a: Any, b: Any, full: float) -> float:
     )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def inverse_mass(r: Any, a: Any, b: Any) -> float:
     """1/m_eff of the two bodies along the region's direction (design 2.3)."""
     return (
@@ -238,7 +231,7 @@ def inverse_mass(r: Any, a: Any, b: Any) -> float:
     )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def region_stiffness(law: Law, k: float, chord: float) -> float:
     """dF/ddelta of a region (design 2.3)."""
     if law.law == LAW_AREA:
@@ -329,7 +322,7 @@ def _touch(
     return come
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
     """First touch slower than this is rest (length/time): what pushes gives that much in a few steps."""
     if law.rest_speed >= 0.0:
@@ -337,7 +330,7 @@ def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
     return REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(rate2))
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _size(body: Any) -> float:
     """The smallest extent of a body that moves (length)."""
     return body.extent if body.mobile else np.inf

@@ -72,7 +72,7 @@ __all__ = [
 ]
 
 
-@kernel(inline="always")
+@kernel
 def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Regions of A and B placed by `rel`: their number, work.loops[:number]; or OVERFLOW, or TANGLED.
 

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .arc import on_arc
-from .jit import kernel
+from .jit import entry, kernel
 from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
 
@@ -31,7 +31,7 @@ def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
     )  # fmt: skip
 
 
-@kernel(inline="always")
+@entry
 def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
     """(number of regions, in `work`; B relative to A) of two placed outlines.
 
@@ -78,7 +78,7 @@ def _way(pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float) -> f
     return _support(pool, ia, mx, my) + back - (mx * rel.tx + my * rel.ty)
 
 
-@kernel
+@entry
 def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]:
     """Direction A to B of the shortest way apart, in A's frame, of the normals of both outer rings' straight edges and
     the lines from the arcs' centres through each other and through points.

@@ -124,7 +124,7 @@ def _undecided(ax: float, ay: float, bx: float, by: float, px: float, py: float,
     return sign * TINY
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def side(ax: float, ay: float, bx: float, by: float, px: float, py: float, point_of_b: bool) -> float:
     """Twice the signed area of a, b, p, with an exact and never zero sign (length^2).
 

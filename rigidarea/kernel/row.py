@@ -83,7 +83,7 @@ ROW = record(
 )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def slipping(r: Any, a: Any, b: Any, full: float) -> float:
     """Tangential speed of A relative to B at the region, `full` of the substep's kick taken off (length/time)."""
     return (
@@ -110,7 +110,7 @@ def _ends(row: Any, r: Any) -> None:
     row.e2 = middle + half
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def least_extent(a: Any, b: Any) -> float:
     """The smaller one's smallest extent, of those that can move (length)."""
     if a.inverse_mass == 0.0:
@@ -295,7 +295,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
     """Give the two bodies impulses d1, d2 at the ends and dt along the tangent."""
     normal = d1 + d2
@@ -310,7 +310,7 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
     b.w += (normal * row.arm_b - turn + dt * row.lean_b) * b.inverse_moment
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def visit(row: Any, a: Any, b: Any) -> None:
     """Solve one row for the bodies' present velocities: both ends as a block, then friction under them."""
     row.gt = 0.0

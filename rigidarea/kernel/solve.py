@@ -26,7 +26,7 @@ from .work import Work
 GROW_PAIRS = 3
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def place(body: Any) -> None:
     """What follows from a body's centre and angle."""
     body.c = math.cos(body.angle)
@@ -136,14 +136,14 @@ def _arrange(tables: Tables, gx: float, gy: float) -> None:
         gap //= 3
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _after(one: Any, other: Any) -> bool:
     if one.order != other.order:
         return bool(one.order > other.order)
     return bool(one.beside > other.beside)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def _may_touch(tables: Tables, pair: Any, h: float) -> bool:
     """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]

@@ -9,7 +9,7 @@ from .jit import kernel
 from .tables import LAW_AREA, Law
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def allowed_depth(law: Law, a: Any, b: Any) -> float:
     """How deep the two bodies may sink into each other (length): a fraction of the smaller one that can move."""
     if a.inverse_mass == 0.0:

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .jit import kernel
+from .jit import entry, kernel
 from .memory import record
 
 LAW_AREA, LAW_ENERGY = 0, 1
@@ -242,7 +242,7 @@ def _enter(tables: Tables, a: int, b: int, p: int) -> None:
     tables.values[i] = p
 
 
-@kernel
+@entry
 def rehash(tables: Tables) -> None:
     """Make the hash table anew from the pairs in use: nothing is ever taken out of it singly."""
     tables.keys[:] = -1
@@ -251,7 +251,7 @@ def rehash(tables: Tables) -> None:
             _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
 
 
-@kernel
+@entry
 def new_pair(tables: Tables, a: int, b: int) -> int:
     """Take a pair from the free list, A the shape that was added first; -1: there is none."""
     counters = tables.counters
@@ -292,7 +292,7 @@ def free_regions(regions: np.ndarray, counters: np.ndarray, r: int) -> None:
         r = after
 
 
-@kernel
+@entry
 def end_pair(tables: Tables, p: int) -> None:
     """Forget the pair and its regions. The hash table keeps its key until `rehash`."""
     pair = tables.pairs[p]

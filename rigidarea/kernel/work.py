@@ -93,7 +93,7 @@ def enlarged(work: Work, points: int, rings: int) -> Work:
     return new_work(points, 2 * len(work.cross), rings)
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def relative(
     ax: float, ay: float, ac: float, as_: float, bx: float, by: float, bc: float, bs: float,
     amx: float, amy: float, bmx: float, bmy: float,
@@ -111,7 +111,7 @@ def relative(
     )
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def placed(q: np.ndarray, i: int, rel: Relative) -> tuple[float, float]:
     """Point i of B in A's frame: always the same bits for the same point."""
     x = q[i, 0]
@@ -119,7 +119,7 @@ def placed(q: np.ndarray, i: int, rel: Relative) -> tuple[float, float]:
     return rel.c * x - rel.s * y + rel.tx, rel.s * x + rel.c * y + rel.ty
 
 
-@kernel(inline="always")
+@kernel(forceinline=True)
 def noise_of(radius_a: float, radius_b: float, rel: Relative) -> float:
     """What a placed coordinate may be wrong by (length): eight roundings of the largest."""
     return 8.0 * 2.0**-52 * (radius_a + radius_b + abs(rel.tx) + abs(rel.ty))

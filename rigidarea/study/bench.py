@@ -266,11 +266,11 @@ def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) ->
     """Compiled on first use: `count` queries, the loops found by the last."""
     global _compiled
     if _compiled is None:
-        from ..kernel.jit import kernel
+        from ..kernel.jit import entry
         from ..kernel.overlap import overlap_kernel
         from ..kernel.work import relative
 
-        @kernel
+        @entry
         def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
             found = 0
             for i in range(count):
