@@ -148,6 +148,8 @@ class Outline:
         resample: Callable[..., Outline] | None = None,
         arcs: Sequence[Points] = (),
     ) -> None:
+        if not all(np.isfinite(ring).all() and np.abs(ring).max() <= _LARGEST for ring in rings):
+            raise ValueError(f"coordinates must be finite and at most {_LARGEST:g} in size")
         if not any(ring[:, 2].any() for ring in arcs):
             arcs = ()
         outer = curves.extremes(rings[0], arcs[0]) if arcs else rings[0]
@@ -176,6 +178,10 @@ class Outline:
             first += moment
         for array in (*oriented, *bent):
             array.flags.writeable = False
+        if not (total > 0 and math.isfinite(total)):
+            raise ValueError(
+                f"an outline must enclose an area above 0, got {total:.3g} within {upper - lower}"
+            )
         self.rings = tuple(oriented)
         self.arcs = tuple(bent)
         self.area = float(total)
@@ -368,12 +374,16 @@ class Outline:
         body its mass and moment (`moment`, or `body`).
 
         shape_attrs: friction, elasticity, collision_type, filter, sensor, surface_velocity, as in pymunk.
-        Raises ValueError for other names (mass and density among them).
+        Raises ValueError for other names (mass and density among them), and for values that pymunk could not take.
         """
+        if not isinstance(body, pymunk.Body):
+            raise ValueError(f"body must be a pymunk.Body, got {type(body).__name__}")
         known = ("friction", "elasticity", "collision_type", "filter", "sensor", "surface_velocity")
         unknown = sorted(set(shape_attrs) - set(known))
         if unknown:
             raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")
+        for name, value in shape_attrs.items():
+            _check_attribute(name, value)
         kind, form = self._stand_in
         shape = kind(body, *form)
         for name, value in shape_attrs.items():
@@ -454,6 +464,29 @@ def positive(value: float, name: str) -> float:
 
 
 # --- the gate: what comes in ---
+
+
+def _check_attribute(name: str, value: Any) -> None:
+    """ValueError unless `value` can be that attribute of a pymunk shape (which asserts, or ends the process)."""
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    good, wanted = {
+        "friction": (number and math.isfinite(value) and value >= 0, "a finite number >= 0"),
+        "elasticity": (number and math.isfinite(value) and value >= 0, "a finite number >= 0"),
+        "collision_type": (
+            number and isinstance(value, int | np.integer) and 0 <= value < 2**64,
+            "a whole number from 0 to 2^64 - 1",
+        ),
+        "filter": (isinstance(value, pymunk.ShapeFilter), "a pymunk.ShapeFilter"),
+        "sensor": (isinstance(value, bool | np.bool_), "True or False"),
+        "surface_velocity": (
+            isinstance(value, tuple | list | np.ndarray)
+            and len(value) == 2
+            and all(isinstance(v, int | float | np.number) and math.isfinite(v) for v in value),
+            "two finite numbers",
+        ),
+    }[name]
+    if not good:
+        raise ValueError(f"{name} must be {wanted}, got {value!r:.80}")
 
 
 def _ring(points: ArrayLike, name: str) -> Points:
