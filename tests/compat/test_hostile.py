@@ -1,4 +1,4 @@
-"""Hostile calls, changes from within callbacks, a run without end; `python -m rigidarea compat fuzz` and `compat soak`."""
+"""Hostile calls, changes from within callbacks, a run without end; as commands: `compat fuzz`, `compat soak`."""
 
 import pytest
 
