@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import math
 import re
+from typing import Any
 
 import numpy as np
+import pymunk
 import shapely
 from numpy.typing import ArrayLike
 
 from .arcs import Points, area_and_first_moment, bulging
 
 _EPS = float(np.finfo(np.float64).eps)
-_LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
+LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 
 def positive(value: float, name: str) -> float:
@@ -20,6 +22,29 @@ def positive(value: float, name: str) -> float:
     if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0):
         raise ValueError(f"{name} must be positive and finite, got {value!r}")
     return float(value)
+
+
+def checked_attribute(name: str, value: Any) -> None:
+    """ValueError unless `value` can be that attribute of a pymunk shape (which asserts, or ends the process)."""
+    number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
+    good, wanted = {
+        "friction": (number and math.isfinite(value) and value >= 0, "a finite number >= 0"),
+        "elasticity": (number and math.isfinite(value) and value >= 0, "a finite number >= 0"),
+        "collision_type": (
+            number and isinstance(value, int | np.integer) and 0 <= value < 2**64,
+            "a whole number from 0 to 2^64 - 1",
+        ),
+        "filter": (isinstance(value, pymunk.ShapeFilter), "a pymunk.ShapeFilter"),
+        "sensor": (isinstance(value, bool | np.bool_), "True or False"),
+        "surface_velocity": (
+            isinstance(value, tuple | list | np.ndarray)
+            and len(value) == 2
+            and all(isinstance(v, int | float | np.number) and math.isfinite(v) for v in value),
+            "two finite numbers",
+        ),
+    }[name]
+    if not good:
+        raise ValueError(f"{name} must be {wanted}, got {value!r:.80}")
 
 
 def checked_ring(points: ArrayLike, name: str) -> Points:
@@ -38,8 +63,8 @@ def checked_ring(points: ArrayLike, name: str) -> Points:
     given = len(ring)
     if given:
         reach = float(np.abs(ring).max())
-        if reach > _LARGEST:
-            raise ValueError(f"{name} must have coordinates below {_LARGEST:g}, got {reach:.6g}")
+        if reach > LARGEST:
+            raise ValueError(f"{name} must have coordinates below {LARGEST:g}, got {reach:.6g}")
         # nearer than this two points are one, rounded differently
         apart = np.abs(ring - np.concatenate((ring[-1:], ring[:-1]))) > 2 * _EPS * reach
         keep = apart.any(axis=1)
@@ -66,8 +91,8 @@ def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
         raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
     if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:
         raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")
-    if not np.isfinite(rows).all() or np.abs(rows).max() > _LARGEST:
-        raise ValueError(f"{name} must be finite and below {_LARGEST:g}")
+    if not np.isfinite(rows).all() or np.abs(rows).max() > LARGEST:
+        raise ValueError(f"{name} must be finite and below {LARGEST:g}")
     if (rows[:, :2] == np.roll(rows[:, :2], -1, axis=0)).all(axis=1).any():
         raise ValueError(f"{name} must not repeat a point, nor its first at the end")
     if len(rows) == 2 and rows[:, 2].sum() == 0:

@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike
 
 from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
-from .gate import check_valid, checked_bulges, checked_ring, positive
+from .gate import LARGEST, check_valid, checked_attribute, checked_bulges, checked_ring, positive
 from .stand_in import stand_in
 
 DEFAULT_TOLERANCE = 5e-5
@@ -147,6 +147,8 @@ class Outline:
         resample: Callable[..., Outline] | None = None,
         arcs: Sequence[Points] = (),
     ) -> None:
+        if not all(np.isfinite(ring).all() and np.abs(ring).max() <= LARGEST for ring in rings):
+            raise ValueError(f"coordinates must be finite and at most {LARGEST:g} in size")
         if not any(ring[:, 2].any() for ring in arcs):
             arcs = ()
         outer = curves.extremes(rings[0], arcs[0]) if arcs else rings[0]
@@ -175,6 +177,10 @@ class Outline:
             first += moment
         for array in (*oriented, *bent):
             array.flags.writeable = False
+        if not (total > 0 and math.isfinite(total)):
+            raise ValueError(
+                f"an outline must enclose an area above 0, got {total:.3g} within {upper - lower}"
+            )
         self.rings = tuple(oriented)
         self.arcs = tuple(bent)
         self.area = float(total)
@@ -367,12 +373,16 @@ class Outline:
         body its mass and moment (`moment`, or `body`).
 
         shape_attrs: friction, elasticity, collision_type, filter, sensor, surface_velocity, as in pymunk.
-        Raises ValueError for other names (mass and density among them).
+        Raises ValueError for other names (mass and density among them), and for values that pymunk could not take.
         """
+        if not isinstance(body, pymunk.Body):
+            raise ValueError(f"body must be a pymunk.Body, got {type(body).__name__}")
         known = ("friction", "elasticity", "collision_type", "filter", "sensor", "surface_velocity")
         unknown = sorted(set(shape_attrs) - set(known))
         if unknown:
             raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")
+        for name, value in shape_attrs.items():
+            checked_attribute(name, value)
         kind, form = self._stand_in
         shape = kind(body, *form)
         for name, value in shape_attrs.items():

@@ -1,4 +1,4 @@
-"""The command `compat`: pymunk's own examples and tests with area contact, as tables."""
+"""The command `compat`: pymunk's own examples and tests with area contact, as tables; hostile calls; a long run."""
 
 from __future__ import annotations
 
@@ -14,24 +14,44 @@ import pymunk
 from ..report import envelope, output_arguments, write_json
 from . import suite
 from .examples import EXAMPLES, FRAMES, compare
+from .hostile import fuzz
+from .meddling import meddle
+from .soak import soak
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of `rigidarea compat`."""
-    parser.add_argument("what", choices=("examples", "tests"), help="pymunk's examples, or its tests")
+    parser.add_argument(
+        "what",
+        choices=("examples", "tests", "fuzz", "soak"),
+        help="pymunk's examples, its tests, calls with hostile values and changes from within callbacks, a fountain",
+    )
     parser.add_argument("names", nargs="*", metavar="NAME", help="some of the examples (default: all)")
     parser.add_argument(
         "--docs", type=Path, metavar="DIR", help="rewrite pymunk-examples.md or pymunk-tests.md here"
+    )
+    parser.add_argument(
+        "--calls", type=int, default=50_000, metavar="N", help="of fuzz (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--steps", type=int, default=1_000_000, metavar="N", help="of soak (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seed", type=int, default=0, metavar="N", help="of fuzz and soak (default: %(default)s)"
     )
     output_arguments(parser, Path("out") / "compat")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Run `rigidarea compat`; exit code 1 if anything is wrong natively: then the table means nothing."""
+    """Run `rigidarea compat`; exit code 1 if anything is wrong natively (the table means nothing then) or in a fuzz."""
+    if arguments.what != "examples" and arguments.names:
+        raise ValueError(f"compat {arguments.what} takes no names, got {' '.join(arguments.names)}")
     if arguments.what == "tests":
-        if arguments.names:
-            raise ValueError(f"compat tests takes no names, got {' '.join(arguments.names)}")
         return _tests(arguments)
+    if arguments.what == "fuzz":
+        return _fuzz(arguments)
+    if arguments.what == "soak":
+        return _soak(arguments)
     unknown = [name for name in arguments.names if name not in EXAMPLES]
     if unknown:
         raise ValueError(f"unknown example {unknown[0]!r}; expected one of {', '.join(EXAMPLES)}")
@@ -144,6 +164,48 @@ def _tests(arguments: argparse.Namespace) -> int:
         print(page)
     if arguments.docs:
         _write(arguments.docs / "pymunk-tests.md", page)
+    return 0
+
+
+def _fuzz(arguments: argparse.Namespace) -> int:
+    if arguments.calls < 1:
+        raise ValueError(f"calls must be at least 1, got {arguments.calls}")
+    print(f"{arguments.calls} calls with hostile values", file=sys.stderr, flush=True)
+    calls = fuzz(arguments.calls, arguments.seed)
+    print("changes from within callbacks", file=sys.stderr, flush=True)
+    changes = meddle()
+    wrong = [row for row in calls if row["wrong"]] + [row for row in changes if row["wrong"]]
+    settings = {"calls": arguments.calls, "seed": arguments.seed}
+    write_json(
+        envelope("compat fuzz", settings, calls, changes=changes, summary={"wrong": len(wrong)}),
+        arguments.json,
+    )
+    if arguments.json != "-":
+        for row in calls:
+            print(
+                f"{row['call']:28} {row['calls']:6} calls, {row['refused']:6} refused, {len(row['wrong'])} wrong"
+            )
+            for text in row["wrong"][:3]:
+                print(f"    {text}")
+        print(
+            f"{len(changes)} kinds of change from within callbacks, {sum(bool(r['wrong']) for r in changes)} wrong"
+        )
+        for row in changes:
+            if row["wrong"]:
+                print(f"    {row['action']} in {row['callback']}: {row['wrong']}")
+    return int(bool(wrong))
+
+
+def _soak(arguments: argparse.Namespace) -> int:
+    if arguments.steps < 10:
+        raise ValueError(f"steps must be at least 10, got {arguments.steps}")
+    rows = soak(arguments.steps, arguments.seed)
+    write_json(
+        envelope("compat soak", {"steps": arguments.steps, "seed": arguments.seed}, rows), arguments.json
+    )
+    if arguments.json != "-":
+        for row in rows:
+            print(f"{row['steps']:9} steps, {row['bodies']:4} bodies, {row['resident_mb']:8.1f} MB")
     return 0
 
 

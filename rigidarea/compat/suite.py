@@ -6,6 +6,7 @@ counts as failed, and the rest is run in a new one.
 
 from __future__ import annotations
 
+import gc
 import json
 import os
 import re
@@ -29,7 +30,13 @@ TIME_LIMIT = 300.0
 
 #: Why another answer than pymunk's is right: test (class.method) -> reason. What is not in here is not explained.
 REASONS: dict[str, str] = {
-    "UnitTestSpace.testCopyMethods": "it wants no global pre_solve in a fresh space; area contact is one",
+    "UnitTestArbiter.testFriction": "a ball comes down on a ball in steps of 0.1 s: the blow is placed within its "
+    "frame, natively at the frame's end, and what follows is another way down",
+    "UnitTestArbiter.testImpulse": "two discs put 14 deep into each other: each solver lets them out at its own speed",
+    "UnitTestArbiter.testTotalKE": "the same",
+    "UnitTestConstraint.testImpulse": "a step of 1 s is two substeps, of which the second finds the body swung",
+    "UnitTestDampedRotarySpring.testTorqueFunc": "its function is asked in each substep, where the angle is another",
+    "UnitTestDampedSpring.testForceFunc": "its function is asked in each substep, where the distance is another",
 }
 
 
@@ -101,6 +108,8 @@ def name_of(test: unittest.TestCase) -> str:
 def work(mode: str, names: Sequence[str], first: int, file: str) -> None:
     """Run the tests from number `first` on in this process; a line of JSON to `file` before and after each."""
     if mode != "pymunk":
+        attach(pymunk.Space())
+        gc.freeze()  # not to be gone through in each of the collections that tests ask for: it is none of their objects
         _attach_everywhere(frames=mode == "area frames")
     with open(file, "a") as out:
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import math
 import weakref
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -58,6 +58,7 @@ class AreaContact:
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._store = Store()
         self._shapes: dict[int, pymunk.Shape] = {}
+        self._forms: dict[int, Any] = {}
         self._state = state = self._store.state[0]
         settings = self._settings
         for name, offset in layout().items():
@@ -172,7 +173,9 @@ class AreaContact:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         space, store = self.space, self._store
         present = {shape._hashid: shape for shape in space.shapes}
-        bodies = {address_of(body._body): body for body in (*space.bodies, space.static_body)}
+        # not space.static_body, which makes one where there is none
+        still = [] if space._static_body is None else [space._static_body]
+        bodies = {address_of(body._body): body for body in (*space.bodies, *still)}
         for shape in space.shapes:
             if shape.body is not None:
                 bodies.setdefault(address_of(shape.body._body), shape.body)
@@ -182,7 +185,7 @@ class AreaContact:
         gone = self._shapes.keys() - present.keys()
         store.forget(gone, store.known_bodies() - bodies.keys())
         for ident in gone:
-            del self._shapes[ident]
+            del self._shapes[ident], self._forms[ident]
         hold, own = int(self._state["hold_at"]), int(self._state["position_func"])
         at = int(self._state["body_position_func"]) // 8
         for address, body in bodies.items():
@@ -220,6 +223,13 @@ class AreaContact:
             (0.5 * (right - left), 0.5 * (top - bottom)),
         )
         self._shapes[shape._hashid] = shape
+        self._forms[shape._hashid] = _form(shape)
+
+    def _reread(self, shapes: Iterable[pymunk.Shape]) -> None:
+        """Of these shapes, those whose geometry has been changed."""
+        for shape in shapes:
+            if shape._hashid in self._forms and self._forms[shape._hashid] != _form(shape):
+                self.refresh(shape)
 
     def _hear(self) -> None:
         """Which shapes' collision types have callbacks of the user's, that may say no."""
@@ -244,7 +254,13 @@ class AreaContact:
         state["handler_count"] = int(entries[0][0])
 
     def refresh(self, shape: pymunk.Shape) -> None:
-        """Read a shape's geometry again, after `unsafe_set_vertices` and the like."""
+        """Read a shape's geometry again, after `unsafe_set_vertices` and the like; so do pymunk's `reindex_...`.
+
+        Raises ValueError for a shape that is not in the space, or that has no area now.
+        """
+        if not isinstance(shape, pymunk.Shape) or self._shapes.get(shape._hashid) is not shape:
+            raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
+        Outline.from_pymunk(shape)  # says what is wrong with it while nothing has changed
         self._store.forget([shape._hashid], ())
         self._take(shape)
         self._hear()
@@ -443,6 +459,15 @@ def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
     contact._raise()
 
 
+def _form(shape: pymunk.Shape) -> Any:
+    """What of a shape's geometry can be changed by pymunk's unsafe functions."""
+    if isinstance(shape, pymunk.Circle):
+        return shape.radius, shape.offset
+    if isinstance(shape, pymunk.Segment):
+        return shape.radius, shape.a, shape.b
+    return shape.radius, shape.get_vertices() if isinstance(shape, pymunk.Poly) else None
+
+
 def _moves(shape: pymunk.Shape) -> bool:
     return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor
 
@@ -450,7 +475,7 @@ def _moves(shape: pymunk.Shape) -> bool:
 # --- an attached space's class: its own, and copies of it take their contact along ---
 
 _KEY = "_area_contact"  # where a space keeps its contact: they go together, and pymunk does not pickle it
-_classes: dict[type, type] = {}
+_classes: dict[Any, type] = {}
 
 
 def _attached(plain: Any) -> type:
@@ -468,9 +493,23 @@ def _attached(plain: Any) -> type:
         def step(self: Any, dt: float) -> None:
             self.__dict__[_KEY]._flexed(dt, lambda: plain.step(self, dt))
 
-        members = {"__reduce_ex__": reduce, "step": step, "__doc__": plain.__doc__}
-        step.__doc__ = plain.step.__doc__
-        _classes[plain] = type(plain.__name__, (plain,), members)
+        def reindex_static(self: Any) -> None:
+            plain.reindex_static(self)
+            self.__dict__[_KEY]._reread(s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC)
+
+        def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
+            plain.reindex_shape(self, shape)
+            self.__dict__[_KEY]._reread([shape])
+
+        def reindex_shapes_for_body(self: Any, body: pymunk.Body) -> None:
+            plain.reindex_shapes_for_body(self, body)
+            self.__dict__[_KEY]._reread(body.shapes)
+
+        own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
+            method.__doc__ = getattr(plain, method.__name__).__doc__
+            own[method.__name__] = method
+        _classes[plain] = type(plain.__name__, (plain,), own)
         _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
     return _classes[plain]
 

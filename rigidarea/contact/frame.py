@@ -293,6 +293,8 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
                 wait = 1 if joined > 0 else 2 * wait
                 look += wait
                 tables = load_tables(s)
+                if tables.counters[ROWS] == 0 and s.joint_count == 0:
+                    break  # nothing that could change a velocity
             sweep(tables, k % 2 == 0)
             if s.joint_count > 0:
                 _joints(s, tables, APPLY, h)

@@ -15,12 +15,9 @@ pytest.importorskip("pygame")
 #: Few seconds each, and between them a window, keys and mouse, none of it, a callback, pyglet.
 FAST = ("basic_test", "constraints", "damped_rotary_spring_pointer", "platformer", "using_sprites_pyglet")
 
-#: Does not behave as meant with one area step in a `space.step` of 1/60 s. Whoever mends one takes it out.
+#: Does not behave as meant. Whoever mends one takes it out.
 BROKEN: set[str] = {
     "arrows",
-    "balls_and_lines",
-    "bouncing_balls",
-    "box2d_pyramid",
     "box2d_vertical_stack",
     "breakout",
     "colors",

@@ -54,6 +54,25 @@ def test_json_alone_on_standard_output_and_a_film(tmp_path):
     assert (abs(pictures[0].astype(int) - pictures[-1].astype(int)) > 60).any()  # something moved
 
 
+def test_the_readmes_film_of_ones_own_shape(tmp_path):
+    """As a new user does it: the block as it stands there, in 15 lines at the most, and the command beside it."""
+    imageio = pytest.importorskip("imageio.v2")
+    pytest.importorskip("pygame")
+    (block,) = (
+        b for b in (ROOT / "README.md").read_text().split("```python\n")[1:] if "hook = ra.Outline" in b
+    )
+    program = block.split("```")[0]
+    assert len([line for line in program.splitlines() if line.strip()]) <= 15
+    assert "-m rigidarea run --film hook hook.py" in (ROOT / "README.md").read_text()
+    (tmp_path / "hook.py").write_text(program)
+    done = command(tmp_path, "--film", "hook", "--json", "told.json", "hook.py")
+    assert done.returncode == 0, done.stderr
+    told = json.loads((tmp_path / "told.json").read_text())["results"]
+    pictures = imageio.mimread(tmp_path / told["film"], memtest=False)
+    assert len(pictures) > 30
+    assert (abs(pictures[0].astype(int) - pictures[-1].astype(int)) > 60).any()
+
+
 def test_frames_and_the_other_engine(tmp_path):
     (tmp_path / "game.py").write_text(PROGRAM)
     done = command(tmp_path, "--engine", "pymunk", "--frames", "5", "game.py")
