@@ -32,7 +32,7 @@ class SimulationError(RuntimeError):
     """A step went wrong for a reason that the message names (body and step)."""
 
 
-def _take_out(space: Any, joint: Any, body: Any, pivot: int, *kept: Any) -> None:
+def _take_out(space: Any, joint: Any, body: Any, pivot: int, kept: Any) -> None:
     """Remove the hidden constraint from Chipmunk's space, and free it."""
     lib.cpSpaceSetUserData(space, ffi.NULL)
     lib.cpSpaceRemoveConstraint(space, joint)
@@ -92,9 +92,9 @@ class AreaContact:
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
-        self._end = weakref.finalize(
-            space, _take_out, space._space, *self._hidden, self._classes, self._store
-        )
+        joint, body, pivot = self._hidden
+        kept = self._classes, self._store
+        self._end = weakref.finalize(space, _take_out, space._space, joint, body, pivot, kept)
         try:
             self._register()
             if self._memory is not None:
