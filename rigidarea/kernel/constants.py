@@ -30,6 +30,8 @@ MOST_ARRIVED = 2.0
 LEAST_RESTITUTION = 0.01
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
 LOOK = 0.5
+#: And so many looks at the most: 100 times the sound of air, at a card, in a frame. What is faster may pass.
+MOST_LOOKS = 1e4
 #: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
 HIT = 0.05
 #: Fraction of the chord on which a concave outline lies (of a gear: a tooth's) that it may move by in a substep.

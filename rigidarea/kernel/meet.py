@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .constants import HIT, LOOK, MOST_ARRIVED, REST_KICKS
+from .constants import HIT, LOOK, MOST_ARRIVED, MOST_LOOKS, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .extent import extent
 from .jit import kernel
@@ -245,7 +245,7 @@ def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     n = h * (way + turn) / least
     if n <= 1.0:
         return 1
-    return int(min(n, 1e6)) + 1
+    return int(min(n, MOST_LOOKS)) + 1
 
 
 @kernel
