@@ -1,4 +1,4 @@
-"""The search that takes all rows together, against dense algebra: exact on trees, never uphill, never beyond a bound."""
+"""The search that takes all rows together, against dense algebra: exact on trees, never uphill, no bound passed."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from rigidarea.kernel import conjugate, row, tables
 
 
 def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e9) -> SimpleNamespace:
-    """Rows between the bodies of `pairs` (body 0 is fixed), anyhow: faces, compliances, masses, velocities, impulses."""
+    """Rows between the bodies of `pairs` (body 0 is fixed), anyhow: faces, compliances, masses, velocities."""
     rng = np.random.default_rng(seed)
     bodies = np.zeros(n, tables.BODY)
     bodies["inverse_mass"][1:] = 10 ** rng.uniform(-2, 1, n - 1)
@@ -32,7 +32,6 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
         r["friction"], r["weight"] = friction, 1e-6
         r["l1"], r["l2"], r["lt"] = 1e6, 1e6, 0.0  # far from every bound
         r["f1"], r["f2"], r["ft"] = (r["l1"], r["l2"], r["lt"]) + rng.normal(size=3)
-    empty = {name: np.zeros(0) for name in tables.Tables._fields}
     counters = np.zeros(tables.COUNTERS, np.int64)
     counters[tables.BODIES], counters[tables.ROWS] = n, len(pairs)
     mine = dict(

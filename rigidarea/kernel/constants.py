@@ -30,7 +30,7 @@ MOST_ARRIVED = 2.0
 LEAST_RESTITUTION = 0.01
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
 LOOK = 0.5
-#: And so many looks at the most: 100 times the sound of air, at a card, in a frame. What is faster may pass.
+#: And so many looks at the most: a card of 2 mm is met at up to 1,200 m/s, two substeps a frame.
 MOST_LOOKS = 1e4
 #: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
 HIT = 0.05
