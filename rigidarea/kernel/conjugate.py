@@ -9,8 +9,9 @@ Systems, 10.3).
 In a pile, where supports are shared, it is the preconditioner of conjugate gradients (Hestenes & Stiefel, J Res NBS 49
 (1952), doi:10.6028/jres.049.044): two steps leave what a hundred sweeps leave.
 
-The system is that of the rows that bear: an end that presses, friction that grips. An end that the step would pull
-on is let go, and the search begins anew; what ought to press again is found by the sweeps before and after.
+The system is that of the rows that bear: a face on both ends, a point that presses, friction that grips. An end that the
+step would pull on is let go, and the search begins anew; what ought to press again is found by the sweeps before and
+after.
 """
 
 from __future__ import annotations
@@ -125,6 +126,10 @@ def _bears(row: Any, f: Any) -> bool:
     given = row.gamma_a == 0.0  # an impact that the steps follow: its force is given
     f.first = not given and row.l1 > 0.0
     f.second = not given and row.ends == 2 and row.l2 > 0.0
+    if row.ends == 2 and not (f.first and f.second):
+        # what a half open face does follows both of its ends, and both bodies: no energy has that for its slope
+        f.first = 0
+        f.second = 0
     f.grip = most > 0.0 and abs(row.lt) < most
     f.p1 = 0.0
     f.p2 = 0.0
@@ -227,9 +232,7 @@ def _residual(row: Any, f: Any, a: Any, b: Any) -> None:
         f.r1 = f.e11 * (row.f1 - row.l1) + f.e12 * (row.f2 - row.l2) + v1
         f.r2 = f.e12 * (row.f1 - row.l1) + f.e22 * (row.f2 - row.l2) + v2
     elif f.first:
-        f.r1 = f.e11 * (row.f1 - row.l1) + v1 + row.gamma_b / row.gamma_a * v2
-    elif f.second:
-        f.r2 = f.e22 * (row.f2 - row.l2) + v2 + row.gamma_b / row.gamma_a * v1
+        f.r1 = f.e11 * (row.f1 - row.l1) + v1
     slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
     f.rt = f.et * (row.ft - row.lt) + slip - row.tt
 
