@@ -53,7 +53,9 @@ def damping(kernel: Any, stiffness: float, inverse: float, h: float, e: float, f
     """C of the row, after its docstring: c + theta (1 + S) h k L."""
     phase2 = stiffness * inverse * h * h
     theta = max(0.0, 1.0 - (followed / phase2) ** 2) if phase2 > followed else 0.0
-    steps = kernel.constants.RELEASE_STEPS * max(1.0, math.sqrt(phase2))
+    rules = kernel.constants
+    slowest = max(rules.RELEASE_STEPS, 1.0 / (rules.RELEASE_SPEED * h))  # a second
+    steps = min(rules.RELEASE_STEPS * max(1.0, math.sqrt(phase2)), slowest)
     c = 2.0 * kernel.impact.damping_ratio(e) * math.sqrt(stiffness / inverse)
     return c + theta * (1.0 + steps) * h * stiffness
 
@@ -188,7 +190,9 @@ def test_every_bound_holds(
     kernel.row.settle(row, got.region, got.law, got.pair, a, b, h, True)
     r = got.region
     assert r["force"] == pytest.approx(normal / h)
-    assert abs(r["spring"]) <= c["friction"] * r["force"] * (1 + 1e-12) or c["friction"] == 0
+    assert (
+        abs(r["spring"]) <= c["friction"] * r["force"] * (1 + 1e-12) + 1e-300
+    )  # subnormal numbers round as they like
 
 
 def same(kernel: Any, one: Any, other: Any, turned: Any) -> None:
@@ -296,12 +300,16 @@ def test_a_bounce_shorter_than_the_step(kernel: Any, a: Any, b: Any, c: Any, h: 
 def test_what_would_come_to_touch_is_let_come_so_far(
     kernel: Any, a: Any, b: Any, c: Any, h: float, speed: float
 ) -> None:
-    """An overlap yet to come: the row allows the closing speed `back`, and no less."""
+    """An overlap yet to come, in `back`: what is left of its gap may be closed in this substep, and no less."""
     a, b = body(kernel, **a), body(kernel, **b)
-    row = row_of(kernel, a, b, h, mode=kernel.tables.NEARING, back=speed, **(c | dict(friction=0.0))).row
+    ahead, rest = 0.01 + 0.1 * speed, 0.01
+    changes = dict(friction=0.0, back=ahead, depth=0.04, rest_depth=rest, straight=0.0)
+    row = row_of(kernel, a, b, h, mode=kernel.tables.NEARING, **(c | changes)).row
     before = closing(row, a, b)
+    left = (before * ahead - 0.04 + rest) / h
     kernel.row.visit(row, a, b)
-    assert closing(row, a, b) == pytest.approx(min(before, speed), abs=1e-11)
+    # 1e-11 of speeds of up to 1e2 over the step
+    assert closing(row, a, b) == pytest.approx(min(before, left), abs=1e-11 * (1 + 1 / h))
 
 
 @pytest.mark.parametrize("power", [1.0, 1.5, 2.0])
