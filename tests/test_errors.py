@@ -184,9 +184,6 @@ def test_without_gravity_a_stiffness_is_found_all_the_same():
     assert np.abs(state(space)[:, 3:]).max() < 3e-3
 
 
-@pytest.mark.xfail(
-    reason="bodies 1 and 2 leave at 0.049 and 0.068 of the impact's speed (k chosen, 2 substeps)", strict=True
-)
 def test_without_gravity_an_impact_without_restitution_is_one():
     space = scene(gravity=(0, 0))
     contact = ra.attach(space)

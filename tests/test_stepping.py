@@ -55,10 +55,6 @@ def test_stability_limit_of_a_single_contact_is_two():
     assert bounce_of_undamped_box(2.02) > 1000  # grows by a factor of 1.33 a step until it leaves the line
 
 
-@pytest.mark.xfail(
-    reason="x 0.310 in frames of 1/30 s, 0.293 of 1/120 s; 0.370 at 512 substeps",
-    strict=True,
-)
 def test_frames_of_any_length_tell_the_same_story():
     """1/30 and 1/120 s frames end alike, to the order of the step."""
     ends = []

@@ -17,7 +17,7 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.conjugate import search_together
-from ..kernel.constants import MOST_SUBSTEPS, SEARCH_SWEEPS
+from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, SEARCH_SWEEPS
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
@@ -28,8 +28,10 @@ from ..kernel.solve import (
     finish,
     finite,
     gather,
+    held_back,
     join,
     kick,
+    kinetic,
     needed,
     place,
     respond_explicitly,
@@ -280,6 +282,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         tables = load_tables(s)
         if s.joint_count > 0:
             _start_joints(s, tables, h, 1.0 / s.substeps_before if i == 0 else 1.0)
+        energy = kinetic(tables)
         warm_start(tables)
         searches = s.sweeps // SEARCH_SWEEPS
         sweeps = s.sweeps if s.joint_count > 0 else s.sweeps - 2 * searches
@@ -300,6 +303,12 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
                 _joints(s, tables, APPLY, h)
             if k == sweeps // 3:
                 search_together(tables, searches)
+        if s.joint_count == 0:  # contacts add no energy: where they do, they are not solved yet
+            most = GAINED * energy + held_back(tables, h)
+            for k in range(MORE_SWEEPS * s.sweeps):
+                if kinetic(tables) <= most:
+                    break
+                sweep(tables, k % 2 == 0)
         if s.joint_count > 0:
             for joint in joints_of(s):
                 if joint.taken:

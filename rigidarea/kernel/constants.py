@@ -44,7 +44,7 @@ WEIGHTLESS_PHASE2 = 40.0
 #: Time over which the load that a pair carries is averaged (time).
 LOAD_TIME = 0.5
 #: A stiffness grows by no more than this factor a frame, and shrinks by that one.
-MOST_STIFFER = 2.0
+MOST_STIFFER = 1.2
 SOFTER = 1.05
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
@@ -53,3 +53,7 @@ STRAIGHT_WAY = 0.1
 SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 5
+#: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
+#: converged: sweeps go on, up to so many times as many.
+GAINED = 1.005
+MORE_SWEEPS = 3

@@ -339,6 +339,29 @@ def sweep(tables: Tables, up: bool) -> None:
 
 
 @kernel
+def kinetic(tables: Tables) -> float:
+    """Kinetic energy of all that contacts may move."""
+    total = 0.0
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.inverse_mass > 0.0:
+            total += 0.5 * (body.vx * body.vx + body.vy * body.vy) / body.inverse_mass
+        if body.inverse_moment > 0.0:
+            total += 0.5 * body.w * body.w / body.inverse_moment
+    return total
+
+
+@kernel
+def held_back(tables: Tables, h: float) -> float:
+    """At least what the rows' springs hold, and could give back (energy)."""
+    total = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        total += (row.f1 + row.f2) / h * tables.regions[row.region].depth
+    return total
+
+
+@kernel
 def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
     for i in range(tables.counters[ROWS]):
