@@ -3,12 +3,10 @@ tables."""
 
 from __future__ import annotations
 
-import re
-import shutil
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
+from ..study import page
 from ..study.draw import pyplot
 from ..study.page import markdown, number
 from ..study.records import Row
@@ -108,16 +106,5 @@ def renew(docs: Path, report: Row, shown: Path) -> None:
 
     Raises ValueError for a page without a place for one.
     """
-    docs.mkdir(parents=True, exist_ok=True)
-    shutil.copyfile(shown, docs / "plan.png")
-    target = docs / "plan.md"
-    tables: dict[str, Any] = {"summary": summaries(report), "outside": outside(report)}
-    text = (
-        target.read_text() if target.exists() else "".join(f"<!-- {n} -->\n<!-- /{n} -->\n" for n in tables)
-    )
-    for name, table in tables.items():
-        marked = re.compile(f"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
-        if not marked.search(text):
-            raise ValueError(f"{target} has no place for the table {name!r}: expected a line <!-- {name} -->")
-        text = marked.sub(lambda found, table=table: found[1] + table + found[2], text)  # type: ignore[misc]
-    target.write_text(text)
+    tables = {"summary": summaries(report), "outside": outside(report)}
+    page.renew(docs, tables, {"plan.png": shown}, "plan.md")

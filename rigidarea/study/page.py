@@ -21,8 +21,10 @@ from .records import Row
 NAME = "study.md"
 
 
-def renew(docs: Path, tables: Mapping[str, str], pictures: Mapping[str, Path]) -> None:
-    """Put `pictures` (name in `docs`: file) and `tables` (name: Markdown) into the folder `docs`.
+def renew(
+    docs: Path, tables: Mapping[str, str], pictures: Mapping[str, Path], name_of_page: str = NAME
+) -> None:
+    """Put `pictures` (name in `docs`: file) and `tables` (name: Markdown, in that page) into the folder `docs`.
 
     Raises ValueError for a table that the page has no place for.
     """
@@ -31,7 +33,7 @@ def renew(docs: Path, tables: Mapping[str, str], pictures: Mapping[str, Path]) -
         shutil.copyfile(picture, docs / name)
     if not tables:
         return
-    target = docs / NAME
+    target = docs / name_of_page
     text = (
         target.read_text() if target.exists() else "".join(f"<!-- {n} -->\n<!-- /{n} -->\n" for n in tables)
     )
