@@ -596,6 +596,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
+            if region.first_speed > 0.0:  # a bounce is not what comes next, nor what others are to meet
+                region.l1 = 0.0
+                region.l2 = 0.0
+                region.lt = 0.0
             region.mode = REST
     free_regions(regions, counters, old)
     pair.head = kept

@@ -115,6 +115,10 @@ PAIR = record(
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
+        (
+            "firm",
+            "f8",
+        ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
         (
@@ -285,6 +289,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.jx = 0.0
         pair.jy = 0.0
         pair.stiffness = 0.0
+        pair.firm = 0.0
         pair.carrying = 0.0
         pair.area = 0.0
         pair.axis_x = 0.0
