@@ -102,7 +102,7 @@ def silence(constraint: int, dt: float) -> None:
 def _start(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
 
-    Their kicks are those of the whole frame.
+    What those did is spread over the frame (`gain`).
 
     False: the state of one (`broken`) is not finite. Later that would have spread to others.
     """
@@ -132,20 +132,20 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
             s.broken = i if s.broken < 0 else s.broken
             continue
         whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
-        body.kick_x = 0.0
-        body.kick_y = 0.0
-        body.kick_w = 0.0
+        body.gain_x = 0.0
+        body.gain_y = 0.0
+        body.gain_w = 0.0
         if not whole:
-            body.kick_x = body.vx - body.old_vx
-            body.kick_y = body.vy - body.old_vy
-            body.kick_w = body.w - body.old_w
+            body.gain_x = body.vx - body.old_vx
+            body.gain_y = body.vy - body.old_vy
+            body.gain_w = body.w - body.old_w
             body.vx = body.old_vx
             body.vy = body.old_vy
             body.w = body.old_w
         elif s.explicit:  # the kick has been given; contacts want to know it all the same
-            body.kick_x = body.vx - body.old_vx
-            body.kick_y = body.vy - body.old_vy
-            body.kick_w = body.w - body.old_w
+            body.gain_x = body.vx - body.old_vx
+            body.gain_y = body.vy - body.old_vy
+            body.gain_w = body.w - body.old_w
     return bool(s.broken < 0)
 
 
@@ -298,6 +298,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     if not _start(s, space, load_tables(s)):
         return False
     _everybody(s, space)
+    share_kicks(load_tables(s), 1)
     if not _contacts(s, space, dt, dt):
         return False
     tables = load_tables(s)

@@ -175,9 +175,9 @@ def share_kicks(tables: Tables, n: int) -> None:
     """Of what a frame adds to the velocities of those that are live, a substep's share."""
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
-        body.kick_x /= n
-        body.kick_y /= n
-        body.kick_w /= n
+        body.kick_x = body.gain_x / n
+        body.kick_y = body.gain_y / n
+        body.kick_w = body.gain_w / n
 
 
 @kernel

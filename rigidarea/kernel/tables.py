@@ -37,7 +37,10 @@ BODY = record(
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
-        ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
+        ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
+        ("gain_y", "f8"),
+        ("gain_w", "f8"),
+        ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)

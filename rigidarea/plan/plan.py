@@ -140,11 +140,8 @@ class Plan:
         """Settings to weigh: of each number of steps and sweeps the penetration that suits it best."""
         steps = (given["steps"],) if "steps" in given else STEPS
         piled = found.piled
-        tips = found.corner is not None
-        least = est.LEAST_PILE_SWEEPS if piled or tips else est.LEAST_SWEEPS
-        most = max(
-            2 * least, found.wanted / 2.0
-        )  # with more of them, more is conjugate: it helps heavy loads alone
+        least = found.least_sweeps
+        most = 2 * est.LEAST_PILE_SWEEPS  # beyond, substeps help more
         sweeps = (given["sweeps"],) if "sweeps" in given else tuple(n for n in SWEEPS if least <= n <= most)
         if not piled:
             sweeps = sweeps[:1]
@@ -161,7 +158,8 @@ class Plan:
         native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
         if native:
             slop = given.get("penetration", SLOP * self.tolerance / found.tower)
-            out += [Setting("pymunk", n, m, slop) for n in steps for m in sweeps]
+            native_sweeps = (given["sweeps"],) if "sweeps" in given else SWEEPS if piled else SWEEPS[:1]
+            out += [Setting("pymunk", n, m, slop) for n in steps for m in native_sweeps]
         return out
 
     def _asked_turns(self, found: Facts) -> None:

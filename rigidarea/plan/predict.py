@@ -77,10 +77,11 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         error = LEAN * math.sqrt(p) + 0.5 * g * h * h * f.leaning.value
         told.append(Cause("corner", error, bodies[f.leaning.body], f"leans on a corner, sqrt({p:.0e})"))
     if f.pile:
-        error = est.pile_sag(g, h, 1.0 / f.pile.value, f.wanted, s.sweeps)
-        if s.sweeps < est.LEAST_PILE_SWEEPS or s.steps < est.LEAST_PILE_STEPS:
+        wanted = est.sweeps_ours(f.wanted, f.shared)
+        error = est.pile_sag(g, h, 1.0 / f.pile.value, wanted, s.sweeps)
+        if s.sweeps < f.least_sweeps or s.steps < f.least_steps:
             error = max(error, LOST)
-        text = f"{f.wanted:.0f} sweeps carry its load, {f.tower} high" + (
+        text = f"{wanted:.0f} sweeps carry its load, {f.tower} high" + (
             f", {f.crossings:.0f} seams" * (f.crossings > 1.0)
         )
         told.append(Cause("pile", float(error), bodies[f.pile.body], text))
@@ -157,11 +158,11 @@ def _shared(f: Facts, s: Setting, h: float) -> list[Cause]:
             )
         )
     if f.driven[0] > 0.0:
-        turn = f.driven[0] * h
-        error = 0.5 * turn if f.driven[1] else turn * turn
-        told.append(
-            Cause("drive", min(LOST, error), f.seen.shapes[f.driven[2]], f"turns by {turn:.1e} rad a substep")
-        )
+        turn = (
+            f.driven[0] * h
+        )  # within a substep the direction stays: the ratio is off by that at half its turn
+        text = f"turns by {turn:.1e} rad a substep, where it bears"
+        told.append(Cause("drive", min(LOST, 0.5 * turn), f.seen.shapes[f.driven[1]], text))
     if f.teeth[0] > s.steps:
         told.append(
             Cause(
@@ -187,8 +188,8 @@ def _native(f: Facts, s: Setting) -> list[Cause]:
     if g > 0.0:
         told.append(Cause("first order", h / f.time, None, f"h/T = {h / f.time:.1e}"))
     else:  # impulses are exact; the direction in which they act is that of the step after touch
-        late = f.seen.apart * h / float(f.seen.extent.min(initial=math.inf))
-        told.append(Cause("first order", min(LOST, late), None, f"v h/s = {late:.1e}"))
+        late = max(f.offset * h, h / f.time, f.tumbling * h)
+        told.append(Cause("first order", min(LOST, late), None, f"met {h:.1e} late"))
     if f.landing:
         error = g * h * f.landing.value
         told.append(Cause("landing", min(LOST, error), bodies[f.landing.body], f"g h/v = {error:.1e}"))
