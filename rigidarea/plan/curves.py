@@ -32,7 +32,9 @@ class Facet(NamedTuple):
     extent: float  # of the smallest body that lies on it (length)
     clearance: float  # least difference of radii to what lies in it or around it (length)
     known: bool  # whether it can be sampled anew
-    lever: float  # of a tooth: how far from the pitch point it bears, over the radius; of a pin: its radius over its arm
+    lever: (
+        float  # of a tooth: how far from the pitch point it bears, over the radius; of a pin: radius over arm
+    )
     driven: bool  # turned by something, against teeth or slots
 
     def error(self, p: float, turn: float, pressed: bool) -> float:
@@ -40,7 +42,7 @@ class Facet(NamedTuple):
         sagitta = float(est.tolerance_for_turn(self.radius, turn))
         if (
             self.driven or not pressed
-        ):  # driven: the direction swings by the turn, rms turn/sqrt(12), the ratio by that at its lever
+        ):  # the direction swings by the turn, rms turn/sqrt(12), the ratio by that lever
             return self.lever * turn / math.sqrt(12.0)
         lost = float(est.facet_loss(turn, self.angle, sagitta, p * self.extent))
         return min(LOST, max(lost, sagitta / self.clearance))
@@ -96,14 +98,15 @@ def facets_of(seen: Survey, time: float) -> list[Facet]:
             lever = abs(float(seen.radius[k])) / (abs(float(seen.radius[k])) + arm)
         found.append(
             Facet(
-                *(k, facet_angle(outline), run_over(seen, k, time), abs(float(seen.radius[k]))),
-                *(
-                    extent if math.isfinite(extent) else 0.0,
-                    clearance(seen, k),
-                    outline._resample is not None,
-                    lever,
-                    driven(seen, k),
-                ),
+                shape=k,
+                turn=facet_angle(outline),
+                angle=run_over(seen, k, time),
+                radius=abs(float(seen.radius[k])),
+                extent=extent if math.isfinite(extent) else 0.0,
+                clearance=clearance(seen, k),
+                known=outline._resample is not None,
+                lever=lever,
+                driven=driven(seen, k),
             )
         )
     return found

@@ -1,7 +1,7 @@
 """Parts of a space that nothing connects, each planned for itself: what is delicate makes nobody else pay.
 
-Islands are those of the frame (`kernel.islands`): what is near, or jointed, directly or through others that move. Islands
-of a kind are one part: teeth and slots at work; what touches others that move; what is alone.
+Islands are those of the frame (`kernel.islands`): what is near, or jointed, directly or through others that move.
+Those of a kind are one part: teeth and slots at work; what touches others that move; what is alone.
 """
 
 from __future__ import annotations

@@ -99,25 +99,16 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         if phase2 < FOLLOWED:
             told.append(Cause("followed", FOLLOWED_BOUNCE, None, f"(w h)² = {phase2:.2g} < {FOLLOWED}"))
     for rate, extent, rho, who, lasts, bounces in f.curves:
-        pressed = 1.0 + rate * rho / g  # k follows the load, and here it is g + v²/rho
+        pressed = 1.0 + rate * rho / g  # k follows the load on the average, and here it is g + v²/rho
         lost = est.curve_loss(math.sqrt(rate), 1.0, h, lasts, est.resting_phase2(g * pressed, h, p, extent))
-        told.append(
-            Cause(
-                "curve",
-                min(LOST, lost),
-                bodies[int(who)],
-                f"turns by {math.sqrt(rate) * h:.1e} rad a substep",
-            )
-        )
-        sinks = p * max(pressed, extent / rho) / (TANGENT_STIFFNESS if f.rough else 1.0)
-        told.append(
-            Cause(
-                "sinking",
-                min(LOST, sinks),
-                bodies[int(who)],
-                f"{p * extent / rho:.1e} of its clearance or path",
-            )
-        )
+        sinks = p * max(pressed, pressed ** (2.0 / 3.0) * extent / rho)  # an arc's lens is d^(3/2)
+        if f.rough:
+            lost *= ROLLING
+            sinks /= TANGENT_STIFFNESS
+        turns = f"turns by {math.sqrt(rate) * h:.1e} rad a substep"
+        told.append(Cause("curve", min(LOST, lost + sinks), bodies[int(who)], turns))
+        text = f"{p * extent / rho:.1e} of its clearance or path"
+        told.append(Cause("sinking", min(LOST, sinks), bodies[int(who)], text))
         if (
             bounces
         ):  # about as fast as from its side: how deep that goes over the clearance, and where touch lies
@@ -140,6 +131,8 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
     return told + _shared(f, s, h)
 
 
+#: What friction rolls along a curve loses so many times as much.
+ROLLING = 1.5
 #: What leans has a corner at either end, and each sinks.
 LEAN = 2.0
 #: A tower is planned as if so many times as high: buckling grows slowly near its limit.
