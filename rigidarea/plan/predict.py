@@ -117,6 +117,12 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
             told.append(
                 Cause("bounce", min(LOST, max(deep, late)), bodies[int(who)], f"in a clearance of {rho:.2g}")
             )
+    if g > 0.0 and math.isfinite(f.seat):
+        most = max(est.driven_penetration(g, h, f.seat), STIFFEST)
+        if p > most:
+            told.append(
+                Cause("teeth give", LOST, f.seen.shapes[f.driven[1]], f"p <= {most:.0e}, or they swing")
+            )
     depth, pair = f.overlapped
     if depth > ALREADY:
         shape = f.seen.shapes[f.seen.pairs[pair, 0]]
@@ -131,6 +137,8 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
     return told + _shared(f, s, h)
 
 
+#: Penetration that is as good as none.
+STIFFEST = 1e-9
 #: What friction rolls along a curve loses so many times as much.
 ROLLING = 1.5
 #: What leans has a corner at either end, and each sinks.
