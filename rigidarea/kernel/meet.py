@@ -40,6 +40,7 @@ from .tables import (
     Tables,
     free_regions,
 )
+from .turning import curvatures
 
 DONE, GROW_WORK, GROW_REGIONS = 0, 1, 2
 
@@ -55,6 +56,8 @@ class Patch(NamedTuple):
     chord: float
     middle: float
     straight: float
+    curve_a: float
+    curve_b: float
     depth: float
     reach: float  # its extent along the direction
     blind: bool  # the chord is nothing: no direction of its own
@@ -144,7 +147,13 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
     depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
     reach = _reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
     straight = min(loop.straight, chord)
-    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, reach, blind)
+    curve_a = 0.0
+    curve_b = 0.0
+    if straight == 0.0 and loop.arcs > 0 and not blind:
+        curve_a, curve_b = curvatures(
+            work.polygon, work.label, work.bows, loop.start, loop.stop, loop.area, chord
+        )
+    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, curve_a, curve_b, depth, reach, blind)
 
 
 @kernel
@@ -186,6 +195,8 @@ def _fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float)
     region.chord = patch.chord
     region.middle = patch.middle
     region.straight = patch.straight
+    region.curve_a = patch.curve_a
+    region.curve_b = patch.curve_b
     region.depth = patch.depth
     region.arm_a = (patch.x - ax) * patch.ny - (patch.y - ay) * patch.nx
     region.arm_b = (patch.x - bx) * patch.ny - (patch.y - by) * patch.nx
@@ -388,6 +399,8 @@ def _enter(
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
     slow = _slow(law, gain, stiffness * inverse, h)
+    if region.mode == REST and not placed and phase2 > law.followed and min(1.0, pair.elasticity) * u > slow:
+        region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
     region.first_speed = max(u, 0.0)
     region.opened = 0
     if u <= slow:
@@ -560,6 +573,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             patch.chord,
             middle,
             straight,
+            0.0 if past else patch.curve_a,
+            0.0 if past else patch.curve_b,
             patch.depth,
             patch.reach,
             patch.blind,
@@ -596,6 +611,12 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
+            if (
+                region.mode == STRUCK and region.first_speed > 0.0
+            ):  # it has bounced: that says nothing of a load
+                region.l1 = 0.0
+                region.l2 = 0.0
+                region.lt = 0.0
             region.mode = REST
     free_regions(regions, counters, old)
     pair.head = kept
