@@ -79,6 +79,17 @@ def curvatures(
     return of_a, area * scale - of_a
 
 
+@kernel(forceinline=True)
+def curvature_of_disc(radius: float, chord: float) -> float:
+    """The same of a disc's side alone, no more than half a turn (1/length)."""
+    x = min(1.0, 0.5 * chord / radius)
+    if x * x < FLAT:
+        between, _ = flat_segment(x, x * x)
+    else:
+        between = math.asin(x) - x * math.sqrt((1.0 - x) * (1.0 + x))
+    return 1.5 * between / (radius * x * x * x)
+
+
 @kernel
 def turning_speed(r: Any, a: Any, b: Any, friction: float, h: float) -> float:
     """The closing speed that leaves no gap behind a drift of h (length/time).
