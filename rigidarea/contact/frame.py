@@ -340,9 +340,7 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
                 _joints(s, tables, APPLY, h)
             if k == sweeps // 3:
                 search_together(tables, searches)
-        if moved <= small and (
-            jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)
-        ):
+        if moved <= small and (jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)):
             break
     return True
 

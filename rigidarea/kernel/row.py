@@ -32,6 +32,7 @@ from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
 from .stiffness import area_allowed
 from .tables import IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
+from .turning import turning_speed
 
 ROW = record(
     [
@@ -294,6 +295,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
+            row.t1 = turning_speed(r, a, b, row.lt, h)
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib

@@ -169,6 +169,11 @@ REGION = record(
         ("chord", "f8"),  # (length)
         ("middle", "f8"),  # of the chord, from the point of application along it (length)
         ("straight", "f8"),  # of the chord, as far as both boundaries are straight (length)
+        (
+            "curve_a",
+            "f8",
+        ),  # curvatures of the two sides (1/length), where not both have a straight stretch; else 0
+        ("curve_b", "f8"),
         ("depth", "f8"),  # extent along the direction (length)
         # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
         ("back", "f8"),
