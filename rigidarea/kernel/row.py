@@ -298,7 +298,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
-            row.t1 = turning_speed(r, a, b, row.lt, h)
+            most = HIT * least / h  # in a crash the impulse before says nothing of the next slip
+            row.t1 = min(most, max(-most, turning_speed(r, a, b, row.lt, h)))
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
