@@ -18,7 +18,7 @@ from ..chipmunk import function
 from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
-from ..kernel.solve import place
+from ..kernel.place import place
 from ..kernel.tables import (
     ANEW,
     BODIES,

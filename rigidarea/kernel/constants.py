@@ -52,7 +52,7 @@ STRAIGHT_WAY = 0.1
 #: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
 SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
-SEARCH_SWEEPS = 5
+SEARCH_SWEEPS = 10
 #: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
 #: converged.
 GAINED = 1.005
