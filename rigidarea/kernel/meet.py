@@ -624,9 +624,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
-            if (
-                region.mode == STRUCK and region.first_speed > 0.0
-            ):  # it has bounced: that says nothing of a load
+            if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
                 region.l1 = 0.0
                 region.l2 = 0.0
                 region.lt = 0.0
