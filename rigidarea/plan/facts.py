@@ -248,8 +248,9 @@ def _drops(seen: Survey) -> tuple[Array, NDArray[np.bool_], float]:
         found = below[np.arange(len(k)), under]
         drops[seen.owner[k[found]]] = (low[k] - high[under])[found]
         above, base = seen.owner[k[found]], seen.owner[under[found]]
-        lands[above] = seen.moves[base]
-        heavier = max(heavier, float((seen.mass[above] / seen.mass[base])[seen.moves[base]].max(initial=1.0)))
+        lands[above] = seen.mobile[base]
+        weight = seen.inertia[above] / seen.inertia[base]
+        heavier = max(heavier, float(weight[seen.mobile[base]].max(initial=1.0)))
     return drops, lands, heavier
 
 
@@ -273,7 +274,11 @@ def _curves(seen: Survey, time: float) -> Array:
         fall = seen.boxes[mover, axis] - seen.boxes[ground, axis]
     else:
         fall = seen.boxes[ground, axis + 2] - seen.boxes[mover, axis + 2]
-    fall = np.where(seen.radius[mover] < 0.0, rho, fall)  # a ring hangs: it starts no higher than its middle
+    middle = 0.5 * (seen.boxes[:, axis] + seen.boxes[:, axis + 2])
+    hung = (middle[mover] - middle[ground]) * (1.0 if seen.gravity[axis] < 0.0 else -1.0) + rho
+    fall = np.where(
+        seen.radius[mover] < 0.0, hung, fall
+    )  # a ring hangs: over the lowest that its middle may come
     drop = np.clip(np.minimum(fall, min(2.0 * float(rho.max()), 0.5 * seen.g * time**2)), 0.0, 2.0 * rho)
     speed = seen.speed[seen.owner[mover]] + seen.speed[seen.owner[ground]]
     rate = (speed**2 + seen.g * drop) / rho**2  # the mean of v² on the way down
@@ -291,7 +296,7 @@ def _curves(seen: Survey, time: float) -> Array:
 
 def _gap(seen: Survey) -> tuple[float, int]:
     """Where a body waits close behind another that is about to be struck: gap over speed (time), and who."""
-    fastest = float(seen.speed[seen.moves].max(initial=0.0))
+    fastest = seen.fastest
     if fastest == 0.0 or not len(seen.pairs):
         return math.inf, -1
     a, b = seen.owner[seen.pairs].T

@@ -129,7 +129,9 @@ class Plan:
             self.reachable = self.error <= MARGIN * self.tolerance
         self._parts = []
         if chosen.level == "rigid" and "steps" not in given:
-            apart = self._apart(given, cost if best or keep else math.inf, chosen if keep else None)
+            apart = self._apart(
+                given, cost if best or keep else math.inf, Setting(self.level, *before) if keep else None
+            )
             if apart is not None:
                 chosen, cost, self._parts = apart
                 self.reachable = True
@@ -214,7 +216,8 @@ class Plan:
             steps = [(_moving(part.facts), _touching(part.facts), n) for part, n in told]
             cost = costs.turns_frame(steps, sweeps)
             if cost < whole and (found is None or cost < found[1]):
-                found = Setting("rigid", min(n for _, n in told), sweeps, depth), cost, told
+                base = max(min(n for _, n in told), least.steps if least else 1)
+                found = Setting("rigid", base, sweeps, depth), cost, told
         return found
 
     def _within(self, part: Part, setting: Setting) -> bool:

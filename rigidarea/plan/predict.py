@@ -101,10 +101,12 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
     for rate, extent, rho, who, lasts, bounces in f.curves:
         pressed = 1.0 + rate * rho / g  # k follows the load on the average, and here it is g + v²/rho
         lost = est.curve_loss(math.sqrt(rate), 1.0, h, lasts, est.resting_phase2(g * pressed, h, p, extent))
-        sinks = p * max(pressed, pressed ** (2.0 / 3.0) * extent / rho)  # an arc's lens is d^(3/2)
-        if f.rough:
+        sinks = p * max(pressed, extent / rho) / (TANGENT_STIFFNESS if f.rough else 1.0)
+        if extent > CONFORMING * rho:
+            sinks = est.lens_depth(p, extent, rho)
+            lost *= HUGGING
+        elif f.rough:
             lost *= ROLLING
-            sinks /= TANGENT_STIFFNESS
         turns = f"turns by {math.sqrt(rate) * h:.1e} rad a substep"
         told.append(Cause("curve", min(LOST, lost + sinks), bodies[int(who)], turns))
         text = f"{p * extent / rho:.1e} of its clearance or path"
@@ -139,8 +141,10 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
 
 #: Penetration that is as good as none.
 STIFFEST = 1e-9
-#: What friction rolls along a curve loses so many times as much.
-ROLLING = 1.5
+#: What friction rolls along a curve loses so many times as much, and what swings in a clearance. Measured.
+ROLLING, HUGGING = 1.5, 2.0
+#: What is so many times as large as its clearance nearly fills it.
+CONFORMING = 4.0
 #: What leans has a corner at either end, and each sinks.
 LEAN = 2.0
 #: A tower is planned as if so many times as high: buckling grows slowly near its limit.

@@ -34,6 +34,9 @@ class Survey(NamedTuple):
     gravity: tuple[float, float]
     mass: Array  # (bodies,), infinite where nothing moves it
     moment: Array
+    fastest: float  # of all that moves, whatever part of it is looked at (length/time)
+    mobile: NDArray[np.bool_]  # (bodies,) which move on their own, likewise
+    inertia: Array  # (bodies,) mass, likewise
     velocity: Array  # (bodies, 2)
     speed: Array
     spin: Array
@@ -193,6 +196,9 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         gravity=gravity,
         mass=mass,
         moment=moment,
+        fastest=float(speed[free].max(initial=0.0)),
+        mobile=free,
+        inertia=mass,
         velocity=velocity,
         speed=speed,
         spin=np.abs(spin),
