@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
@@ -22,6 +22,7 @@ from .facts import AHEAD, Facts, facts
 from .parts import Part, parts_of
 from .predict import Cause, Setting, causes, total
 from .survey import survey
+from .table import Line, lines_of, text_of
 
 if TYPE_CHECKING:
     from .watch import Watch
@@ -40,17 +41,6 @@ SLOP = 0.1
 SECONDS = 10.0
 """Time that is planned for, unless it is said."""
 SETTINGS = ("level", "steps", "sweeps", "penetration", "stiffness", "sampling")
-
-
-class Line(NamedTuple):
-    """One line of a plan's table."""
-
-    what: str
-    choice: str
-    decided_by: str
-    error: float
-    cost_s: float  # a frame
-    target: Any  # what `Plan.override` takes for it; None: the whole space
 
 
 class Plan:
@@ -332,93 +322,11 @@ class Plan:
 
     @property
     def lines(self) -> list[Line]:
-        """The table: the space first, then what decides, shapes that are sampled anew, elastic bodies."""
-        mine = self.overrides.get(None, {})
-        head = f"{self.level}, {self.steps} x {self.sweeps} sweeps"
-        if self.level == "pymunk":
-            head += f", slop {self.penetration:.0e}"
-        elif self.stiffness is not None:
-            head += f", k {self.stiffness:.3g}"
-        else:
-            head += f", penetration {self.penetration:.0e}"
-        if mine:
-            head += f" (yours: {', '.join(sorted(mine))})"
-        worst = (
-            self.causes[0]
-            if self.causes
-            else Cause("nothing", 0.0, None, "nothing moves, or nothing touches")
-        )
-        out = [Line("space", head, f"{worst.name}: {worst.number}", self.error, self._frame_cost, None)]
-        seen = self._survey
-        share = self._frame_cost / max(1, int(seen.moves.sum()))
-        for cause in self.causes:
-            out.append(
-                Line(
-                    self._name(cause.who),
-                    "as the space",
-                    f"{cause.name}: {cause.number}",
-                    cause.error,
-                    share,
-                    cause.who,
-                )
-            )
-        for part, steps in self._parts:
-            worst = max(
-                causes(part.facts, self._setting(steps)), key=lambda cause: cause.error, default=worst
-            )
-            first = part.bodies[0]
-            out.append(
-                Line(
-                    f"{len(part.bodies)} {part.kind}",
-                    f"{steps} substeps",
-                    f"{worst.name}: {worst.number}",
-                    worst.error,
-                    self._cost_of(part, self._setting(steps)),
-                    first,
-                )
-            )
-        for target, settings in self.overrides.items():
-            if isinstance(target, pymunk.Body) and "steps" in settings:
-                text = f"{settings['steps']} substeps for its island (yours)"
-                out.append(Line(self._name(target), text, "", float("nan"), 0.0, target))
-        for shape, sagitta in self.sampling.items():
-            yours = " (yours)" if "sampling" in self.overrides.get(shape, {}) else ""
-            turn = est.facet_turn(abs(float(seen.radius[seen.shapes.index(shape)])) or 1.0, sagitta)
-            out.append(
-                Line(
-                    self._name(shape),
-                    f"sampled to {sagitta:.1e}{yours}",
-                    f"facets turn by {turn:.1e} rad",
-                    float("nan"),
-                    0.0,
-                    shape,
-                )
-            )
-        for choice in self.elastic:
-            yours = " (yours)" if choice.overridden else ""
-            out.append(
-                Line(
-                    self._name(choice.body),
-                    f"{choice.level}{yours}",
-                    choice.reason,
-                    choice.error,
-                    0.0,
-                    choice.body,
-                )
-            )
-        asleep = self.may_sleep
-        if asleep:
-            out.append(
-                Line(
-                    f"{len(asleep)} bodies",
-                    "may sleep",
-                    f"rest on something, slower than {self.idle_speed:.1e}",
-                    0.0,
-                    0.0,
-                    None,
-                )
-            )
-        return out
+        """The table: the space first, then what decides, parts, shapes that are sampled anew, elastic bodies."""
+        return lines_of(self)
+
+    def __str__(self) -> str:
+        return text_of(self)
 
     def _setting(self, steps: int) -> Setting:
         return Setting(self.level, steps, self.sweeps, self.penetration)
@@ -441,39 +349,6 @@ class Plan:
         rolls = np.zeros(len(seen.bodies), bool)
         rolls[seen.owner[seen.corners | (seen.radius != 0.0)]] = True
         return [seen.bodies[i] for i in np.flatnonzero(lies & still & seen.moves & ~rolls)]
-
-    def _name(self, who: Any) -> str:
-        if who is None:
-            return "space"
-        if isinstance(who, pymunk.Shape):
-            body = who.body
-            return f"{type(who).__name__} of {self._name(body)}" if body is not None else type(who).__name__
-        if who is self.space.static_body:
-            return "static_body"
-        for i, body in enumerate(self.space.bodies):
-            if body is who:
-                return f"bodies[{i}]"
-        return "a body that is gone"
-
-    def __str__(self) -> str:
-        rows = [("", "choice", "decided by", "error", "ms a frame")]
-        for line in self.lines:
-            error = "" if math.isnan(line.error) else f"{line.error:.1e}"
-            rows.append(
-                (
-                    line.what,
-                    line.choice,
-                    line.decided_by,
-                    error,
-                    f"{1e3 * line.cost_s:.3g}" if line.cost_s else "",
-                )
-            )
-        widths = [max(len(row[i]) for row in rows) for i in range(5)]
-        table = "\n".join(
-            "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows
-        )
-        verdict = "predicted" if self.reachable else "no setting is predicted to reach it: the least is"
-        return f"plan for {self.tolerance:g} over {self.seconds:g} s: {verdict} {self.error:.1e}\n{table}"
 
 
 def _moving(found: Facts) -> int:
