@@ -34,6 +34,7 @@ from ..kernel.solve import (
     join,
     kick,
     kinetic,
+    pace,
     place,
     respond_explicitly,
     sweep,
@@ -309,6 +310,42 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
+def _solve(s: Any, h: float, jointed: bool) -> bool:
+    """The sweeps and searches of a substep, and the rows that join them. Whether there was memory for those.
+
+    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
+    """
+    tables = load_tables(s)
+    energy = kinetic(tables)
+    small = pace(tables, load_law(s), energy, h)
+    warm_start(tables)
+    searches = s.sweeps // SEARCH_SWEEPS
+    sweeps = s.sweeps if jointed else s.sweeps - 2 * searches
+    for more in range(1 + MORE_SWEEPS):
+        look = 0
+        wait = 1
+        moved = 0.0
+        for k in range(sweeps):
+            if k == look:  # less and less often, as long as nobody joins
+                joined = _join(s, h, k == 0 and more == 0)
+                if joined < 0:
+                    return False
+                wait = 1 if joined > 0 else 2 * wait
+                look += wait
+                tables = load_tables(s)
+                if tables.counters[ROWS] == 0 and not jointed:
+                    return True  # nothing that could change a velocity
+            moved = sweep(tables, k % 2 == 0)
+            if jointed:
+                _joints(s, tables, APPLY, h)
+            if k == sweeps // 3:
+                search_together(tables, searches)
+        if moved <= small and (jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)):
+            break
+    return True
+
+
+@kernel
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
     h = dt / n
@@ -323,33 +360,9 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         tables = load_tables(s)
         if joints > 0:
             _start_joints(s, tables, h, i == 0)
-        energy = kinetic(tables)
-        warm_start(tables)
-        searches = s.sweeps // SEARCH_SWEEPS
-        sweeps = s.sweeps if joints > 0 else s.sweeps - 2 * searches
-        look = 0
-        wait = 1
-        for k in range(sweeps):
-            if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h, k == 0)
-                if joined < 0:
-                    return False
-                wait = 1 if joined > 0 else 2 * wait
-                look += wait
-                tables = load_tables(s)
-                if tables.counters[ROWS] == 0 and joints == 0:
-                    break  # nothing that could change a velocity
-            sweep(tables, k % 2 == 0)
-            if joints > 0:
-                _joints(s, tables, APPLY, h)
-            if k == sweeps // 3:
-                search_together(tables, searches)
-        if joints == 0:  # contacts add no energy: where they do, they are not solved yet
-            most = GAINED * energy + held_back(tables, h)
-            for k in range(MORE_SWEEPS * s.sweeps):
-                if kinetic(tables) <= most:
-                    break
-                sweep(tables, k % 2 == 0)
+        if not _solve(s, h, joints > 0):
+            return False
+        tables = load_tables(s)
         if joints > 0:
             for joint in joints_of(s):
                 if joint.mine:

@@ -12,7 +12,7 @@ from typing import Any
 
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import STRAIGHT_WAY
+from .constants import MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
 from .place import seen_from
@@ -347,12 +347,28 @@ def warm_start(tables: Tables) -> None:
 
 
 @kernel
-def sweep(tables: Tables, up: bool) -> None:
-    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps)."""
+def sweep(tables: Tables, up: bool) -> float:
+    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps).
+
+    Returns the largest change of a contact's speed (length/time).
+    """
     n = tables.counters[ROWS]
+    most = 0.0
     for i in range(n):
         row = tables.rows[i if up else n - 1 - i]
-        visit(row, tables.bodies[row.a], tables.bodies[row.b])
+        most = max(most, visit(row, tables.bodies[row.a], tables.bodies[row.b]))
+    return most
+
+
+@kernel
+def pace(tables: Tables, law: Law, energy: float, h: float) -> float:
+    """The change of speed in a sweep that is small: beside what pushes gives in a substep, and the bodies' speed."""
+    mass = 0.0
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.inverse_mass > 0.0:
+            mass += 1.0 / body.inverse_mass
+    return law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
 
 
 @kernel

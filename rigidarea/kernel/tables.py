@@ -124,6 +124,10 @@ PAIR = record(
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
+        (
+            "firm",
+            "f8",
+        ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
         (
@@ -165,6 +169,11 @@ REGION = record(
         ("chord", "f8"),  # (length)
         ("middle", "f8"),  # of the chord, from the point of application along it (length)
         ("straight", "f8"),  # of the chord, as far as both boundaries are straight (length)
+        (
+            "curve_a",
+            "f8",
+        ),  # curvatures of the two sides (1/length), where not both have a straight stretch; else 0
+        ("curve_b", "f8"),
         ("depth", "f8"),  # extent along the direction (length)
         # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
         ("back", "f8"),
@@ -298,6 +307,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.jx = 0.0
         pair.jy = 0.0
         pair.stiffness = 0.0
+        pair.firm = 0.0
         pair.carrying = 0.0
         pair.area = 0.0
         pair.axis_x = 0.0
