@@ -179,7 +179,7 @@ class Plan:
         Sweeps and penetration are the space's: the most, and the least, that a part wants. least: no coarser than that.
         """
         parts = parts_of(self._survey, self.space, self.frame, self.seconds)
-        if len(parts) < 2:
+        if not parts:
             return None
         best = []
         for part in parts:

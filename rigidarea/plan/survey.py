@@ -36,6 +36,7 @@ class Survey(NamedTuple):
     moment: Array
     fastest: float  # of all that moves, whatever part of it is looked at (length/time)
     mobile: NDArray[np.bool_]  # (bodies,) which move on their own, likewise
+    static: NDArray[np.bool_]  # (bodies,)
     inertia: Array  # (bodies,) mass, likewise
     velocity: Array  # (bodies, 2)
     speed: Array
@@ -198,6 +199,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         moment=moment,
         fastest=float(speed[free].max(initial=0.0)),
         mobile=free,
+        static=np.array([kind == pymunk.Body.STATIC for kind in kinds]),
         inertia=mass,
         velocity=velocity,
         speed=speed,
@@ -222,11 +224,14 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
 def _inner_radii(radius: Array, boxes: Array, pairs: Ints, shapes: list[pymunk.Shape]) -> Array:
     """Radii of curvature, of outlines with holes that of the hole which something lies in (negative: hollow)."""
     found = radius.copy()
-    for pair in pairs:
+    outlines = [getattr(shape, "outline", None) for shape in shapes]
+    holed = np.array([isinstance(outline, Outline) and len(outline.rings) > 1 for outline in outlines], bool)
+    for pair in pairs[holed[pairs].any(axis=1)]:
         for k, other in (pair, pair[::-1]):
-            outline = getattr(shapes[k], "outline", None)
-            if not isinstance(outline, Outline) or len(outline.rings) < 2:
+            outline = outlines[k]
+            if not holed[k]:
                 continue
+            assert outline is not None
             inside = (boxes[k, :2] < boxes[other, :2]).all() and (boxes[other, 2:] < boxes[k, 2:]).all()
             if inside:
                 hole = max(outline.rings[1:], key=len)
@@ -262,20 +267,11 @@ def _near(
         & (free[i] | free[j])
     )
     i, j = i[near], j[near]
-    alone = [k for k in range(len(i)) if _apart(shapes[i[k]], shapes[j[k]])] if len(i) else []
-    found = np.column_stack((i, j)).astype(np.int64)
-    return np.delete(found, alone, axis=0)
-
-
-_ALL = pymunk.ShapeFilter.ALL_CATEGORIES()
-
-
-def _apart(a: pymunk.Shape, b: pymunk.Shape) -> bool:
-    """Whether their filters say that the two never collide (asked only where the user has set one)."""
-    one, other = a.filter, b.filter
-    if one.group and one.group == other.group:
-        return True
-    return not (one.categories & other.mask and other.categories & one.mask)
+    filters = np.array([shape.filter for shape in shapes], np.int64)
+    group, categories, mask = filters.T
+    apart = (group[i] != 0) & (group[i] == group[j])  # as Chipmunk says that two never collide
+    apart |= (categories[i] & mask[j] == 0) | (categories[j] & mask[i] == 0)
+    return np.column_stack((i, j)).astype(np.int64)[~apart]
 
 
 def _held(space: pymunk.Space, index: dict[pymunk.Body, int], free: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -140,3 +140,32 @@ def test_penetration_is_set_between_frames():
     with pytest.raises(ValueError, match="penetration"):
         contact.penetration = 0.0
     assert contact.penetration == 1e-4
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("drop", [0.3, 1.0])
+def test_a_heavy_crate_lands_within_the_tolerance_again(drop):
+    """1,000 times as heavy as what it falls on: warned within 3 frames; ten after it has landed nothing is deeper than
+    the tolerance; planning anew takes and gives no energy."""
+    space = pile()
+    made, watch = watched(space, adapt=True)
+    watch.step(frames=30)
+    crate = add(space, (1.5, 4.5 + drop), mass=1000.0)
+    contact = ra.attached(space)
+    landed, warned, frame = None, None, 0
+    deep = []
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        while landed is None or frame < landed + 20:
+            frame += 1
+            made.step()
+            before = contact.energy()
+            watch.look()
+            assert contact.energy() == before
+            warned = warned or (frame if told else None)
+            if landed is None and any(crate in (r["body_a"], r["body_b"]) for r in contact.regions):
+                landed = frame
+            elif landed is not None and frame > landed + 10:
+                deep.append(watch.indicators["penetration"].measured)
+    assert warned is not None and warned <= 3
+    assert max(deep) <= made.tolerance
