@@ -198,7 +198,7 @@ def _flush_with(seen: Survey, turned: NDArray[np.bool_]) -> NDArray[np.bool_]:
         if k not in edges:
             edges[k] = np.zeros(0)
             shape = seen.shapes[k]
-            if isinstance(shape, pymunk.Poly) and not hasattr(shape, "outline"):
+            if isinstance(shape, pymunk.Poly) and seen.outlines[k] is None:
                 body = seen.bodies[seen.owner[k]]
                 ring = np.array(shape.get_vertices())
                 along = np.roll(ring, -1, axis=0) - ring
@@ -377,9 +377,8 @@ def _overlapped(seen: Survey) -> tuple[float, int]:
     if not len(seen.pairs):
         return 0.0, -1
     i, j = seen.pairs.T
-    circles = np.array(
-        [isinstance(shape, pymunk.Circle) and not hasattr(shape, "outline") for shape in seen.shapes]
-    )
+    plain = [outline is None for outline in seen.outlines]
+    circles = np.array([isinstance(shape, pymunk.Circle) for shape in seen.shapes]) & plain
     flush = (seen.radius == 0.0) & ~seen.corners & ~seen.concave
     segments = np.array([isinstance(shape, pymunk.Segment) for shape in seen.shapes])
     depth = np.where((flush & ~segments)[i] & (flush & ~segments)[j], -seen.gaps, 0.0)

@@ -164,6 +164,8 @@ class Plan:
                 enough = max(1.1 * min(errors), 0.6 * self.tolerance)
                 depth = next(p for p, error in zip(depths, errors) if error <= enough)
                 out += [Setting("rigid", n, m, depth) for m in sweeps]
+                if total(found, Setting("rigid", n, sweeps[0], depth)) <= MARGIN * self.tolerance:
+                    break  # more substeps are dearer, whatever the sweeps
         native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
         if native:
             slop = given.get("penetration", SLOP * self.tolerance / found.tower)
@@ -369,7 +371,7 @@ def _cost(setting: Setting, bodies: int, pairs: int) -> float:
 
 def _native_will_do(found: Facts, stiffness: float | None) -> bool:
     """Whether Chipmunk sees the same outlines: none of its shapes stands in for another."""
-    return stiffness is None and not any(hasattr(shape, "outline") for shape in found.seen.shapes)
+    return stiffness is None and all(outline is None for outline in found.seen.outlines)
 
 
 def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]) -> None:

@@ -31,6 +31,7 @@ class Survey(NamedTuple):
 
     bodies: list[pymunk.Body]
     shapes: list[pymunk.Shape]
+    outlines: list[Outline | None]  # those that shapes stand in for
     gravity: tuple[float, float]
     mass: Array  # (bodies,), infinite where nothing moves it
     moment: Array
@@ -137,6 +138,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     spin = np.array([body.angular_velocity for body in every])
     index = {body: i for i, body in enumerate(every)}
     shapes: list[pymunk.Shape] = []
+    outlines: list[Outline | None] = []
     rows: list[tuple[float, ...]] = []
     for shape in space.shapes:
         body = shape.body
@@ -145,7 +147,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         i = index[body]
         box = shape.bb
         width, height = box.right - box.left, box.top - box.bottom
-        outline = getattr(shape, "outline", None)
+        outline = vars(shape).get("outline")  # (getattr on a shape without one costs ten times as much)
         radius, corner, hollow = 0.0, False, False
         if isinstance(outline, Outline):
             thick = outline.smallest_extent if free[i] else min(width, height)
@@ -163,6 +165,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
             thick = _thickness(area, width, height, gyration2)
             corner = abs(width * height - area) > FLUSH * area
         shapes.append(shape)
+        outlines.append(outline if isinstance(outline, Outline) else None)
         rows.append(
             (
                 *(i, box.left, box.bottom, box.right, box.top, thick, radius, corner, hollow),
@@ -190,10 +193,11 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     gaps = np.maximum(
         np.maximum(a[:, 0] - b[:, 2], b[:, 0] - a[:, 2]), np.maximum(a[:, 1] - b[:, 3], b[:, 1] - a[:, 3])
     )
-    radii = _inner_radii(table[:, 6], boxes, pairs, shapes)
+    radii = _inner_radii(table[:, 6], boxes, pairs, outlines)
     return Survey(
         bodies=every,
         shapes=shapes,
+        outlines=outlines,
         gravity=gravity,
         mass=mass,
         moment=moment,
@@ -221,11 +225,10 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     )
 
 
-def _inner_radii(radius: Array, boxes: Array, pairs: Ints, shapes: list[pymunk.Shape]) -> Array:
+def _inner_radii(radius: Array, boxes: Array, pairs: Ints, outlines: list[Outline | None]) -> Array:
     """Radii of curvature, of outlines with holes that of the hole which something lies in (negative: hollow)."""
     found = radius.copy()
-    outlines = [getattr(shape, "outline", None) for shape in shapes]
-    holed = np.array([isinstance(outline, Outline) and len(outline.rings) > 1 for outline in outlines], bool)
+    holed = np.array([outline is not None and len(outline.rings) > 1 for outline in outlines], bool)
     for pair in pairs[holed[pairs].any(axis=1)]:
         for k, other in (pair, pair[::-1]):
             outline = outlines[k]
