@@ -74,6 +74,7 @@ class Plan:
         self.finer: dict[pymunk.Body, int] = {}
         self._parts: list[tuple[Part, int]] = []
         self._asked: set[pymunk.Body] = set()
+        self._sampled: dict[pymunk.Shape, float] = {}
         self.reachable = False
         self.error = self.cost_s_per_s = math.inf
         self.causes: list[Cause] = []
@@ -279,6 +280,9 @@ class Plan:
         current = attached(space)
         space.iterations = self.sweeps
         for shape, sagitta in self.sampling.items():
+            if self._sampled.get(shape) == sagitta:
+                continue  # as it is: to be read again would cost it its contacts
+            self._sampled[shape] = sagitta
             shape.outline = shape.outline.sample(sagitta)  # type: ignore[attr-defined]
             if current is not None:
                 current.refresh(shape)

@@ -6,7 +6,9 @@ import pymunk
 import pytest
 
 import rigidarea as ra
+from rigidarea.plan.validate import space_of
 from rigidarea.plan.watch import Indicator, PlanWarning
+from rigidarea.study.scene import get_scene
 
 G = 9.81
 
@@ -169,3 +171,28 @@ def test_a_heavy_crate_lands_within_the_tolerance_again(drop):
                 deep.append(watch.indicators["penetration"].measured)
     assert warned is not None and warned <= 3
     assert max(deep) <= made.tolerance
+
+
+@pytest.mark.slow
+def test_a_pair_of_gears_whose_drive_speeds_up():
+    """Tenfold: warned within 3 frames, within the tolerance again within 10; planning anew takes and gives no energy."""
+    space, (driver, driven) = space_of(get_scene("gears"))
+    made = ra.plan(space, 0.01, 2.0)
+    made.apply()
+    watch = made.watch(adapt=True)
+    watch.step(frames=30)
+    driver.angular_velocity *= 10.0
+    exact = -driver.angular_velocity * 20 / 30
+    contact = ra.attached(space)
+    errors, warned = [], None
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        for frame in range(1, 61):
+            made.step()
+            before = contact.energy()
+            watch.look()
+            assert contact.energy() == before
+            warned = warned or (frame if told else None)
+            errors.append(abs(driven.angular_velocity / exact - 1.0))
+    assert warned is not None and warned <= 3
+    assert max(errors[10:]) <= made.tolerance
