@@ -175,7 +175,7 @@ def test_a_heavy_crate_lands_within_the_tolerance_again(drop):
 
 @pytest.mark.slow
 def test_a_pair_of_gears_whose_drive_speeds_up():
-    """Tenfold: warned within 3 frames, within the tolerance again within 10; planning anew takes and gives no energy."""
+    """Tenfold: warned within 3 frames, within the tolerance again within 10; no energy comes or goes in planning."""
     space, (driver, driven) = space_of(get_scene("gears"))
     made = ra.plan(space, 0.01, 2.0)
     made.apply()
