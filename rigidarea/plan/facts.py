@@ -33,6 +33,7 @@ class Facts:
     tower: int  # layers of the highest pile
     wanted: float  # sweeps of Chipmunk's with which its loads are found
     shared: bool  # whether a body of it lies on two
+    struck: float  # mass of what falls on another over that of the other, the largest; 1 at least
     flat: (
         Worst | None
     )  # how many times its depth a flush body sinks: what it carries, how near its base's edge it stands
@@ -49,7 +50,7 @@ class Facts:
     largest: float  # largest extent of what moves (length)
     slowest: Worst | None  # 1/v of what moves already and is pressed (time/length)
     toppling: float  # rate at which what stands on a corner falls (1/time)
-    curves: Array  # (curves, 6): see `_curves`
+    curves: Array  # (curves, 7): see `_curves`
     gap: tuple[float, int]  # least time between two touches in a row, body
     teeth: tuple[float, int]  # way of a tooth in a frame over its chord, shape
     driven: tuple[float, int]  # fastest spin of teeth or slots times their lever (1/time), shape
@@ -134,6 +135,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         tower=tower,
         wanted=float(est.sweeps_wanted(float(tower), max(heavier, 1.0))),
         shared=shared,
+        struck=falls_on,
         flat=_worst(carried, free & polygon & ~corners & (g > 0.0)),
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
         corner=_worst(1.0 / extent, corners & upright & ~held),
@@ -255,7 +257,7 @@ def _drops(seen: Survey) -> tuple[Array, NDArray[np.bool_], float]:
 
 
 def _curves(seen: Survey, time: float) -> Array:
-    """Bodies that follow a curve which does not give way: (v/rho)², extent, rho, body, time on it, whether it bounces.
+    """Bodies that follow a curve which does not give way: (v/rho)², extent, rho, body, time on it, bounces, sampled.
 
     On a hump a body is for about a radian, then it has left it. Of equal kinds the worst.
     """
@@ -265,7 +267,7 @@ def _curves(seen: Survey, time: float) -> Array:
     both = (seen.radius[i] != 0.0) & (seen.radius[j] != 0.0) & (seen.moves[a] != seen.moves[b])
     both &= rho > 1e-9 * np.maximum(np.abs(seen.radius[i]), np.abs(seen.radius[j]))
     if seen.g == 0.0 or not both.any():
-        return np.zeros((0, 6))
+        return np.zeros((0, 7))
     i, j, rho = i[both], j[both], rho[both]
     first = seen.moves[seen.owner[i]]
     mover, ground = np.where(first, i, j), np.where(first, j, i)
@@ -284,9 +286,11 @@ def _curves(seen: Survey, time: float) -> Array:
     rate = (speed**2 + seen.g * drop) / rho**2  # the mean of v² on the way down
     hump = (seen.radius[mover] > 0.0) & (seen.radius[ground] > 0.0)
     lasts = np.where(hump, np.minimum(time, 1.0 / np.sqrt(np.maximum(rate, 1e-300))), time)
+    sampled = np.array([outline is not None and not outline.arcs for outline in seen.outlines], bool)
+    faceted = sampled[mover] | sampled[ground]
     bounces = (seen.elasticity[mover] * seen.elasticity[ground] > 0.0) & ~hump
     rows = np.column_stack(
-        (rate, seen.extent[seen.owner[mover]], rho, seen.owner[mover], lasts, bounces)
+        (rate, seen.extent[seen.owner[mover]], rho, seen.owner[mover], lasts, bounces, faceted)
     ).astype(np.float64)
     kind = np.column_stack((np.round(np.log2(np.maximum(rows[:, :3], 1e-300)), 0), bounces))
     _, kinds = np.unique(kind, axis=0, return_index=True)
