@@ -99,6 +99,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         rows=store.tables.rows[: len(regions)],
         sorted=np.concatenate((order, rest)).astype(np.int32),
     )
+    tables.bodies["since"] = np.inf
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
     for p in np.flatnonzero(lost):  # one of its shapes is gone

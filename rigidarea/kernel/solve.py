@@ -46,6 +46,7 @@ def drift(tables: Tables, frame: int, time: float) -> None:
             body.x += time * body.vx
             body.y += time * body.vy
             body.angle += time * body.w
+            body.since += time
             place(body)
 
 
@@ -149,7 +150,7 @@ def _after(one: Any, other: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def _may_touch(tables: Tables, pair: Any, h: float) -> bool:
+def may_touch(tables: Tables, pair: Any, h: float) -> bool:
     """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
@@ -228,12 +229,12 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
         return bool(pair.verdict)
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
+    if (sa.heard | sb.heard) & 1 or sa.heard & sb.heard & 2:  # as they were set in the frame before
+        return bool(pair.verdict) and pair.stamp == frame - 1
     pair.friction = sa.friction * sb.friction
     pair.elasticity = sa.elasticity * sb.elasticity
     pair.surface_x = sb.surface_x - sa.surface_x
     pair.surface_y = sb.surface_y - sa.surface_y
-    if (sa.heard | sb.heard) & 1 or sa.heard & sb.heard & 2:
-        return bool(pair.verdict) and pair.stamp == frame - 1
     return True
 
 
@@ -276,9 +277,12 @@ def gather(
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if pair.head < 0 and (not _may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
+        if pair.head < 0 and (not may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
             continue
         if not allowed(tables, pair, frame):
+            if pair.stamp != frame:
+                pair.waited = h if pair.waiting != frame else pair.waited + h
+                pair.waiting = frame
             continue
         status = meet(pool, tables, work, law, p, h)
         if status != DONE:
@@ -309,7 +313,7 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if _cannot_meet(pool, tables, pair, a, b, h) or not _may_touch(tables, pair, -h):
+        if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue
         if not allowed(tables, pair, frame):
             continue
