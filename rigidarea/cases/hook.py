@@ -80,5 +80,6 @@ def turn(
         kinetic,
         np.zeros(0),
         np.zeros(0),
+        np.zeros((n, 0, 3)),
         n,
     )

@@ -187,6 +187,9 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
             asleep |= body.mobile == 1
             body.inverse_mass = 0.0  # asleep, or static
             body.inverse_moment = 0.0
+            body.gain_x = 0.0
+            body.gain_y = 0.0
+            body.gain_w = 0.0
             body.kick_x = 0.0
             body.kick_y = 0.0
             body.kick_w = 0.0

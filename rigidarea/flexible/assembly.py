@@ -34,8 +34,7 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
-from rigidarea.flexible.body import elastic_body
-from rigidarea.flexible.boundary import build
+from rigidarea.flexible.body import outline_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.inspace import advance, gather, give_back
 from rigidarea.flexible.integrate import Body, Simulation
@@ -113,21 +112,11 @@ class Assembly:
             raise ValueError("expected one part a body, got a second shape of the same body")
         if getattr(body, "_position_func", None) or getattr(body, "_velocity_func", None):
             raise ValueError("expected a body without position_func and velocity_func, got one that has them")
-        outline = Outline.from_pymunk(shape)
-        if level == "rigid":
-            if hub is not None:
-                raise ValueError(f"a rigid part has no mesh: expected no hub, got {hub!r}")
-            centre = np.array(outline.centroid)
-            made = Body(build([outline.polygon_rings[i] - centre for i in contact]), 1.0, 1.0, tuple(centre))
-        else:
-            if mesh is None:
-                raise ValueError(
-                    f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
-                )
-            made, _ = elastic_body(
-                outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, modes=modes,
-                refine=refine, cache=self._cache, damping=damping,
-            )  # fmt: skip
+        made = outline_body(
+            Outline.from_pymunk(shape), material, level, mesh, contact=contact, hub=hub, modes=modes, refine=refine,
+            damping=damping, cache=self._cache,
+        )  # fmt: skip
+        if level != "rigid" and mesh is not None:
             self._size = min(self._size, mesh)
         self._parts.append((shape, made))
         return len(self._parts) - 1
@@ -149,7 +138,7 @@ class Assembly:
         sim = self._running()
         rows = sim._buffers.regions[: sim.counts()[0]]
         out = np.zeros(len(rows), kind)
-        for row, (pair, force, nx, ny, x, y, chord) in zip(out, rows.tolist(), strict=True):
+        for row, (pair, force, nx, ny, x, y, chord) in zip(out, rows[:, :7].tolist(), strict=True):
             for side, part in zip("ab", sim.pairs[int(pair)], strict=True):
                 shape = self._parts[part][0]
                 row[f"shape_{side}"], row[f"body_{side}"] = shape, shape.body

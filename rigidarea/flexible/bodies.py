@@ -15,7 +15,7 @@ from numba import config
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
+from rigidarea.kernel.jit import kernel
 from rigidarea.kernel.memory import array_at as compiled_array_at
 
 Array = NDArray[np.float64]
@@ -63,7 +63,7 @@ def table(
     return out
 
 
-@inner
+@kernel
 def boundary_at(bodies: Ints, i: int) -> Boundary:
     """Body i's boundary."""
     row = bodies[i]
@@ -82,14 +82,13 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
         array_at(row[SIZES + 10], (t,), np.int64),
         array_at(row[SIZES + 11], (t, 6), np.float64),
         array_at(row[SIZES + 12], (2 * f + 3, m), np.float64),
-        array_at(row[SIZES + 13], (m, 2 * f + 3), np.float64),
-        array_at(row[SIZES + 14], (c, c), np.float64),
-        array_at(row[SIZES + 15], (f, 2), np.float64),
-        array_at(row[SIZES + 16], (s,), np.float64),
+        array_at(row[SIZES + 13], (c, c), np.float64),
+        array_at(row[SIZES + 14], (f, 2), np.float64),
+        array_at(row[SIZES + 15], (s,), np.float64),
     )
 
 
-@inner
+@kernel
 def work_at(bodies: Ints, i: int) -> Work:
     """Body i's work arrays."""
     row = bodies[i]
@@ -114,14 +113,14 @@ def work_at(bodies: Ints, i: int) -> Work:
     )
 
 
-@inner(inline="always")  # numba returns no array that was not passed in
+@kernel(inline="always")  # numba returns no array that was not passed in
 def coupling_at(bodies: Ints, i: int) -> Array:
     """Body i's ``modes.Reduced.coupling`` (m, m)."""
     m = bodies[i, 3]
     return array_at(bodies[i, COUPLING], (m, m), np.float64)
 
 
-@inner(inline="always")
+@kernel(inline="always")
 def geometric_at(bodies: Ints, i: int) -> Array:
     """Body i's ``modes.Reduced.geometric`` (3, m, m), or (0, m, m)."""
     m = bodies[i, 3]

@@ -16,6 +16,7 @@ from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
+from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
 
@@ -94,6 +95,49 @@ def elastic_body(
         young=material.young if level != "rigid" else 0.0, geometric=body.geometric, slowest=body.slowest,
         shape=Shape(mesh, material, tuple(contact_rings), hub, clamped, body) if level != "rigid" else None, **keys,
     ), mesh  # fmt: skip
+
+
+def outline_body(
+    outline: Outline,
+    material: Material,
+    level: str,
+    mesh: float | None,
+    *,
+    contact: Sequence[int] = (0,),
+    hub: int | None = None,
+    clamp: int | Callable[[Array], NDArray[np.bool_]] | None = None,
+    modes: int = 40,
+    refine: int = 4,
+    damping: float = 0.0,
+    at: tuple[float, float] = (0.0, 0.0),
+    angle: float = 0.0,
+    cache: Path | str | None = None,
+) -> Body:
+    """``elastic_body`` of an outline, its origin at ``at``; a rigid body has neither mesh, hub nor clamp.
+
+    Raises ValueError where it has, where a body that yields has no ``mesh`` (length), and as ``elastic_body`` does.
+    """
+    if level != "rigid":
+        if mesh is None:
+            raise ValueError(
+                f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
+            )
+        made, _ = elastic_body(
+            outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp, modes=modes,
+            refine=refine, cache=cache, position=at, angle=angle, damping=damping,
+        )  # fmt: skip
+        return made
+    if clamp is not None or hub is not None:
+        raise ValueError(
+            f"a rigid body has no mesh: expected neither clamp nor hub, got {clamp!r} and {hub!r}"
+        )
+    centre = np.array(outline.centroid)
+    c, s = np.cos(angle), np.sin(angle)
+    x, y = np.array(at) + np.array([[c, -s], [s, c]]) @ centre
+    mass = material.density * material.thickness * outline.area
+    inertia = outline.moment(mass, (-centre[0], -centre[1]))
+    boundary = build([outline.polygon_rings[i] - centre for i in contact])
+    return Body(boundary, mass, inertia, (float(x), float(y)), angle)
 
 
 def _check_size(rings: Sequence[Array], size: float, contact: Sequence[int]) -> None:

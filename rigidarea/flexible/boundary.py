@@ -26,7 +26,7 @@ class Boundary(NamedTuple):
     [0, 1), the weight of ``high``; centre (t, 2), radius (t,), left, right (t,) the tree (a leaf has left < 0 and
     holds edges right … right - left - 1); box (t, 6) of a leaf, along its chord: centre, direction, half length and
     half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
-    rotation); shapes (m, 2 f + 3) the same with each mode in one piece; flexibility (2 f + 3, 2 f + 3), or (0, 0) if
+    rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
     not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
     them beyond the modes (time² × length), or (0,).
     """
@@ -44,7 +44,6 @@ class Boundary(NamedTuple):
     right: Ints
     box: Array
     modes: Array
-    shapes: Array
     flexibility: Array
     nodes: Array
     swell: Array
@@ -165,7 +164,6 @@ def build(
         points, nxt, prv, ring,
         np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
         np.array(centre), np.array(radius), np.array(left), np.array(right), np.array(box), modes,
-        np.ascontiguousarray(modes.T),
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
         nodes, np.zeros(0) if swell is None else np.ascontiguousarray(swell, float),
     )  # fmt: skip

@@ -29,10 +29,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.body import elastic_body
-from rigidarea.flexible.boundary import build
+from rigidarea.flexible.body import outline_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
+from rigidarea.flexible.joints import Joint
 from rigidarea.flexible.recover import State, recover
 from rigidarea.outline import Outline
 
@@ -70,6 +70,7 @@ class Mechanism:
         self._bodies: list[Body] = []
         self._pairs: list[tuple[int, int]] = []
         self._held: list[tuple[float, float]] = []  # friction and restitution of each
+        self._joints: list[Joint] = []
         self.simulation: Simulation | None = None
         """The simulation of the last ``run``; None before."""
 
@@ -98,43 +99,22 @@ class Mechanism:
         contact points a mesh edge. clamp: a ring that is held, or a function that says which of the boundary nodes
         (n, 2) are. damping: ratio of all modes. Raises ValueError for settings out of range.
         """
-        if level == "rigid":
-            if clamp is not None or hub is not None:
-                raise ValueError(
-                    "a rigid body has no mesh: expected neither clamp nor hub; see ground and pivot"
-                )
-            made = self._rigid(outline, material, at, angle, contact)
-        else:
-            if mesh is None:
-                raise ValueError(
-                    f"mesh, the spacing of the boundary nodes, is needed at level {level!r}, got None"
-                )
-            made, _ = elastic_body(
-                outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp,
-                modes=modes, refine=refine, cache=self._cache, position=at, angle=angle, damping=damping,
-            )  # fmt: skip
+        made = outline_body(
+            outline, material, level, mesh, contact=contact, hub=hub, clamp=clamp, modes=modes, refine=refine,
+            damping=damping, at=at, angle=angle, cache=self._cache,
+        )  # fmt: skip
         made.velocity = velocity
         self._bodies.append(made)
         return len(self._bodies) - 1
 
     def ground(self, outline: Outline, at: tuple[float, float] = (0.0, 0.0), angle: float = 0.0) -> int:
         """Adds a rigid body that never moves; returns its number."""
-        made = self._rigid(outline, Material(1.0, 0.0, 1.0), at, angle, range(len(outline.rings)))
+        rings = range(len(outline.rings))
+        made = outline_body(
+            outline, Material(1.0, 0.0, 1.0), "rigid", None, contact=rings, at=at, angle=angle
+        )
         self._bodies.append(replace(made, fixed=True))
         return len(self._bodies) - 1
-
-    @staticmethod
-    def _rigid(
-        outline: Outline, material: Material, at: tuple[float, float], angle: float, contact: Sequence[int]
-    ) -> Body:
-        centre = np.array(outline.centroid)
-        c, s = np.cos(angle), np.sin(angle)
-        x, y = np.array(at) + np.array([[c, -s], [s, c]]) @ centre
-        mass = material.density * material.thickness * outline.area
-        boundary = build([outline.polygon_rings[i] - centre for i in contact])
-        return Body(
-            boundary, mass, outline.moment(mass, (-centre[0], -centre[1])), (float(x), float(y)), angle
-        )
 
     def _own(self, body: int) -> Body:
         if not 0 <= body < len(self._bodies):
@@ -144,11 +124,74 @@ class Mechanism:
     def pivot(self, body: int, at: tuple[float, float]) -> None:
         """Pins the body's hub to a world point by a revolute joint; a body without a hub ring at the point under it."""
         b = self._own(body)
+        if b.shape is None or b.shape.hub is None:
+            b.hub = self._local(body, at)
+        b.anchor = at
+
+    def _local(self, body: int | None, at: tuple[float, float]) -> tuple[float, float]:
+        """A world point in a body's frame; None: the ground's."""
+        if body is None:
+            return at
+        b = self._own(body)
         c, s = np.cos(b.angle), np.sin(b.angle)
         dx, dy = at[0] - b.position[0], at[1] - b.position[1]
-        if b.shape is None or b.shape.hub is None:
-            b.hub = (float(c * dx + s * dy), float(-s * dx + c * dy))
-        b.anchor = at
+        return float(c * dx + s * dy), float(-s * dx + c * dy)
+
+    def _join(
+        self,
+        kind: str,
+        a: int | None,
+        b: int,
+        at_a: tuple[float, float],
+        at_b: tuple[float, float],
+        **keys: Any,
+    ) -> int:
+        """A joint between places that the bodies have now; its number in ``Record.joints``."""
+        turned = self._own(b).angle - (0.0 if a is None else self._own(a).angle)
+        keys = {"angle": turned, **keys}
+        self._joints.append(
+            Joint(kind, -1 if a is None else a, b, self._local(a, at_a), self._local(b, at_b), **keys)
+        )
+        return len(self._joints) - 1
+
+    def revolute(self, body: int, at: tuple[float, float], to: int | None = None) -> int:
+        """Pins a body to another one (None: the ground) at a world point; frames are held, see ``joints``.
+
+        Returns the joint's number in ``Record.joints``, as ``slider``, ``weld`` and ``spring`` do.
+        """
+        return self._join("revolute", to, body, at, at)
+
+    def slider(self, body: int, axis: tuple[float, float], to: int | None = None) -> int:
+        """Lets a body move along ``axis`` (a direction, world; it turns with ``to``) and nowhere else, nor turn."""
+        centre = self._own(body).position
+        c, s = (1.0, 0.0) if to is None else (np.cos(self._own(to).angle), np.sin(self._own(to).angle))
+        local = (float(c * axis[0] + s * axis[1]), float(-s * axis[0] + c * axis[1]))
+        return self._join("slider", to, body, centre, centre, axis=local)
+
+    def weld(self, body: int, at: tuple[float, float], to: int | None = None) -> int:
+        """Holds a body's frame to another one, or the ground; force and moment are recorded at ``at``."""
+        return self._join("weld", to, body, at, at)
+
+    def spring(
+        self,
+        body: int,
+        at: tuple[float, float],
+        other_end: tuple[float, float],
+        to: int | None = None,
+        *,
+        stiffness: float,
+        damping: float = 0.0,
+        rest: float | None = None,
+    ) -> int:
+        """A spring and a damper from ``at`` on a body to ``other_end`` on another, or the ground (world points).
+
+        stiffness: force/length; damping: force/velocity; rest: length without force, None: as it is now.
+        """
+        length = float(np.hypot(at[0] - other_end[0], at[1] - other_end[1]))
+        return self._join(
+            "spring", to, body, other_end, at, stiffness=stiffness, damping=damping,
+            rest=length if rest is None else rest,
+        )  # fmt: skip
 
     def drive(self, body: int, speed: float, ramp: float = 0.0) -> None:
         """Prescribes the hub's angular velocity: from 0, linearly over ``ramp``, to ``speed``."""
@@ -179,6 +222,7 @@ class Mechanism:
             margin=margin,
             friction=friction,
             restitution=restitution,
+            joints=self._joints,
             **self._settings,
         )  # type: ignore[arg-type]
         return self.simulation.run(duration, h, every, shapes)

@@ -8,6 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.flexible.joints import KINDS, Joint
+
 
 def check_settings(
     k: float,
@@ -62,8 +64,29 @@ def of_pairs(name: str, values: float | Sequence[float], pairs: int) -> NDArray[
     return np.ascontiguousarray(np.broadcast_to(given, (pairs,)).copy())
 
 
-def check_bodies(bodies: Sequence[Any], rho: float) -> None:
-    """Each ``integrate.Body``; ``rho`` of the scheme, which constraints keep below 1."""
+def check_joints(joints: Sequence[Joint], bodies: int) -> list[Joint]:
+    """Joints of two different bodies of ``bodies``, or of the ground (a = -1) and one."""
+    for n, j in enumerate(joints):
+        if j.kind not in KINDS:
+            raise ValueError(f"joint {n}: kind must be one of {KINDS}, got {j.kind!r}")
+        if not (-1 <= j.a < bodies and 0 <= j.b < bodies and j.a != j.b):
+            raise ValueError(
+                f"joint {n} must tie two of the bodies 0 … {bodies - 1}, or -1, the ground, to one; got ({j.a}, {j.b})"
+            )
+        for name in ("at_a", "at_b", "axis"):
+            _vector(f"joint {n}: {name}", getattr(j, name), 2)
+        if not np.hypot(*j.axis) > 0:
+            raise ValueError(f"joint {n}: axis must have a direction, got {j.axis}")
+        if not np.isfinite(j.angle):
+            raise ValueError(f"joint {n}: angle must be finite, got {j.angle}")
+        for name in ("rest", "stiffness", "damping"):
+            if not 0 <= getattr(j, name) < np.inf:
+                raise ValueError(f"joint {n}: {name} must be finite and not negative, got {getattr(j, name)}")
+    return list(joints)
+
+
+def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -> None:
+    """Each ``integrate.Body``; ``rho`` of the scheme, which constraints (joints: ``constrained``) keep below 1."""
     if len(bodies) == 0:
         raise ValueError("a system needs at least 1 body, got 0")
     for i, b in enumerate(bodies):
@@ -90,7 +113,7 @@ def check_bodies(bodies: Sequence[Any], rho: float) -> None:
                     f"body {i}: expected {name} of shape {shape}, one for each of its boundary's modes, got"
                     f" {np.shape(getattr(b, name))}"
                 )
-    if rho == 1.0 and any(b.anchor is not None or b.drive is not None for b in bodies):
+    if rho == 1.0 and (constrained or any(b.anchor is not None or b.drive is not None for b in bodies)):
         raise ValueError("rho must be below 1 with constraints (index 3 is unstable at 1), got 1")
 
 

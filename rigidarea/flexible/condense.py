@@ -32,10 +32,10 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -43,12 +43,12 @@ Ints = NDArray[np.int64]
 TWO = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)  # Gauss: exact for a product of two linear shape functions
 
 
-@inner
+@kernel
 def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: float, pose: Array) -> int:
     """One more unknown: a load at (x, y), world, along the force on its side; its number."""
     i = s.made[0]
     s.made[0] += 1
-    s.side[i], s.node[i], s.force[i] = side, node, 0.0
+    s.side[i], s.node[i], s.force[i], s.region[i] = side, node, 0.0, s.made[1]
     s.stiffness[i, : i + 1] = 0.0
     s.stiffness[:i, i] = 0.0
     sign = -1.0 if side == 0 else 1.0
@@ -59,7 +59,7 @@ def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: floa
     return i
 
 
-@inner
+@kernel
 def _at_node(b: Boundary, w: Work, pose: Array, s: Loads, side: int, node: int, nx: float, ny: float) -> int:
     """The unknown that is the load on an FE node in the present region."""
     if w.slot_region[node] != s.made[1]:
@@ -70,12 +70,12 @@ def _at_node(b: Boundary, w: Work, pose: Array, s: Loads, side: int, node: int, 
     return w.slot[node]
 
 
-@inner
+@kernel
 def _flexible(b: Boundary) -> bool:
     return b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0
 
 
-@inner
+@kernel
 def _enter(
     b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, t: float, weight: float, ends: int, along: float,
     nx: float, ny: float, count: int,
@@ -100,7 +100,7 @@ def _enter(
     return count + 2
 
 
-@inner
+@kernel
 def _gather(s: Loads, count: int, force: float, stiff: float) -> None:
     """One Gauss point: adds its force, and its stiffness, to the unknowns entered."""
     for p in range(count):
@@ -110,7 +110,7 @@ def _gather(s: Loads, count: int, force: float, stiff: float) -> None:
             s.stiffness[i, s.entry[q]] += stiff * v * s.share[q]
 
 
-@inner
+@kernel
 def _begin(
     a: Boundary, pa: Array, b: Boundary, pb: Array, r: Any, s: Loads, x0: float, x1: float
 ) -> tuple[int, int]:
@@ -128,13 +128,13 @@ def _begin(
     return first
 
 
-@inner
+@kernel
 def room(s: Scratch, n_a: int, n_b: int) -> bool:
     """Whether the loads of one more region, of arcs of so many pieces, find room."""
     return s.load.made[0] + 2 * (n_a + n_b) + 4 <= len(s.load.force)
 
 
-@inner
+@kernel
 def couple(
     a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, scratch: Scratch, n_a: int, n_b: int,
     k: float,
@@ -167,7 +167,7 @@ def couple(
             j += 1
 
 
-@inner
+@kernel
 def couple_slabs(
     a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, scratch: Scratch, n_a: int, n_b: int,
     k: float, alpha: float, beta: float, xc: float, q: float,
@@ -209,7 +209,7 @@ def couple_slabs(
             _gather(s, count, w * (alpha + beta * (z - xc)) * d**q, w * k)
 
 
-@inner
+@kernel
 def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual: Array, n: int) -> None:
     """One body's part of C̃ and a: modes, static flexibility, and what the loads of the iteration before moved."""
     m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
@@ -251,7 +251,7 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
             buf.compliance[i, j] = buf.compliance[j, i] = moved
 
 
-@inner
+@kernel
 def hub_moves(
     b: Boundary, w: Work, node: int, ex: float, ey: float, pose: Array, modal: Array, out: Array
 ) -> None:
@@ -271,7 +271,7 @@ def hub_moves(
     out[0], out[1] = pose[2] * x - pose[3] * y, pose[3] * x + pose[2] * y
 
 
-@inner
+@kernel
 def _eliminate(a: Array, n: int, rhs: Array, columns: int) -> None:
     """Gaussian elimination with partial pivoting of n equations, ``columns`` right-hand sides; rhs: the solutions."""
     for i in range(n):
@@ -303,7 +303,7 @@ def _eliminate(a: Array, n: int, rhs: Array, columns: int) -> None:
                     rhs[r, c] -= f * rhs[i, c]
 
 
-@inner
+@kernel
 def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> float:
     """Takes the loads out of Newton's system: ``buf.tangent`` gets Pᵀ S, ``buf.push`` Pᵀ y₀.
 
@@ -381,7 +381,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
     return off
 
 
-@inner
+@kernel
 def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None:
     """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads."""
     n, columns, count = s.made[0], buf.counts[2], 3 * len(sy.mass)

@@ -6,18 +6,19 @@ import numpy as np
 
 from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.bodies import boundary_at, work_at
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.flexible.search import narrow
+from rigidarea.kernel.jit import entry, kernel
 
 #: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
 #: differ, and have no small ratio, so that no edge of a drawing is along it.
 ASIDE = (1e-12, 0.618e-12)
+NEAR = 0.1  # of the search's margin: how much farther than that leaves are looked at
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def poses(x, buf):  # type: ignore[no-untyped-def]
     """Poses (x, y, cos θ, sin θ) of frames x (b, 3) into ``buf.pose``."""
     for b in range(len(x)):
@@ -25,14 +26,14 @@ def poses(x, buf):  # type: ignore[no-untyped-def]
         buf.pose[b, 2], buf.pose[b, 3] = np.cos(x[b, 2]), np.sin(x[b, 2])
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _moved(now, then, size):  # type: ignore[no-untyped-def]
     """How far no point of a body of radius ``size`` has moved between two poses."""
     dx, dy, c, s = now[0] - then[0], now[1] - then[1], now[2] - then[2], now[3] - then[3]
     return np.sqrt(dx * dx + dy * dy) + size * np.sqrt(c * c + s * s)
 
 
-@inner
+@kernel
 def _assemble(sy, buf, st, r, ia, ib):  # type: ignore[no-untyped-def]
     """Adds a region's force to the loads and, where its loads are no unknowns of their own, its stiffness.
 
@@ -66,7 +67,7 @@ def _assemble(sy, buf, st, r, ia, ib):  # type: ignore[no-untyped-def]
     buf.tangent[3 * ib + 2, 3 * ia + 2] -= turn
 
 
-@inner
+@kernel
 def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
     """The most that each body's boundary may be displaced near a contact, by modes and by its last static loads."""
     for b in range(len(sy.mass)):
@@ -81,7 +82,23 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
         buf.most[b] = max(buf.most[b], buf.bend[b])
 
 
-@inner
+@kernel
+def _look(a, pa, b, pb, reach, margin, size, sp, found, p):  # type: ignore[no-untyped-def]
+    """Searches pair p anew: within ``reach``, which allows for a motion by ``margin``.
+
+    Where nothing is near, within twice as much, and so on: two bodies far apart need not be searched until they have
+    come near each other.
+    """
+    found.found[p] = nodal.search(a, pa, b, pb, reach, sp)
+    found.margin[p] = margin
+    while found.found[p] == 0 and 0.0 < found.margin[p] < size:
+        if nodal.search(a, pa, b, pb, reach + found.margin[p], sp) != 0:
+            break
+        found.margin[p] *= 2.0
+        reach += 0.5 * found.margin[p]
+
+
+@kernel
 def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
     """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``scratch``.
 
@@ -118,14 +135,18 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         sp = of_pair(s, found, p)
         moved = abs(bend - found.bend[p])
         moved += _moved(pa, found.posed[p, 0], sy.size[ia]) + _moved(pb, found.posed[p, 1], sy.size[ib])
-        if found.found[p] < 0 or moved > 0.5 * st.margin:
+        if found.found[p] < 0 or moved > found.margin[p]:
+            _look(a, pa, b, pb, reach, st.margin, min(sy.size[ia], sy.size[ib]), sp, found, p)
             found.bend[p] = bend
-            found.found[p] = nodal.search(a, pa, b, pb, reach, sp)
             for i in range(4):
                 found.posed[p, 0, i], found.posed[p, 1, i] = pa[i], pb[i]
         n_pairs = found.found[p]
         if n_pairs < 0:
             return n_pairs
+        if n_pairs == 0:
+            continue
+        # of these, those near now: twice the last deformation, as it grows from one evaluation to the next
+        n_pairs = narrow(a, pa, b, pb, n_pairs, NEAR * st.margin + 2.0 * bend + (st.q if st.sts else 0.0), sp)
         if n_pairs == 0:
             continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
@@ -152,15 +173,9 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         for i in range(n):
             r = s.regions[i]
             kept = buf.regions[total]
-            kept[0], kept[1], kept[2], kept[3], kept[4], kept[5], kept[6] = (
-                p,
-                r["force"],
-                r["nx"],
-                r["ny"],
-                r["x"],
-                r["y"],
-                r["chord"],
-            )
+            kept[0], kept[1], kept[2], kept[3] = p, r["force"], r["nx"], r["ny"]
+            kept[4], kept[5], kept[6] = r["x"], r["y"], r["chord"]
+            kept[7], kept[8], kept[9] = r["x_chord"], r["y_chord"], r["serial"]
             buf.force[p, 0] += r["force"] * r["nx"]
             buf.force[p, 1] += r["force"] * r["ny"]
             _assemble(sy, buf, st, r, ia, ib)
@@ -175,6 +190,40 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
 
 
 @kernel
+def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
+    """The forces kept, after Newton's last correction, whose change of the frames is in ``buf.rhs``.
+
+    A region's force is that of its loads on the second body, or changes by its stiffness; as the tangent has it. It
+    stays on its line.
+    """
+    for i in range(buf.counts[0]):
+        r = buf.regions[i]
+        p = int(r[0])
+        change = 0.0
+        if st.spread and not st.sts:
+            for n in range(s.load.made[0]):
+                if s.load.region[n] == int(r[9]) and s.load.side[n] == pairs[p, 1]:
+                    change += buf.answer[n]
+        else:
+            for side in range(2):
+                j = 3 * pairs[p, side]
+                turn = (r[7] - buf.pose[pairs[p, side], 0]) * r[3] - (r[8] - buf.pose[pairs[p, side], 1]) * r[
+                    2
+                ]
+                moved = r[2] * buf.rhs[j] + r[3] * buf.rhs[j + 1] + turn * buf.rhs[j + 2]
+                change += st.k * r[6] * (moved if side == 0 else -moved)
+        r[1] += change
+        fx, fy = change * r[2], change * r[3]
+        buf.force[p, 0] += fx
+        buf.force[p, 1] += fy
+        for side in range(2):
+            j, sign = pairs[p, side], -1.0 if side == 0 else 1.0
+            buf.load[j, 0] += sign * fx
+            buf.load[j, 1] += sign * fy
+            buf.load[j, 2] += sign * ((r[4] - buf.pose[j, 0]) * fy - (r[5] - buf.pose[j, 1]) * fx)
+
+
+@entry
 def replay(bodies, sy, q, pairs, st, s, found, buf, x):  # type: ignore[no-untyped-def]
     """One contact evaluation for each recorded frame position x (n, b, 3)."""
     for n in range(len(x)):

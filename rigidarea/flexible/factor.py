@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@kernel
+@entry
 def substitute(lp: Ints, li: Ints, lx: Array, up: Ints, ui: Ints, ux: Array, x: Array) -> None:
     """Solves L U x = b in place: L, U as compressed columns, right-hand sides (n, m) the columns of x."""
     n, m = x.shape

@@ -21,12 +21,12 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry
 
 Array = NDArray[np.float64]
 
 
-@kernel
+@entry
 def inertia_forces(
     j0: float, h: Array, g: Array, stiff: Array, fx: float, fy: float, q: Array, dq: Array, ddq: Array, omega: float,
     alpha: float, out: Array,

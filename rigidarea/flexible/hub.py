@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 
 
-@inner
+@kernel
 def prescribed(drive: Array, t: float) -> float:
     """Hub angle at time t: the angular velocity grows linearly over the ramp time, then stays."""
     if t < drive[2]:
@@ -21,7 +21,7 @@ def prescribed(drive: Array, t: float) -> float:
     return drive[0] + drive[1] * (t - 0.5 * drive[2])
 
 
-@inner
+@kernel
 def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
     """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin."""
     n = b.modes.shape[0] - 3 + row
@@ -40,7 +40,7 @@ def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
     return u
 
 
-@inner
+@kernel
 def hub_rate(b: Boundary, dq: Array) -> float:
     """Angular velocity of the hub in the body frame."""
     u = 0.0
@@ -58,7 +58,7 @@ class Hub(NamedTuple):
     moment: float
 
 
-@inner
+@kernel
 def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
     """The hub of body b in the present state."""
     lo, hi = sy.first[b], sy.first[b + 1]
@@ -69,7 +69,7 @@ def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
     return Hub(c * x - s * y, s * x + c * y, hub_displacement(body, w, q, 2), moment)
 
 
-@inner
+@kernel
 def direction(kind: int, c: float, s: float) -> tuple[float, float, float]:
     """Hub component ``kind`` (0, 1: world displacement, 2: rotation) in the body frame."""
     if kind == 0:

@@ -15,10 +15,9 @@ from numba import types
 from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import work_at
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import entry
+from rigidarea.kernel.jit import entry, kernel
 from rigidarea.kernel.memory import array_at, caller, record
 
 Ints = NDArray[np.int64]
@@ -72,7 +71,7 @@ _call = caller(types.void(types.uintp, types.float64))
 _PRE_STEP, _APPLY_CACHED, _APPLY = 0, 1, 2  # places of a joint's functions in its class
 
 
-@inner(inline="always")
+@kernel(inline="always")
 def _floats(address, n):  # type: ignore[no-untyped-def]
     return array_at(np.uint64(address), (n,), np.float64)
 
@@ -109,7 +108,7 @@ def gather(members: Any, offsets: Ints, gx: float, gy: float, damping: float, dt
             a.alpha = _floats(a.address + np.uint64(offsets[TORQUE]), 1)[0] * a.inverse_moment
 
 
-@inner
+@kernel
 def _write_place(a, offsets):  # type: ignore[no-untyped-def]
     p = _floats(a.address + np.uint64(offsets[POSITION]), 2)
     p[0], p[1] = a.x, a.y
@@ -121,7 +120,7 @@ def _write_place(a, offsets):  # type: ignore[no-untyped-def]
     t[5] = a.y - (s * a.cog_x + c * a.cog_y)
 
 
-@inner
+@kernel
 def _write_motion(a, offsets):  # type: ignore[no-untyped-def]
     v = _floats(a.address + np.uint64(offsets[VELOCITY]), 2)
     v[0], v[1] = a.vx, a.vy
@@ -145,7 +144,7 @@ def give_back(members: Any, start: Any, offsets: Ints, used: bool) -> None:
         _floats(a.address + np.uint64(offsets[TORQUE]), 1)[0] = 0.0
 
 
-@inner
+@kernel
 def _place_frame(state, members, b, h):  # type: ignore[no-untyped-def]
     """The frame of part b, such that the scheme's predictor, which moves all frames, takes it to its place."""
     a = members[b]
@@ -159,7 +158,7 @@ def _place_frame(state, members, b, h):  # type: ignore[no-untyped-def]
     state.x[b, 2] = a.angle - h * state.v[b, 2] - 0.5 * h * h * a.turn
 
 
-@inner
+@kernel
 def _rate(rate, a):  # type: ignore[no-untyped-def]
     """The velocity of a part's frame."""
     c, s = np.cos(a.angle), np.sin(a.angle)
@@ -168,7 +167,7 @@ def _rate(rate, a):  # type: ignore[no-untyped-def]
     rate[2] = a.w
 
 
-@inner
+@kernel
 def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-untyped-def]
     """All joints' impulses of one step, on the members' velocities; ``factor``: this step over the last.
 
@@ -204,14 +203,14 @@ def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-
         a.w = _floats(a.address + np.uint64(offsets[SPIN]), 1)[0]
 
 
-@inner
+@kernel
 def _run(joint, which, x):  # type: ignore[no-untyped-def]
     """One of a joint's own functions."""
     kind = array_at(np.uint64(joint), (1,), np.uint64)[0]
     _call(array_at(kind, (4,), np.uint64)[which], np.uint64(joint), x)
 
 
-@inner
+@kernel
 def _stiffest(members, pairs, st, buf):  # type: ignore[no-untyped-def]
     """Largest k L W of all regions: a contact's squared angular frequency, on bodies without joints."""
     most = 0.0
@@ -283,7 +282,7 @@ def advance(  # type: ignore[no-untyped-def]
     return code, stiffest
 
 
-@inner
+@kernel
 def _load_hub(mu, a, load, pose, h, sign):  # type: ignore[no-untyped-def]
     """The hub's load nears what joints do: momentum after them less momentum before, over h.
 

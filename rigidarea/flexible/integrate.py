@@ -16,10 +16,12 @@ from numpy.typing import NDArray
 from rigidarea.flexible import nodal
 from rigidarea.flexible.bodies import table
 from rigidarea.flexible.boundary import Boundary, workspace
-from rigidarea.flexible.check import check_bodies, check_pairs, check_settings, of_pairs
+from rigidarea.flexible.check import check_bodies, check_joints, check_pairs, check_settings, of_pairs
 from rigidarea.flexible.contacts import replay
+from rigidarea.flexible.joints import JOINT, Joint
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
+from rigidarea.flexible.start import start
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 from rigidarea.flexible.watch import watch
 from rigidarea.kernel.impact import damping_ratio
@@ -27,7 +29,8 @@ from rigidarea.kernel.impact import damping_ratio
 Array = NDArray[np.float64]
 
 CHUNK = 5000  # steps a compiled call: a Python signal waits at most this long
-ROOM = 128  # loaded FE nodes of all contacts at once, to begin with; doubled when they are more
+ROOM = 120  # loaded FE nodes of all contacts at once, to begin with; doubled when they are more. (Rows of 128 would all
+# fall on the same few lines of the processor's cache.)
 
 
 @dataclass
@@ -75,7 +78,8 @@ class Record:
     of each pair; regions (n, r, 5): force on the second body of its pair, direction, point, zeros beyond the regions
     of the instant, r the most at one; pair (n, r) which pair, -1 beyond; iterations (n,) of Newton; halved (n,) times
     the step was halved; elastic, kinetic (n,) strain energy of the modes, kinetic energy; q (m,), dq (m,) at the end.
-    evaluations: of the contact, in all. shapes: what ``recover`` makes stresses of, None unless the run kept it.
+    joints (n, j, 3): force and moment of each joint on its second body. evaluations: of the contact, in all.
+    shapes: what ``recover`` makes stresses of, None unless the run kept it.
     """
 
     t: Array
@@ -92,6 +96,7 @@ class Record:
     kinetic: Array
     q: Array
     dq: Array
+    joints: Array
     evaluations: int
     shapes: Shapes | None = None
 
@@ -124,8 +129,9 @@ class Simulation:
     pairs: of body numbers; forces are recorded on the second of each. k: contact stiffness, force per area. q: pressure
     exponent of Alg. 3. contact: "area" or "sts". reach: STS only, the deepest penetration looked at (length). margin:
     length a leaf pair may move before the search is renewed. rho: spectral radius at infinity ρ∞, in [0, 1]; below 1
-    where there are constraints (index 3). friction, restitution: of all pairs, or one a pair (``resist``). Raises
-    ValueError for bodies, pairs or settings out of range, or an overlap at t = 0 deeper than ``depth_limit``.
+    where there are constraints (index 3). friction, restitution: of all pairs, or one a pair (``resist``). joints:
+    see ``joints``. Raises ValueError for bodies, pairs, joints or settings out of range, or an overlap at t = 0
+    deeper than ``depth_limit``.
     """
 
     def __init__(
@@ -142,14 +148,16 @@ class Simulation:
         depth_limit: float = np.inf,
         friction: float | Sequence[float] = 0.0,
         restitution: float | Sequence[float] = 1.0,
+        joints: Sequence[Joint] = (),
     ) -> None:
         check_settings(k, q, contact, reach, margin, rho, gravity)
-        check_bodies(bodies, rho)
+        check_bodies(bodies, rho, constrained=len(joints) > 0)
         self.pairs = check_pairs(pairs, len(bodies))
         held = (
             of_pairs("friction", friction, len(self.pairs)),
             of_pairs("restitution", restitution, len(self.pairs)),
         )
+        self.joints = check_joints(joints, len(bodies))
         self.bodies = list(bodies)
         count = [len(b.frequency) for b in bodies]
         first = np.concatenate([[0], np.cumsum(count)])
@@ -171,6 +179,7 @@ class Simulation:
             np.concatenate([np.hypot(b.boundary.modes[:-3:2], b.boundary.modes[1:-3:2]).max(0) for b in bodies]),
             column([(0.0, 0.0) if b.fixed else (1 / b.mass, 1 / b.inertia) for b in bodies]),
             held[0], np.array([damping_ratio(e) for e in held[1]]),
+            np.array([j.row() for j in self.joints], JOINT),
         )  # fmt: skip
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
@@ -186,8 +195,7 @@ class Simulation:
         m = int(first[-1])
         self.state, self._saved = self._new_state(m), self._new_state(m)
         self.time = 0.0
-        sizes = [len(b.points) for b in self.boundaries]
-        self._searches = searches([max(sizes[i], sizes[j]) for i, j in self.pairs])
+        self._searches = searches(len(self.pairs))
         self._make_room(ROOM if spread and contact == "area" else 0)
         if np.isfinite(depth_limit):
             self._check_start(depth_limit)
@@ -197,7 +205,13 @@ class Simulation:
         sizes = [len(b.points) for b in self.boundaries]
         largest = max((sizes[i] + sizes[j] for i, j in self.pairs), default=0)
         self.scratch = nodal.scratch(largest, loads)
-        made = buffers(len(self.bodies), len(self.pairs), [len(b.frequency) for b in self.bodies], loads)
+        made = buffers(
+            len(self.bodies),
+            len(self.pairs),
+            len(self.joints),
+            [len(b.frequency) for b in self.bodies],
+            loads,
+        )
         if old is not None:
             made.counts[1], made.most[:] = old.counts[1], old.most
             made.springs[:], made.held[:] = old.springs, old.held
@@ -231,42 +245,10 @@ class Simulation:
     def _new_state(self, modes: int) -> State:
         x = np.array([[*b.position, b.angle] for b in self.bodies], float)
         v = np.array([b.velocity for b in self.bodies], float)
-        acc, mu = np.zeros_like(x), np.zeros_like(x)
-        for i, b in enumerate(self.bodies):
-            if not b.fixed:
-                acc[i], mu[i] = self._start(b)
+        v[[b.fixed for b in self.bodies]] = 0.0
+        acc, mu = start(self.bodies, self.joints, self.system.gravity)
         z = np.zeros(modes)
         return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu)
-
-    def _start(self, b: Body) -> tuple[Array, Array]:
-        """Accelerations and multipliers (3,) that satisfy motion and constraints at t = 0, contacts and modes at
-        rest.
-
-        Without them the scheme starts with an error of first order.
-        """
-        c, s = np.cos(b.angle), np.sin(b.angle)
-        arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
-        omega = b.velocity[2]
-        rows, right = [], []
-        if b.anchor is not None:
-            rows += [[1.0, 0.0, -arm[1]], [0.0, 1.0, arm[0]]]
-            right += list(omega**2 * arm)
-        if b.drive is not None:
-            rows.append([0.0, 0.0, 1.0])
-            right.append(b.drive[1] / b.drive[2] if b.drive[2] > 0 else 0.0)
-        n = len(rows)
-        matrix = np.zeros((3 + n, 3 + n))
-        matrix[:3, :3] = np.diag([b.mass, b.mass, b.inertia])
-        if n:
-            matrix[3:, :3] = rows
-            matrix[:3, 3:] = -np.array(rows).T
-        load = [b.mass * self.system.gravity[0], b.mass * self.system.gravity[1], b.torque - b.damper * omega]
-        solution = np.linalg.solve(matrix, np.array(load + right))
-        mu = np.zeros(3)
-        mu[: 2 if b.anchor is not None else 0] = solution[3 : 5 if b.anchor is not None else 3]
-        if b.drive is not None:
-            mu[2] = solution[-1]
-        return solution[:3], mu
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
         """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps; ``shapes`` too if asked for.
@@ -282,7 +264,9 @@ class Simulation:
             raise ValueError(f"every must be a whole number of at least 1, got {every!r}")
         steps = round(duration / h)
         n, m, p = len(self.bodies), len(self.state.q), len(self.pairs)
-        out = np.zeros((steps // every, HEAD + BODY * n + 2 * p + (m + 3 * n if shapes else 0)))
+        out = np.zeros(
+            (steps // every, HEAD + BODY * n + 2 * p + 3 * len(self.joints) + (m + 3 * n if shapes else 0))
+        )
         chunk = every * max(1, CHUNK // every)
         nodes = sum(len(w.node_load) for w in self.works)
         regions = np.zeros((REGIONS + 4 * CHUNK, 6))
@@ -339,6 +323,9 @@ class Simulation:
         at = HEAD + BODY * n
         body = rows[:, HEAD:at].reshape(len(rows), n, BODY)
         forces = rows[:, at : at + 2 * p].reshape(len(rows), p, 2)
+        at += 2 * p
+        joints = rows[:, at : at + 3 * len(self.joints)].reshape(len(rows), len(self.joints), 3)
+        at += 3 * len(self.joints)
         counts, loaded = rows[:, 5].astype(int), rows[:, 6].astype(int)
         regions = regions[: counts.sum()]
         row = np.repeat(np.arange(len(rows)), counts)
@@ -349,7 +336,6 @@ class Simulation:
         pair[place] = regions[:, 0]
         kept = None
         if shapes:
-            at += 2 * p
             ends = np.cumsum(loaded)
             kept = Shapes(
                 rows[:, at : at + m].copy(), rows[:, at + m :].reshape(len(rows), n, 3).copy(),
@@ -357,8 +343,8 @@ class Simulation:
             )  # fmt: skip
         return Record(
             rows[:, 0], body[:, :, :3], body[:, :, 3:6], body[:, :, 6], body[:, :, 7], forces, table, pair,
-            rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4], self.state.q.copy(), self.state.dq.copy(), evaluations,
-            kept,
+            rows[:, 1], rows[:, 2], rows[:, 3], rows[:, 4], self.state.q.copy(), self.state.dq.copy(), joints,
+            evaluations, kept,
         )  # fmt: skip
 
     def contact_seconds(self, x: Array, repeat: int = 5) -> float:

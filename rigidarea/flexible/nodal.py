@@ -30,16 +30,15 @@ from numpy.typing import NDArray
 from rigidarea.flexible import slabs
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import couple, couple_slabs, room
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.literal import literal as literal
 from rigidarea.flexible.literal import literal_alpha as literal_alpha
-from rigidarea.flexible.place import add_load, displace_near
+from rigidarea.flexible.place import add_load
 from rigidarea.flexible.quadrature import quadrature as quadrature
 from rigidarea.flexible.region import all_arcs, arcs, area_and_centroid, find_regions
 from rigidarea.flexible.scratch import FULL, MANY, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
 from rigidarea.flexible.search import search as search
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -47,7 +46,7 @@ Ints = NDArray[np.int64]
 WALL = 1e-9  # width over that of the region below which a piece stands along the force: no slope, no pressure
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _straight(x: Array, n: int, chord: float) -> bool:
     """Whether an arc is a graph over the chord; what rounding folds back, or beyond the ends, is put straight."""
     slack = 1e-12 * chord
@@ -60,21 +59,21 @@ def _straight(x: Array, n: int, chord: float) -> bool:
     return graph
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _slope(x: Array, y: Array, k: int, wall: float = 0.0) -> float:
     """Slope of piece k; a piece no wider than ``wall`` stands along the force and has none."""
     width = x[k + 1] - x[k]
     return (y[k + 1] - y[k]) / width if width > wall else 0.0
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _rate(x: Array, t: Array, k: int) -> float:
     """How the parameter on the edge grows along piece k."""
     width = x[k + 1] - x[k]
     return (t[k, 1] - t[k, 0]) / width if width > 0.0 else 0.0
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _lean(xa: Array, ya: Array, xb: Array, yb: Array, n_a: int, n_b: int) -> float:
     """∫ d (slope of A + slope of B)/2 dx over two graphs: see ``_turn``."""
     wall = WALL * xa[n_a]
@@ -102,7 +101,7 @@ def _lean(xa: Array, ya: Array, xb: Array, yb: Array, n_a: int, n_b: int) -> flo
     return 0.25 * lean
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _turn(x: Array, y: Array, n_a: int, n_b: int, lean: float) -> tuple[float, float]:
     """Turns the arcs into axes across and along the force; returns cosine and sine.
 
@@ -121,7 +120,7 @@ def _turn(x: Array, y: Array, n_a: int, n_b: int, lean: float) -> tuple[float, f
     return c, s
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, xa: Array, ya: Array, xb: Array, yb: Array,
     edge_a: Ints, edge_b: Ints, ta: Array, tb: Array, n_a: int, n_b: int, k: float,
@@ -190,7 +189,7 @@ def _distribute(
     add_load(load_b, flag_b, touched_b, edge_b[j - 1], carry_b * nx, carry_b * ny)
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, q: float, spread: bool, s: Scratch,
@@ -201,9 +200,7 @@ def contact(
     are also written there, as unknowns (``condense``). Returns the number of regions or an error code of ``scratch``.
     The force on B is region.force · (nx, ny) at (x, y), on A its opposite.
     """
-    displace_near(a, wa, qa, s.near[0], s.runs[0], stamp)
-    displace_near(b, wb, qb, s.near[1], s.runs[1], stamp)
-    n = find_regions(a, wa, pose_a, b, wb, pose_b, n_pairs, stamp, s)
+    n = find_regions(a, wa, pose_a, qa, b, wb, pose_b, qb, n_pairs, stamp, s)
     x, y = s.x, s.y
     for i in range(n):
         r = s.regions[i]
@@ -215,7 +212,7 @@ def contact(
             return MANY
         area, xc, yc = area_and_centroid(x, y, s.t, n_a, n_b)
         ux, uy = -r["ny"], r["nx"]
-        r["area"], r["force"] = area, k * area  # Eq. 5
+        r["area"], r["force"], r["serial"] = area, k * area, 0  # Eq. 5
         r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
         if area <= 0.0:
             continue
@@ -260,4 +257,5 @@ def contact(
             alpha, beta, power = slabs.distribute(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
             if answers:
                 couple_slabs(a, wa, pose_a, b, wb, pose_b, r, s, n_a, n_b, k, alpha, beta, xc, power)
+        r["serial"] = s.load.made[1]
     return n

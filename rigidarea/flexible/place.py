@@ -1,8 +1,8 @@
 """Where boundary points are, and loads on their way from points to nodes.
 
 A point's displacement is that of the two FE nodes of its edge, u = Φ q + C f: modes, and static flexibility under
-the node loads of the evaluation before. Nodes come in runs, so a mode or a load moves a whole run by one row of Φᵀ
-or of C (which is symmetric).
+the node loads of the evaluation before. Only points of leaves that are near the other body are placed, each once an
+evaluation, which its stamp says.
 """
 
 from __future__ import annotations
@@ -11,90 +11,80 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@inner(forceinline=True)
-def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: int) -> None:
-    """Displacements (body frame) of the FE nodes ``first`` … ``end`` - 1; modal (m,) are the coordinates q."""
-    n_modes, static = b.shapes.shape[0], b.flexibility.shape[0] > 0
-    w.displacement_stamp[first:end] = stamp
+@kernel(forceinline=True)
+def displace(b: Boundary, w: Work, modal: Array, node: int, stamp: int) -> None:
+    """Displacement (body frame) of an FE node; modal (m,) are the coordinates q."""
+    w.displacement_stamp[node] = stamp
+    n_modes, static = b.modes.shape[1], b.flexibility.shape[0] > 0
     if n_modes == 0 and not static:
         return
-    u = w.displacement[first:end].reshape(2 * (end - first))
-    u[:] = 0.0
+    x = y = 0.0
+    row_x, row_y = b.modes[2 * node], b.modes[2 * node + 1]
     for k in range(n_modes):
-        row = b.shapes[k, 2 * first : 2 * end]
-        for i in range(len(u)):
-            u[i] += row[i] * modal[k]
+        x += row_x[k] * modal[k]
+        y += row_y[k] * modal[k]
     if static:
-        flexibility, load, loaded = b.flexibility, w.node_load, w.loaded
+        load, loaded = w.node_load, w.loaded
+        row_x, row_y = b.flexibility[2 * node], b.flexibility[2 * node + 1]
         for k in range(loaded[-1]):
             j = loaded[k]
             fx, fy = load[j, 0], load[j, 1]
-            row_x, row_y = (
-                flexibility[2 * j, 2 * first : 2 * end],
-                flexibility[2 * j + 1, 2 * first : 2 * end],
-            )
-            for i in range(len(u)):
-                u[i] += row_x[i] * fx + row_y[i] * fy
+            x += row_x[2 * j] * fx + row_x[2 * j + 1] * fy
+            y += row_y[2 * j] * fx + row_y[2 * j + 1] * fy
+        hub = len(row_x) - 3
         for k in range(3):
-            f = w.hub_load[k]
-            if f != 0.0:
-                row = flexibility[len(flexibility) - 3 + k, 2 * first : 2 * end]
-                for i in range(len(u)):
-                    u[i] += row[i] * f
-    if len(b.swell) > 0 and w.spin[0] != 0.0:
-        row, f = b.swell[2 * first : 2 * end], w.spin[0]
-        for i in range(len(u)):
-            u[i] += row[i] * f
+            x += row_x[hub + k] * w.hub_load[k]
+            y += row_y[hub + k] * w.hub_load[k]
+    if len(b.swell) > 0:
+        x += b.swell[2 * node] * w.spin[0]
+        y += b.swell[2 * node + 1] * w.spin[0]
+    w.displacement[node, 0], w.displacement[node, 1] = x, y
 
 
-@inner(forceinline=True)
-def displace_near(b: Boundary, w: Work, modal: Array, near: Ints, runs: int, stamp: int) -> None:
-    """``displace`` for the nodes that the search left in ``near``."""
-    for k in range(runs):
-        displace(b, w, modal, near[k, 2], near[k, 3], stamp)
+@kernel
+def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
+    """World position of point i, its nodes displaced; pose (x, y, cos θ, sin θ)."""
+    w.position_stamp[i] = stamp
+    x, y = b.points[i, 0], b.points[i, 1]
+    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
+        m, n, f, u = b.low[i], b.high[i], b.share[i], w.displacement
+        if w.displacement_stamp[m] != stamp:
+            displace(b, w, modal, m, stamp)
+        if w.displacement_stamp[n] != stamp:
+            displace(b, w, modal, n, stamp)
+        x += (1.0 - f) * u[m, 0] + f * u[n, 0]
+        y += (1.0 - f) * u[m, 1] + f * u[n, 1]
+    w.position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
+    w.position[i, 1] = pose[1] + pose[3] * x + pose[2] * y
 
 
-@inner(forceinline=True)
-def place(b: Boundary, w: Work, pose: Array, first: int, end: int, stamp: int) -> None:
-    """World positions of the points ``first`` … ``end`` - 1, their nodes displaced; pose (x, y, cos θ, sin θ)."""
-    points, low, high, share, position, u = b.points, b.low, b.high, b.share, w.position, w.displacement
-    w.position_stamp[first:end] = stamp
-    px, py, c, s = pose[0], pose[1], pose[2], pose[3]
-    moves = b.shapes.shape[0] > 0 or b.flexibility.shape[0] > 0
-    for i in range(first, end):
-        x, y = points[i, 0], points[i, 1]
-        if moves:
-            m, n, f = low[i], high[i], share[i]
-            x += (1.0 - f) * u[m, 0] + f * u[n, 0]
-            y += (1.0 - f) * u[m, 1] + f * u[n, 1]
-        position[i, 0] = px + c * x - s * y
-        position[i, 1] = py + s * x + c * y
+@kernel
+def place_leaves(
+    b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
+) -> None:
+    """``place`` for the points of the candidate leaves."""
+    following, stamps = b.next, w.position_stamp
+    last = -1
+    for k in range(n_pairs):
+        leaf = pairs[k, side]
+        if leaf == last:
+            continue
+        last = leaf
+        first, end = b.right[leaf], b.right[leaf] - b.left[leaf]
+        for i in range(first, end):
+            if stamps[i] != stamp:
+                place(b, w, pose, modal, i, stamp)
+        if stamps[following[end - 1]] != stamp:
+            place(b, w, pose, modal, following[end - 1], stamp)
 
 
-@inner(forceinline=True)
-def place_near(b: Boundary, w: Work, pose: Array, near: Ints, runs: int, stamp: int) -> None:
-    """``place`` for the points that the search left in ``near``."""
-    for k in range(runs):
-        place(b, w, pose, near[k, 0], near[k, 1], stamp)
-
-
-@inner
-def place_one(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
-    """Displaces and places point i: for the rare point of an arc that no candidate leaf holds."""
-    for node in (b.low[i], b.high[i]):
-        if w.displacement_stamp[node] != stamp:
-            displace(b, w, modal, node, node + 1, stamp)
-    place(b, w, pose, i, i + 1, stamp)
-
-
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: float, fy: float) -> None:
     """Adds a force to point i and remembers that it is loaded."""
     if not flag[i]:
@@ -105,7 +95,7 @@ def add_load(load: Array, flag: NDArray[np.bool_], touched: Ints, i: int, fx: fl
     load[i, 1] += fy
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def clear_loads(w: Work) -> None:
     """Forgets the contact points' loads."""
     touched, load, pressure, flag = w.touched, w.point_load, w.pressure, w.point_flag
@@ -116,7 +106,7 @@ def clear_loads(w: Work) -> None:
     touched[-1] = 0
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def clear_nodes(w: Work) -> None:
     """Forgets the FE boundary nodes' loads."""
     load, flag, loaded = w.node_load, w.node_flag, w.loaded
@@ -126,7 +116,7 @@ def clear_nodes(w: Work) -> None:
     loaded[-1] = 0
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def to_nodes(b: Boundary, w: Work, pose: Array) -> None:
     """Carries the contact points' loads (world) to the FE boundary nodes (body frame)."""
     load, flag, loaded, point_load, touched = w.node_load, w.node_flag, w.loaded, w.point_load, w.touched

@@ -6,15 +6,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@inner
+@kernel
 def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
     """Makes x grow along an arc; overhanging parts get no width, so no load. True if there were any."""
     bent = False
@@ -27,7 +26,7 @@ def _straighten(x: Array, side: int, n: int, chord: float) -> bool:
     return bent
 
 
-@kernel
+@entry
 def quadrature(
     a: Boundary, b: Boundary, x: Array, y: Array, edge: Ints, t: Array, n_a: int, n_b: int, chord: float,
     point: Ints, value: Array,

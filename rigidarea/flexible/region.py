@@ -25,10 +25,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
-from rigidarea.flexible.place import place_near, place_one
+from rigidarea.flexible.place import place, place_leaves
 from rigidarea.flexible.scratch import MANY, SLICED, TORN, Scratch
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,7 +35,7 @@ Ints = NDArray[np.int64]
 NO_CHORD = 1e-9  # a summed chord this small beside its parts is rounding: no direction
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def strip(at: Array, following: Ints, low: int, high: int) -> tuple[float, float, float, float, float, float]:
     """The strip that holds a leaf's edges low … high - 1: origin, chord, and the bounds of cross(chord, ·)."""
     ox, oy = at[low, 0], at[low, 1]
@@ -50,7 +49,7 @@ def strip(at: Array, following: Ints, low: int, high: int) -> tuple[float, float
     return ox, oy, ux, uy, above + slack, below - slack
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _crossings(
     next_a: Ints, first_a: Ints, size_a: Ints, at_a: Array, next_b: Ints, first_b: Ints, size_b: Ints, at_b: Array,
     pairs: Ints, n_pairs: int, out: NDArray[np.void],
@@ -103,7 +102,7 @@ def _crossings(
     return count
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _following(ring: Ints, edge: Ints, t: Array, n: int, i: int) -> int:
     """The crossing that follows crossing i on the same ring of one body."""
     best, wrap = -1, -1
@@ -119,7 +118,7 @@ def _following(ring: Ints, edge: Ints, t: Array, n: int, i: int) -> int:
     return best if best >= 0 else wrap
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _around(crossings: NDArray[np.void], first: int, r: Any) -> int:
     """Follows a region from crossing ``first`` round its arcs: 1, or 0 if it has no extent, or TORN, SLICED."""
     start = crossings[first]
@@ -165,24 +164,17 @@ def _around(crossings: NDArray[np.void], first: int, r: Any) -> int:
     return 1
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def find_regions(
-    a: Boundary,
-    wa: Work,
-    pose_a: Array,
-    b: Boundary,
-    wb: Work,
-    pose_b: Array,
-    n_pairs: int,
-    stamp: int,
-    s: Scratch,
-) -> int:
+    a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
+    n_pairs: int, stamp: int, s: Scratch,
+) -> int:  # fmt: skip
     """Fills ``s.regions`` with the crossings and chord of each region: their number, or MANY, TORN, SLICED.
 
-    Poses are (x, y, cos θ, sin θ); the nodes have been displaced. ``s`` holds what ``search`` left.
+    Poses are (x, y, cos θ, sin θ). ``s.close`` holds what ``search`` or ``narrow`` left.
     """
-    place_near(a, wa, pose_a, s.near[0], s.runs[0], stamp)
-    place_near(b, wb, pose_b, s.near[1], s.runs[1], stamp)
+    place_leaves(a, wa, pose_a, qa, s.close, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, s.close, n_pairs, 1, stamp)
     crossings, regions = s.crossings, s.regions
     n = _crossings(
         a.next,
@@ -193,7 +185,7 @@ def find_regions(
         b.right,
         b.left,
         wb.position,
-        s.pairs,
+        s.close,
         n_pairs,
         crossings,
     )
@@ -216,7 +208,7 @@ def find_regions(
     return count
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _trace(
     bd: Boundary, w: Work, pose: Array, modal: Array, stamp: int, side: int, first: int, t_first: float, last: int,
     t_last: float, ox: float, oy: float, ux: float, uy: float, x: Array, y: Array, edge: Ints, t: Array, n: int,
@@ -237,14 +229,14 @@ def _trace(
         if side == 0:
             vertex = i
         if stamps[vertex] != stamp:
-            place_one(bd, w, pose, modal, vertex, stamp)
+            place(bd, w, pose, modal, vertex, stamp)
         px, py = at[vertex, 0] - ox, at[vertex, 1] - oy
         x[n], y[n] = ux * px + uy * py, -uy * px + ux * py
     edge[n], t[n, 0], t[n, 1] = i, t0, t_last
     return n + 1
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def arcs(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     r: Any, stamp: int, x: Array, y: Array, edge: Ints, t: Array,
@@ -272,7 +264,7 @@ def arcs(
     return n_a, n_b
 
 
-@kernel
+@entry
 def all_arcs(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     r: Any, stamp: int, s: Scratch,
@@ -313,13 +305,13 @@ def all_arcs(
     return n_a, n_b
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _framed(crossing: Any, ox: float, oy: float, ux: float, uy: float) -> tuple[float, float]:
     px, py = crossing["x"] - ox, crossing["y"] - oy
     return ux * px + uy * py, -uy * px + ux * py
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def area_and_centroid(x: Array, y: Array, t: Array, n_a: int, n_b: int) -> tuple[float, float, float]:
     """Area and centroid (Eq. 4 and 7) of the region between the arcs, in its chord frame.
 

@@ -15,11 +15,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidarea.flexible.jit import inner
 from rigidarea.kernel.constants import TANGENT_STIFFNESS
+from rigidarea.kernel.jit import kernel
 
 
-@inner
+@kernel
 def keep_springs(buf, source, target):  # type: ignore[no-untyped-def]
     """Friction's springs of one generation into another: 0 this evaluation, 1 the last step, 2 the step before."""
     n = buf.held[source]
@@ -29,7 +29,7 @@ def keep_springs(buf, source, target):  # type: ignore[no-untyped-def]
     buf.held[target] = n
 
 
-@inner
+@kernel
 def _stretch_before(buf, p, x, y):  # type: ignore[no-untyped-def]
     """The stretch, after the last step, of the pair's region that was nearest to a place; 0 if there was none."""
     nearest, stretch = np.inf, 0.0
@@ -42,7 +42,7 @@ def _stretch_before(buf, p, x, y):  # type: ignore[no-untyped-def]
     return stretch
 
 
-@inner
+@kernel
 def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
     """Adds a region's damping and friction to loads and tangent, and its spring to this evaluation's."""
     nx, ny, x, y = r["nx"], r["ny"], r["x_chord"], r["y_chord"]
@@ -78,7 +78,7 @@ def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
         buf.held[0] += 1
 
 
-@inner
+@kernel
 def _push(buf, p, ia, ib, nx, ny, turn_a, turn_b, force, tangent):  # type: ignore[no-untyped-def]
     """A force on B along (nx, ny), its opposite on A; ``tangent``: its change with how A moves against B."""
     buf.force[p, 0] += force * nx

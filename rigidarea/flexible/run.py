@@ -4,18 +4,17 @@ from __future__ import annotations
 
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.hub import hub_displacement, hub_rate
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
 BODY = 8  # columns of a body in a row of the record: frame, its velocity, hub's angle and its rate
 HEAD = 7  # columns before the bodies': time, iterations, halvings, strain and kinetic energy, regions, loads
 
 
-@inner
+@kernel
 def _copy(source, target):  # type: ignore[no-untyped-def]
     for b in range(len(source.x)):
         for i in range(3):
@@ -23,6 +22,8 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
             target.v[b, i] = source.v[b, i]
             target.acc[b, i] = source.acc[b, i]
             target.aux[b, i] = source.aux[b, i]
+    for b in range(len(source.mu)):
+        for i in range(3):
             target.mu[b, i] = source.mu[b, i]
     for i in range(len(source.q)):
         target.q[i] = source.q[i]
@@ -31,9 +32,10 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
         target.auxq[i] = source.auxq[i]
 
 
-@inner
+@kernel
 def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
-    """Energies, frames, hubs and forces of this instant; columns: HEAD, BODY a body, 2 a pair, modes, hub loads."""
+    """Energies, frames, hubs and forces of this instant; columns: HEAD, BODY a body, 2 a pair, 3 a joint, modes, hub
+    loads."""
     strain = kinetic = 0.0
     for i in range(len(state.q)):
         strain += 0.5 * sy.square[i] * state.q[i] ** 2
@@ -62,6 +64,10 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
     for p in range(len(buf.force)):
         row[at], row[at + 1] = buf.force[p, 0], buf.force[p, 1]
         at += 2
+    for n in range(len(buf.joint)):
+        for i in range(3):
+            row[at + i] = buf.joint[n, i]
+        at += 3
     if len(row) > at:  # shapes are kept
         for i in range(len(state.q)):
             row[at + i] = state.q[i]
@@ -71,7 +77,7 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
                 row[at + 3 * b + k] = work_at(bodies, b).hub_load[k]
 
 
-@kernel
+@entry
 def run_steps(  # type: ignore[no-untyped-def]
     bodies, sy, state, saved, pairs, st, s, found, buf, t0, h, first, last, every, out, regions, loads, filled
 ):
@@ -130,8 +136,8 @@ def run_steps(  # type: ignore[no-untyped-def]
             for b in range(len(sy.mass)):
                 w = work_at(bodies, b)
                 for i in range(w.loaded[-1]):
-                    entry, node = loads[filled[2]], w.loaded[i]
-                    entry[0], entry[1], entry[2], entry[3] = (
+                    one, node = loads[filled[2]], w.loaded[i]
+                    one[0], one[1], one[2], one[3] = (
                         b,
                         node,
                         w.node_load[node, 0],

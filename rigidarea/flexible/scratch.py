@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.jit import inner
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,7 +23,11 @@ REGION = np.dtype(
     + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
     + [("x_chord", "f8"), ("y_chord", "f8")]
-    + [("first", "i8"), ("arcs", "i8")]  # a crossing of it, and its arcs a body
+    + [
+        ("first", "i8"),
+        ("arcs", "i8"),
+        ("serial", "i8"),
+    ]  # a crossing of it, its arcs a body, number of its loads
 )
 CROSSING = np.dtype(
     [("a", "i8"), ("b", "i8"), ("ta", "f8"), ("tb", "f8"), ("x", "f8"), ("y", "f8"), ("enter", "i8"), ("next_a", "i8"),
@@ -41,6 +45,7 @@ class Loads(NamedTuple):
     """The loads of all regions as unknowns, and how they answer to displacements; see ``condense``. Room for c."""
 
     made: Ints  # (2,) unknowns so far, serial number of the region
+    region: Ints  # (c,) that number
     side: Ints  # (c,) 0: on A, 1: on B; then the body
     node: Ints  # (c,) FE boundary node, -1: one of the two of a rigid body's side
     at: Array  # (c, 2) where, world
@@ -53,13 +58,11 @@ class Loads(NamedTuple):
 
 
 class Scratch(NamedTuple):
-    """See the module; ``near`` and ``mark`` have a row for each body."""
+    """See the module."""
 
     stack: Ints
     pairs: Ints  # (p, 2) candidate leaves
-    near: Ints  # (2, r, 4) runs of points and of FE nodes near the other body: first and end of each
-    runs: Ints  # (2,) their numbers
-    mark: Ints  # (2, n) search that saw a point, [-1] that of the last search
+    close: Ints  # (p, 2) those of them that are near now
     crossings: NDArray[np.void]
     regions: NDArray[np.void]
     x: Array  # (2, n)
@@ -74,7 +77,8 @@ def loads(room: int, points: int) -> Loads:
     """Room for ``room`` loads of boundaries of ``points`` points; 0: no answer to displacements is wanted."""
     m = 4 * (points + 4) if room else 0
     return Loads(
-        np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros((room, 2)),
+        np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
+        np.zeros((room, 2)),
         np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((room, room)), np.zeros(m, np.int64),
         np.zeros(m),
     )  # fmt: skip
@@ -84,8 +88,8 @@ def scratch(points: int, room: int = 0) -> Scratch:
     """Arrays for boundaries of up to ``points`` points in all, and ``room`` loads as unknowns."""
     n = points + 3
     return Scratch(
-        np.zeros((256, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), np.zeros((2, n, 4), np.int64),
-        np.zeros(2, np.int64), np.zeros((2, n), np.int64), np.zeros(512, CROSSING), np.zeros(1024, REGION),
+        np.zeros((256, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64),
+        np.zeros(512, CROSSING), np.zeros(1024, REGION),
         np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n), np.int64), np.zeros((2, n, 2)), np.zeros(2 * n),
         loads(room, points),
     )  # fmt: skip
@@ -95,27 +99,23 @@ class Searches(NamedTuple):
     """What the search left for each of p pairs, kept while nothing has moved by the margin; see ``Scratch``."""
 
     pairs: Ints  # (p, c, 2)
-    near: Ints  # (p, 2, r, 4)
-    runs: Ints  # (p, 2)
-    mark: Ints  # (p, 2, n)
     found: Ints  # (p,) candidate leaves, -1 before the first search
     posed: Array  # (p, 2, 4) poses then
     bend: Array  # (p,) and the deformation allowed for
+    margin: Array  # (p,) and the motion
 
 
-def searches(points: list[int]) -> Searches:
-    """Room for one search a pair, ``points`` (p,) of the larger of its two boundaries."""
-    p, n = len(points), max(points, default=0) + 3
+def searches(pairs: int) -> Searches:
+    """Room for one search each of so many pairs."""
+    p = pairs
     return Searches(
-        np.zeros((p, CANDIDATES, 2), np.int64), np.zeros((p, 2, n, 4), np.int64), np.zeros((p, 2), np.int64),
-        np.zeros((p, 2, n), np.int64), np.full(p, -1), np.full((p, 2, 4), np.inf), np.zeros(p),
+        np.zeros((p, CANDIDATES, 2), np.int64), np.full(p, -1), np.full((p, 2, 4), np.inf), np.zeros(p), np.zeros(p)
     )  # fmt: skip
 
 
-@inner
+@kernel
 def of_pair(s: Scratch, all_pairs: Searches, p: int) -> Scratch:
     """The work arrays with what the search left for pair p."""
     return Scratch(
-        s.stack, all_pairs.pairs[p], all_pairs.near[p], all_pairs.runs[p], all_pairs.mark[p], s.crossings, s.regions,
-        s.x, s.y, s.edge, s.t, s.cut, s.load,
+        s.stack, all_pairs.pairs[p], s.close, s.crossings, s.regions, s.x, s.y, s.edge, s.t, s.cut, s.load
     )  # fmt: skip

@@ -1,4 +1,4 @@
-"""The search: which leaves of two bodies' trees may touch, and which points have to be placed for them.
+"""The search: which leaves of two bodies' trees may touch.
 
 Circles do not mind rotation, so the trees are built once, in the body frames. Two leaves whose circles are near are
 looked at again as boxes along their chords (separating axes, S. Gottschalk et al., OBBTree, 1996,
@@ -11,29 +11,30 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.scratch import MANY, Scratch
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@kernel
+@kernel(forceinline=True)
+def _relative(pose_a: Array, pose_b: Array) -> tuple[float, float, float, float]:
+    """Pose of b in the frame of a: cosine, sine, x, y."""
+    c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
+    sn = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
+    dx, dy = pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]
+    return c, sn, pose_a[2] * dx + pose_a[3] * dy, -pose_a[3] * dx + pose_a[2] * dy
+
+
+@entry
 def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
-    """Fills ``s.pairs``, the leaves that come within ``margin``, and ``s.near``: their number, or MANY.
+    """Fills ``s.pairs`` and ``s.close``, the leaves that come within ``margin``: their number, or MANY.
 
     Poses are (x, y, cos θ, sin θ). ``margin`` (length) covers the deformation and, where the list is kept for several
     evaluations, the motion between them.
     """
-    if max(len(a.points), len(b.points)) >= s.mark.shape[1]:
-        return MANY
-    # pose of b in the frame of a
-    c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
-    sn = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
-    dx, dy = pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]
-    tx = pose_a[2] * dx + pose_a[3] * dy
-    ty = -pose_a[3] * dx + pose_a[2] * dy
+    c, sn, tx, ty = _relative(pose_a, pose_b)
     stack, out = s.stack, s.pairs
     count, top = 0, 1
     stack[0, 0] = stack[0, 1] = 0
@@ -61,12 +62,27 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
             stack[top, 0], stack[top, 1] = i, b.left[j]
             stack[top + 1, 0], stack[top + 1, 1] = i, b.right[j]
             top += 2
-    s.runs[0] = _runs(a, s.pairs, count, 0, s.mark[0], s.near[0])
-    s.runs[1] = _runs(b, s.pairs, count, 1, s.mark[1], s.near[1])
+    for k in range(count):
+        s.close[k, 0], s.close[k, 1] = out[k, 0], out[k, 1]
     return count
 
 
-@inner(forceinline=True)
+@entry
+def narrow(
+    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, n_pairs: int, margin: float, s: Scratch
+) -> int:
+    """Fills ``s.close`` with those of ``s.pairs`` whose boxes are within ``margin`` where the bodies are now."""
+    c, sn, tx, ty = _relative(pose_a, pose_b)
+    count = 0
+    for k in range(n_pairs):
+        i, j = s.pairs[k, 0], s.pairs[k, 1]
+        if not _apart(a.box, i, b.box, j, c, sn, tx, ty, margin):
+            s.close[count, 0], s.close[count, 1] = i, j
+            count += 1
+    return count
+
+
+@kernel(forceinline=True)
 def _apart(
     box_a: Array, i: int, box_b: Array, j: int, c: float, sn: float, tx: float, ty: float, margin: float
 ) -> bool:
@@ -83,52 +99,3 @@ def _apart(
         or abs(dx * vx + dy * vy) > lb + la * cosine + wa * sine + margin
         or abs(dy * vx - dx * vy) > wb + la * sine + wa * cosine + margin
     )
-
-
-@inner
-def _runs(b: Boundary, pairs: Ints, n_pairs: int, side: int, mark: Ints, near: Ints) -> int:
-    """The points of the candidate leaves and the FE nodes that carry them, as runs of neighbours; their number."""
-    following, low, high, share = b.next, b.low, b.high, b.share
-    if n_pairs == 0:
-        return 0
-    mark[-1] += 1
-    epoch = mark[-1]
-    first, last = len(following), 0
-    for k in range(n_pairs):
-        leaf = pairs[k, side]
-        start, end = b.right[leaf], b.right[leaf] - b.left[leaf]
-        if mark[start] != epoch:
-            for i in range(start, end):
-                mark[i] = epoch
-            first, last = min(first, start), max(last, end)
-    count = 0
-    i = first
-    while i < last:
-        if mark[i] != epoch:
-            i += 1
-            continue
-        start = i
-        while i < last and mark[i] == epoch and following[i] == i + 1:
-            i += 1
-        end = (
-            i + 1
-        )  # with the closing point; where the ring closes, i is its last and the closing point its first
-        closing = -1
-        if i < last and mark[i] == epoch:
-            closing = following[i]
-            i += 1
-        near[count, 0], near[count, 1] = start, end
-        near[count, 2], near[count, 3] = low[start], low[end - 1] + 1
-        if closing < 0 and share[end - 1] > 0.0:  # the last point rides on an edge to one more node
-            if high[end - 1] == near[count, 3]:
-                near[count, 3] += 1
-            else:  # the ring's first
-                count += 1
-                near[count, 0] = near[count, 1] = 0
-                near[count, 2], near[count, 3] = high[end - 1], high[end - 1] + 1
-        count += 1
-        if closing >= 0 and mark[closing] != epoch:
-            near[count, 0], near[count, 1] = closing, closing + 1
-            near[count, 2], near[count, 3] = low[closing], low[closing] + 1
-            count += 1
-    return count

@@ -14,11 +14,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
-from rigidarea.flexible.place import add_load, displace_near, place_near
+from rigidarea.flexible.place import add_load, place_leaves
 from rigidarea.flexible.region import strip
 from rigidarea.flexible.scratch import MANY, Scratch
-from rigidarea.kernel.jit import entry as kernel
+from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -26,7 +25,7 @@ Ints = NDArray[np.int64]
 GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
 
 
-@inner(forceinline=True)
+@kernel(forceinline=True)
 def _facing(
     at_a: Array, next_a: Ints, low: int, high: int, at_b: Array, next_b: Ints, first_b: Ints, size_b: Ints,
     pairs: Ints, start: int, end: int, reach: float, out: Ints,
@@ -49,7 +48,7 @@ def _facing(
     return count
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, reach: float, spread: bool, s: Scratch,
@@ -59,15 +58,13 @@ def contact(
     k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
     Returns the number of resultants, or MANY.
     """
-    displace_near(a, wa, qa, s.near[0], s.runs[0], stamp)
-    displace_near(b, wb, qb, s.near[1], s.runs[1], stamp)
-    place_near(a, wa, pose_a, s.near[0], s.runs[0], stamp)
-    place_near(b, wb, pose_b, s.near[1], s.runs[1], stamp)
+    place_leaves(a, wa, pose_a, qa, s.close, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, s.close, n_pairs, 1, stamp)
     next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
     next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
     load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
     load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
-    pairs, regions, leaves = s.pairs, s.regions, s.edge[0]
+    pairs, regions, leaves = s.close, s.regions, s.edge[0]
     count = end = 0
     while end < n_pairs:
         # a group of pairs with one leaf of the slave

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.jit import inner
 from rigidarea.flexible.place import add_load
 from rigidarea.flexible.scratch import Scratch
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -29,7 +29,7 @@ GAUSS_X = (0.5 - 0.5 * 0.6**0.5, 0.5, 0.5 + 0.5 * 0.6**0.5)
 GAUSS_W = (5.0 / 18.0, 8.0 / 18.0, 5.0 / 18.0)
 
 
-@inner
+@kernel
 def cuts(x: Array, n_a: int, n_b: int, cut: Array) -> int:
     """The vertices' positions along the chord, sorted; their number."""
     i = j = 0
@@ -46,7 +46,7 @@ def cuts(x: Array, n_a: int, n_b: int, cut: Array) -> int:
     return n_a + n_b + 2
 
 
-@inner
+@kernel
 def slab(
     x: Array, y: Array, t: Array, n_a: int, n_b: int, lo: float, hi: float
 ) -> tuple[float, float, float, int, int, int]:
@@ -74,7 +74,7 @@ def slab(
     return max(d0, 0.0), max(d1, 0.0), middle, net, right_a, right_b
 
 
-@inner
+@kernel
 def lean(x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, cut: Array) -> float:
     """Slope of the region's middle line over the chord, weighted by d^q: see ``nodal``."""
     total = weight = 0.0
@@ -91,7 +91,7 @@ def lean(x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, cut: Array)
     return total / weight if weight > 0.0 else 0.0
 
 
-@inner
+@kernel
 def _moments(
     x: Array, y: Array, t: Array, n_a: int, n_b: int, q: float, xc: float, cut: Array, n: int
 ) -> tuple[float, float, float, float, float]:
@@ -111,7 +111,7 @@ def _moments(
     return s0, s1, s2, first, last
 
 
-@inner
+@kernel
 def distribute(
     a: Boundary, wa: Work, b: Boundary, wb: Work, nx: float, ny: float, s: Scratch, n_a: int, n_b: int, force: float,
     xc: float, q: float,

@@ -85,7 +85,7 @@ def solve(
                 w.displacement[:] = u
                 w.displacement_stamp[:] = stamp
         n_pairs = nodal.search(a, pa, b, pb, 0.0 if stamp == 1 else 2.0 * _reach(wa, wb), s)
-        n = find_regions(a, wa, pa, b, wb, pb, n_pairs, stamp, s)
+        n = find_regions(a, wa, pa, none, b, wb, pb, none, n_pairs, stamp, s)
         if n < 0:
             raise RuntimeError(
                 f"static contact: regions cannot be found (code {n}) after {stamp} evaluations"

@@ -20,11 +20,12 @@ from numpy.typing import NDArray
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
-from rigidarea.flexible.contacts import evaluate, poses
+from rigidarea.flexible.contacts import correct_forces, evaluate, poses
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.hub import Hub, direction, hub_of, hub_rate, prescribed
-from rigidarea.flexible.jit import inner
+from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.place import clear_nodes
+from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -36,6 +37,9 @@ HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn whe
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
+PACE = 0.8  # the first correction is taken to leave what it left in the step before, to this power (E. Hairer and G.
+# Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.8)
+UNSEEN = 8  # steps in a row that may end on such a word
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
 SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
@@ -56,7 +60,7 @@ class Scheme(NamedTuple):
     scale: float  # of the dynamic rows, inverse of the multipliers'
 
 
-@inner
+@kernel
 def _scheme(rho: float, h: float) -> Scheme:
     am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
     gamma = 0.5 + af - am
@@ -65,7 +69,7 @@ def _scheme(rho: float, h: float) -> Scheme:
     return Scheme(am, gamma, beta, h, acc, gamma / (h * beta), (1.0 - af) / (1.0 - am), beta * h * h)
 
 
-@inner
+@kernel
 def solve(a: Array, b: Array, n: int) -> None:
     """Gaussian elimination with partial pivoting, in place: b becomes the solution. n is at most a few dozen."""
     for i in range(n):
@@ -92,7 +96,7 @@ def solve(a: Array, b: Array, n: int) -> None:
         b[i] = s / a[i, i] if a[i, i] != 0.0 else 0.0
 
 
-@inner
+@kernel
 def _predict(state, c):  # type: ignore[no-untyped-def]
     """The step with the accelerations kept."""
     h, am, gamma, beta = c.h, c.am, c.gamma, c.beta
@@ -111,7 +115,7 @@ def _predict(state, c):  # type: ignore[no-untyped-def]
         state.auxq[i] = a_new
 
 
-@inner
+@kernel
 def _number(sy, buf):  # type: ignore[no-untyped-def]
     """Numbers the unknowns of the constraints after those of the frames, into ``buf.column``; returns their end."""
     end = 3 * len(sy.mass)
@@ -125,7 +129,7 @@ def _number(sy, buf):  # type: ignore[no-untyped-def]
     return end
 
 
-@inner
+@kernel
 def _frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyped-def]
     """Residual and matrix of one free frame; ``moment`` of its inertia. Returns the largest force, and residual."""
     m, rhs, k, size, mass = buf.matrix, buf.rhs, 3 * b, sy.size[b], sy.mass[b]
@@ -147,7 +151,7 @@ def _frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-unty
     return reference, worst
 
 
-@inner
+@kernel
 def _mode_rows(body: Boundary, w: Work, sy, buf, state, b, hub):  # type: ignore[no-untyped-def]
     """Adds all but inertia to the modes' residual; returns the largest force, and residual, as nodal ones."""
     lo, hi = sy.first[b], sy.first[b + 1]
@@ -172,7 +176,7 @@ def _mode_rows(body: Boundary, w: Work, sy, buf, state, b, hub):  # type: ignore
     return reference * root, worst * root
 
 
-@inner
+@kernel
 def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None:
     """Takes the modal forces of a force on one node, rows ``row`` and ``row`` + 1, from the residual."""
     row_x, row_y = modes[row], modes[row + 1]
@@ -180,7 +184,7 @@ def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None
         residual[j] -= row_x[j] * fx + row_y[j] * fy
 
 
-@inner
+@kernel
 def _constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):  # type: ignore[no-untyped-def]
     """Rows of one body's pin and drive, its compliance at the hub among them; returns the largest violation."""
     m, rhs, k = buf.matrix, buf.rhs, 3 * b
@@ -227,7 +231,7 @@ def _constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t)
     return worst
 
 
-@inner
+@kernel
 def _held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
     """The contacts' tangent of bodies that are held by their hubs."""
     m, n3 = buf.matrix, 3 * len(sy.mass)
@@ -243,7 +247,7 @@ def _held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
                 m[row, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scheme.scale
 
 
-@inner
+@kernel
 def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
     state.q[i] += d
     state.dq[i] += scheme.vel * d
@@ -251,7 +255,7 @@ def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
     state.auxq[i] += scheme.correction * scheme.acc * d
 
 
-@inner
+@kernel
 def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
     """Newton's correction of one body, from the solution in ``buf.rhs``; returns the largest change over its size."""
     rhs, k, change = buf.rhs, 3 * b, 0.0
@@ -285,7 +289,7 @@ def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # typ
     return change
 
 
-@inner
+@kernel
 def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
     """Where bodies pushed back by the loads before do not touch: the same with less of these loads, none at last.
 
@@ -314,7 +318,19 @@ def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-un
     return code
 
 
-@inner
+@kernel
+def _pace(buf, worst):  # type: ignore[no-untyped-def]
+    """The part of the residual that the first correction will leave, by what it left in steps before; 1: not known.
+
+    ``buf.pace``: the slowest of the last step in which that was seen, its first residual, contact regions, and the
+    steps since.
+    """
+    if buf.pace[1] == 0.0 or buf.pace[3] >= UNSEEN:
+        return 1.0
+    return buf.pace[0] ** PACE * max(1.0, worst / buf.pace[1])
+
+
+@kernel
 def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-untyped-def]
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
     scheme = _scheme(st.rho, h)
@@ -328,6 +344,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     end = _number(sy, buf)
     buf.clock[0], buf.clock[1] = h, scheme.vel
     change, before, regions = 1.0, 0.0, -1
+    first = slowest = 0.0
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
@@ -342,7 +359,8 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             return code
         buf.matrix[:] = 0.0
         buf.rhs[:] = 0.0
-        reference = worst = open_most = 0.0
+        worst = open_most = 0.0
+        reference = joint_forces(sy, buf, state, scheme.vel)
         for p in range(len(pairs)):
             reference = max(reference, np.hypot(buf.force[p, 0], buf.force[p, 1]))
         for b in range(count):
@@ -376,18 +394,29 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             force, left = _frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
             reference, worst = max(reference, force), max(worst, left)
             open_most = max(open_most, _constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h))
+        total, gap = joint_rows(sy, buf, state, end)
+        open_most = max(open_most, gap)
         if st.spread:
             _held_contacts(sy, buf, scheme)
+        if before > 0.0:
+            rate = worst / before
+            slowest = max(slowest, rate)
+            buf.pace[0], buf.pace[1], buf.pace[2], buf.pace[3] = slowest, first, regions, 0.0
+        else:
+            first = worst
+            rate = _pace(buf, worst)
         rounded = change < ROUNDING and off <= SETTLED * reference
         done = (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE
         # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
         if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
             return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
-        rate = worst / before if before > 0.0 else 1.0
         sure = rate < FAST and SURE * rate * worst <= TOLERANCE * reference and rate * open_most <= CLOSURE
+        sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
+        if sure and before == 0.0:
+            buf.pace[3] += 1.0
         before = worst
-        solve(buf.matrix, buf.rhs, end)
+        solve(buf.matrix, buf.rhs, total)
         if st.spread and not st.sts:
             renew_loads(bodies, sy, buf, s.load, scheme.scale)
         change = 0.0
@@ -396,8 +425,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 change,
                 _correct(boundary_at(bodies, b), work_at(bodies, b), sy, buf, s.load, state, scheme, b),
             )
-        buf.rhs[-2], buf.rhs[-1] = worst, reference
-        if sure and regions == buf.counts[0]:
+        correct_joints(sy, buf, state, end, scheme.scale)
+        if sure:
+            correct_forces(sy, buf, st, s, pairs)
             return iteration
+        buf.rhs[-2], buf.rhs[-1] = worst, reference
         regions = buf.counts[0]
     return NO_CONVERGENCE

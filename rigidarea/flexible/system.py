@@ -36,6 +36,7 @@ class System(NamedTuple):
     inverse: Array  # (b, 2) inverse mass and moment of inertia, 0 where a body does not yield to forces
     friction: Array  # (p,) coefficient of each pair
     ratio: Array  # (p,) damping ratio of its contacts
+    joints: NDArray[np.void]  # (j,) rows of ``joints.JOINT``
 
 
 class Settings(NamedTuple):
@@ -50,7 +51,7 @@ class Settings(NamedTuple):
 
 
 class State(NamedTuple):
-    """x, v, acceleration, auxiliary acceleration (b, 3) and the same of the modes (m,); multipliers (b, 3)."""
+    """x, v, acceleration, auxiliary acceleration (b, 3) and the same of the modes (m,); multipliers (b + j, 3)."""
 
     x: Array
     v: Array
@@ -64,7 +65,7 @@ class State(NamedTuple):
 
 
 class Buffers(NamedTuple):
-    """Scratch of the stepper: b bodies, p pairs, m modes, room for c loads."""
+    """Scratch of the stepper: b bodies, p pairs, j joints, m modes, room for c loads."""
 
     pose: Array  # (b, 4)
     matrix: Array
@@ -76,7 +77,9 @@ class Buffers(NamedTuple):
     )
     row: Array  # (3 b,)
     force: Array  # (p, 2) on the second body of each pair
-    regions: Array  # (REGIONS, 7): pair, force, direction, point, chord
+    regions: (
+        Array  # (REGIONS, 10): pair, force, direction, point, chord, its middle, serial number of its loads
+    )
     modal_residual: Array
     hubs: Array  # (b, 5) see ``hub.Hub``; moment of the frame's inertia
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
@@ -100,17 +103,19 @@ class Buffers(NamedTuple):
     springs: Array  # (3, REGIONS, 4) pair, place (2), stretch: of this evaluation, the last step, the step before it
     held: Ints  # (3,) how many
     moved: Array  # (4,) pose of a pair's second body, a little aside
+    joint: Array  # (j, 3) force and moment of each joint on its body b
+    pace: Array  # (4,) of Newton's method, see ``step``
 
 
-def buffers(bodies: int, pairs: int, modes: list[int], room: int) -> Buffers:
-    """Scratch for so many bodies and pairs, modes of each body, and ``room`` loads."""
-    n, m = bodies, sum(modes)
+def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -> Buffers:
+    """Scratch for so many bodies, pairs and joints, modes of each body, and ``room`` loads."""
+    n, m, rows = bodies, sum(modes), 6 * bodies + 3 * joints
     return Buffers(
-        np.zeros((n, 4)), np.zeros((6 * n, 6 * n)), np.zeros(6 * n + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
-        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 7)), np.zeros(m), np.zeros((n, 5)),
+        np.zeros((n, 4)), np.zeros((rows, rows)), np.zeros(rows + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
+        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 5)),
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
         np.zeros(room), np.zeros((n, 3)), np.zeros(2), np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64),
-        np.zeros(4),
+        np.zeros(4), np.zeros((joints, 3)), np.zeros(4),
     )  # fmt: skip

@@ -1,0 +1,130 @@
+"""Accelerations and multipliers that satisfy motion and constraints at t = 0, with contacts and modes at rest.
+
+Without them the scheme starts with an error of first order.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from rigidarea.flexible.joints import ROWS, Joint
+
+Array = NDArray[np.float64]
+
+
+class _Rows:
+    """Constraint rows J a = γ, and which multiplier each belongs to."""
+
+    def __init__(self, bodies: int) -> None:
+        self.n = 3 * bodies
+        self.gradient: list[Array] = []
+        self.right: list[float] = []
+        self.place: list[tuple[int, int]] = []
+
+    def add(self, place: tuple[int, int], parts: Sequence[tuple[int, Any]], right: float) -> None:
+        row = np.zeros(self.n)
+        for body, values in parts:
+            if body >= 0:
+                row[3 * body : 3 * body + 3] = values
+        self.gradient.append(row)
+        self.right.append(right)
+        self.place.append(place)
+
+
+def _cross(x: Array, y: Array) -> float:
+    return float(x[0] * y[1] - x[1] * y[0])
+
+
+def _ends(bodies: Sequence[Any], joint: Joint) -> list[tuple[Array, Array, Array, float]]:
+    """Place, arm, velocity of the joint's point, and angular velocity, of a and of b."""
+    out = []
+    for i, at in ((joint.a, joint.at_a), (joint.b, joint.at_b)):
+        if i < 0:
+            out.append((np.array(at), np.zeros(2), np.zeros(2), 0.0))
+            continue
+        body = bodies[i]
+        c, s = np.cos(body.angle), np.sin(body.angle)
+        arm = np.array([[c, -s], [s, c]]) @ np.array(at, float)
+        v, w = np.array(body.velocity[:2], float), float(body.velocity[2])
+        if body.fixed:
+            v, w = np.zeros(2), 0.0
+        out.append((np.array(body.position) + arm, arm, v + w * np.array([-arm[1], arm[0]]), w))
+    return out
+
+
+def _joint(rows: _Rows, load: Array, bodies: Sequence[Any], joint: Joint, place: int) -> None:
+    (pa, arm_a, va, wa), (pb, arm_b, vb, wb) = _ends(bodies, joint)
+    a, b, d, dv = joint.a, joint.b, pb - pa, vb - va
+    drift = wb**2 * arm_b - wa**2 * arm_a  # what the arms' turning takes off the points' accelerations
+    if joint.kind == "spring":
+        length = float(np.hypot(*d))
+        if length > 0:
+            u = d / length
+            f = -(joint.stiffness * (length - joint.rest) + joint.damping * float(u @ dv)) * u
+            for body, arm, sign in ((b, arm_b, 1.0), (a, arm_a, -1.0)):
+                if body >= 0:
+                    load[3 * body : 3 * body + 3] += sign * np.array([*f, _cross(arm, f)])
+        return
+    if joint.kind == "slider":
+        c, s = (np.cos(bodies[a].angle), np.sin(bodies[a].angle)) if a >= 0 else (1.0, 0.0)
+        u = np.array([[c, -s], [s, c]]) @ (np.array(joint.axis, float) / np.hypot(*joint.axis))
+        n = np.array([-u[1], u[0]])
+        turned = np.array([-n[1], n[0]])
+        right = float(n @ drift - 2 * wa * (turned @ dv) + wa**2 * (n @ d))
+        rows.add((place, 0), ((b, [*n, _cross(arm_b, n)]), (a, [*-n, -_cross(arm_a + d, n)])), right)
+    else:
+        for k, n in enumerate(np.eye(2)):
+            rows.add(
+                (place, k), ((b, [*n, _cross(arm_b, n)]), (a, [*-n, -_cross(arm_a, n)])), float(drift[k])
+            )
+    if joint.kind != "revolute":
+        rows.add((place, 2), ((b, [0.0, 0.0, 1.0]), (a, [0.0, 0.0, -1.0])), 0.0)
+
+
+def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tuple[Array, Array]:
+    """Accelerations (b, 3) of ``integrate.Body``s, and multipliers (b + j, 3) of their hubs and joints.
+
+    Raises ValueError where constraints say the same twice, or contradict each other.
+    """
+    n = len(bodies)
+    rows = _Rows(n)
+    mass, load = np.ones(3 * n), np.zeros(3 * n)
+    for i, b in enumerate(bodies):
+        at = slice(3 * i, 3 * i + 3)
+        if b.fixed:
+            continue
+        omega = b.velocity[2]
+        c, s = np.cos(b.angle), np.sin(b.angle)
+        arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
+        mass[at] = b.mass, b.mass, b.inertia
+        load[at] = [b.mass * gravity[0], b.mass * gravity[1], b.torque - b.damper * omega]
+        if b.anchor is not None:
+            rows.add((i, 0), ((i, [1.0, 0.0, -arm[1]]),), float(omega**2 * arm[0]))
+            rows.add((i, 1), ((i, [0.0, 1.0, arm[0]]),), float(omega**2 * arm[1]))
+        if b.drive is not None:
+            rows.add((i, 2), ((i, [0.0, 0.0, 1.0]),), b.drive[1] / b.drive[2] if b.drive[2] > 0 else 0.0)
+    for k, joint in enumerate(joints):
+        _joint(rows, load, bodies, joint, n + k)
+    count = len(rows.right)
+    matrix = np.zeros((3 * n + count, 3 * n + count))
+    matrix[: 3 * n, : 3 * n] = np.diag(mass)
+    gradient = np.array(rows.gradient).reshape(count, 3 * n)
+    held = np.repeat([b.fixed for b in bodies], 3)
+    load[held], gradient[:, held] = 0.0, 0.0
+    matrix[3 * n :, : 3 * n] = gradient
+    matrix[: 3 * n, 3 * n :] = -gradient.T
+    free = gradient / np.sqrt(mass)
+    if count and np.linalg.matrix_rank(free) < count:
+        raise ValueError(
+            f"constraints of pivots, drives and joints must be independent, got {count} of rank"
+            f" {np.linalg.matrix_rank(free)}: one says what others say, or holds a fixed body"
+        )
+    solution = np.linalg.solve(matrix, np.concatenate([load, rows.right]))
+    mu = np.zeros((n + len(joints), ROWS))
+    for (i, k), value in zip(rows.place, solution[3 * n :], strict=True):
+        mu[i, k] = value
+    return solution[: 3 * n].reshape(n, 3), mu
