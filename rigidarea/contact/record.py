@@ -29,6 +29,7 @@ from ..kernel.tables import (
     LED,
     NEAR,
     SHAPES,
+    TURN,
     Tables,
     find_pair,
     new_pair,
@@ -221,6 +222,7 @@ def rouse(space: int, dt: float) -> None:
         _notice(s, address, body)
         if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
             return
+    tables.counters[TURN] = 0  # everybody
     g = floats(space + s.space_gravity, 2)
     while find_near(load_pool(s), load_tables(s), s.frame, dt, dt, g[0], g[1]) != DONE:
         if not ask(s, MORE_PAIRS):
