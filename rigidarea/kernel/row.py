@@ -120,7 +120,8 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where it comes slowly to rest: in a pile others lie there.
+    so much further on it is put (`shift`). Not where it comes slowly to rest, nor where it has been pushed already:
+    others lie there.
     """
     back = r.back
     row.alpha = 0.0
@@ -147,7 +148,9 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if leaving < 0.0 or touch * abs(back) > HIT * least_extent(a, b):
+    if (leaving < 0.0 or touch * abs(back) > HIT * least_extent(a, b)) and not (
+        (a.mobile and a.pushed) or (b.mobile and b.pushed)
+    ):
         row.shift = back
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
@@ -297,7 +300,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
-            row.t1 = turning_speed(r, a, b, row.lt, h)
+            most = HIT * least / h  # in a crash the impulse before says nothing of the next slip
+            row.t1 = min(most, max(-most, turning_speed(r, a, b, row.lt, h)))
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib

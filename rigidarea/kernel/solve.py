@@ -409,6 +409,7 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
         settle(row, region, law, tables.pairs[region.pair], a, b, h, last)
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
+        body.pushed = 0
         if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
             if body.kind == DRIFTS:
                 body.x += body.shift_x
@@ -426,6 +427,11 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
             body.shift_x = 0.0
             body.shift_y = 0.0
             body.shift_a = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.l1 + row.l2 > 0.0:
+            tables.bodies[row.a].pushed = 1
+            tables.bodies[row.b].pushed = 1
 
 
 @kernel

@@ -46,6 +46,7 @@ BODY = record(
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
         ("came_vy", "f8"),
         ("came_w", "f8"),
+        ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),
