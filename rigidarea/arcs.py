@@ -18,6 +18,8 @@ Points = NDArray[np.float64]
 MIN_CHORDS = 3
 """Fewest chords of an arc with fixed ends: from 3 on, keeping the area moves no vertex further than the
 sagitta."""
+MOST_CHORDS = 100_000
+"""Most chords of an arc: a tolerance that asks for more asks for a boundary that no step could walk (1 MB an arc)."""
 
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(24)
 """For polynomials of degree 4 in sine and cosine over half a turn: exact to rounding (20 nodes are enough)."""
@@ -57,8 +59,17 @@ def circle_points(center: tuple[float, float], radius: float, tolerance: float) 
 
 
 def _chords(radius: float, sweep: float, tolerance: float) -> int:
-    """How many chords keep the sagitta R(1 − cos θ/2) below the tolerance, none wider than a quarter turn."""
+    """How many chords keep the sagitta R(1 − cos θ/2) below the tolerance, none wider than a quarter turn.
+
+    Raises ValueError for more than MOST_CHORDS.
+    """
     half = math.acos(max(1 - tolerance / radius, math.cos(math.pi / 4)))
+    if sweep > 2 * half * MOST_CHORDS:
+        least = radius * (1 - math.cos(0.5 * sweep / MOST_CHORDS))
+        raise ValueError(
+            f"tolerance must be at least {least:.3g} for an arc of radius {radius:.3g} "
+            f"({MOST_CHORDS} chords), got {tolerance!r}"
+        )
     return max(MIN_CHORDS, math.ceil(sweep / (2 * half) * (1 - 1e-12)))
 
 

@@ -252,6 +252,25 @@ def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:
     return np.frombuffer(memory)
 
 
+@lru_cache(maxsize=1)
+def springs() -> tuple[int, ...]:
+    """Of both kinds of springs: their class, where they keep their force function (bytes), and Chipmunk's own."""
+    found: list[int] = []
+    for name, force in (("DampedSpring", "force_func"), ("DampedRotarySpring", "torque_func")):
+        one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)
+        given = ((0, 0), (0, 0), 1, 10, 1) if name == "DampedSpring" else (1, 10, 1)
+        spring: Any = getattr(pymunk, name)(one, two, *given)
+        size = _IMPULSES[name][0] + 8  # nothing comes after the impulse
+        before = np.frombuffer(ffi.buffer(ffi.cast("char *", spring._constraint), size), np.uint64).copy()
+        setattr(spring, force, lambda *arguments: 0.0)
+        after = np.frombuffer(ffi.buffer(ffi.cast("char *", spring._constraint), size), np.uint64)
+        places = np.flatnonzero(before != after)
+        if len(places) != 1:
+            raise LayoutError(f"{name}: expected one place of its force function, found {len(places)}")
+        found += [_word(spring._constraint, 0), 8 * int(places[0]), int(before[places[0]])]
+    return tuple(found)
+
+
 def _space_and_constraint() -> dict[str, int]:
     space = pymunk.Space()
     space.gravity = (51.5, 52.5)

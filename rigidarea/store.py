@@ -101,6 +101,10 @@ JOINT = record(
         ("count", "i4"),
         ("x", "f8"),  # impulse summed over the frame
         ("y", "f8"),
+        ("force_at", "i4"),  # where a spring keeps its force function, if that is the user's; 0: it has none
+        ("asked", "i4"),  # 1: that has been asked in this frame
+        ("force_func", "u8"),
+        ("force", "f8"),  # what it has said
         ("start_x", "f8"),  # what it started from
         ("start_y", "f8"),
     ]
@@ -126,11 +130,14 @@ STATE = record(
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
         ("held", "i8"),  # the step in which a position function of ours was last called
+        ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
         ("request", "i8"),
         ("ask_at", "u8"),  # Python's ear
         ("hold_at", "u8"),
+        ("springs_at", "u8"),  # what `chipmunk.springs` has found, and our own force function
+        ("spring_at", "u8"),
         ("seize_at", "u8"),
         ("release_at", "u8"),
         ("idle_kind", "u8"),  # the class of a joint that we run

@@ -109,3 +109,14 @@ def test_signatures_keep_their_defaults():
         return 0
 
     assert reference._signature(made) == "(law: str = 'area', wide: float | None = None) -> int"
+
+
+def test_theory_cites_what_is_there():
+    """Every file that docs/theory.md names exists, and every function is defined in one of them."""
+    text = (ROOT / "docs" / "theory.md").read_text()
+    files = {path for path in re.findall(r"`(rigidarea/[\w/]+\.py)`", text)}
+    assert len(files) > 10
+    code = "\n".join((ROOT / path).read_text() for path in files)
+    for name in re.findall(r"`(_?[a-z]\w*_\w+)`", text):
+        assert f"def {name}(" in code, name
+    assert all(1 <= int(number) <= 42 for number in re.findall(r"Eq\. (\d+)", text))

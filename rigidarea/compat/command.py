@@ -134,7 +134,7 @@ An example behaves *as meant* if two to five facts written down from reading it 
 the tower stands, the arrow sticks, the ball stays in the court; all hold natively), and if beside the native run
 nothing is raised or printed on standard error, no body is farther out than the native run's box by its diagonal,
 none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
-off than twice natively plus a pixel, as many bodies rest (up to a tenth), and callbacks come as often (up to a
+off than twice natively plus a pixel, as many bodies rest (up to a tenth, and one), and callbacks come as often (up to a
 factor of two). Times are processor time, median over frames: `space.step` alone, and the example's whole frame with
 its drawing.
 

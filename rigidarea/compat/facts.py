@@ -164,17 +164,23 @@ def arrows_stick(w: Watch) -> list[Fact]:
     ]
 
 
+def _above(path: np.ndarray, y: float) -> np.ndarray:
+    """(k, 2) places of a path, as long as they are above y."""
+    gone = np.flatnonzero(path[:, 2] < y)
+    return path[: gone[0] if len(gone) else None, 1:3]
+
+
 def breakout(w: Watch) -> list[Fact]:
     balls = [n for n in w.dynamic() if w.bodies[n].mass == 1]
     speeds = np.concatenate([np.hypot(*w.path(n)[1:, 4:6].T) for n in balls])
-    places = np.concatenate([w.path(n)[:, 1:3] for n in balls])
+    places = np.concatenate([_above(w.path(n), 50) for n in balls])
     paddle = next(n for n in w.dynamic() if w.bodies[n].mass == 500)
     bricks = sum(b.body_type == pymunk.Body.KINEMATIC for b in w.space.bodies)
     return [
         within("bricks left of 105", bricks, 60, 100),
         true(
             "the balls stay in the court",
-            # nothing holds them below: the example's sensor there is in no space
+            # nothing holds them below, where the walls end: the example's sensor there is in no space
             bool((places[:, 0] >= 45).all() and (places <= 555).all()),
             f"{places.min(axis=0)} to {places.max(axis=0)}",
         ),

@@ -131,6 +131,7 @@ class Watch:
             "box": [*states[:, :2].min(axis=0), *states[:, :2].max(axis=0)] if len(states) else None,
             "fastest": float(speeds.max()) if len(speeds) else 0.0,
             "resting": float(resting.mean()) if len(resting) else 1.0,
+            "late_bodies": len(late) / max(1, len(kept[-LAST:])),
             "joint_error": max(self.joint_errors[-LAST:], default=0.0),
             "step_ms": 1e3 * float(np.median(stepping)) if stepping else 0.0,
             "frame_ms": 1e3 * float(np.median(self.whole_cpu)) if self.whole_cpu else 0.0,

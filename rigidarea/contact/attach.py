@@ -12,7 +12,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, kinds_of_joints, layout
+from ..chipmunk import address_of, kinds_of_joints, layout, springs
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
@@ -79,6 +79,8 @@ class AreaContact:
         self._scratch = np.zeros(8)
         self._answer(record.MORE_KEPT)
         self._kinds = np.array(kinds_of_joints(), np.int64)
+        self._springs = np.array(springs(), np.uint64)
+        state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
         state["release_at"] = joints.release.address
@@ -89,6 +91,7 @@ class AreaContact:
         self._plain = type(space)
         space.__class__ = _attached(self._plain)
         space.__dict__[_KEY] = self
+        self._rouse = ffi.cast("void (*)(void *, double)", record.rouse.address)
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
@@ -356,10 +359,13 @@ class AreaContact:
         """Whether pymunk has something to do around each step."""
         space = self.space
         flexible = self._settings["flexible"] is not None
-        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible)
+        asleep = bool(self._state["asleep"])
+        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible or asleep)
 
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
+        if self._state["asleep"] and not self.space._locked:
+            self._rouse(self.space._space, dt)
         flexible = self._settings["flexible"]
         if flexible is None:
             rest()

@@ -48,6 +48,7 @@ from .joints import (
     APPLY_CACHED,
     PRE_STEP,
     add_impulse,
+    give_back_untaken,
     joints_of,
     keep_impulse,
     restore_impulse,
@@ -126,6 +127,7 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
             body.old_vx = body.vx
             body.old_vy = body.vy
             body.old_w = body.w
+            body.since = 0.0
         if s.explicit or body.kind == LED:
             read_place(s, address, body)
         read_motion(s, address, body)
@@ -589,6 +591,7 @@ def report(constraint: int, space: int) -> None:
     array_at(space, (1,), np.int32)[0] = s.sweeps
     if s.frame != np.int64(timestamp(space)):
         return
+    give_back_untaken(s)
     tables = load_tables(s)
     for p in range(len(tables.pairs)):
         pair = tables.pairs[p]
@@ -610,8 +613,10 @@ def report(constraint: int, space: int) -> None:
 
 @callback(types.int64(types.uintp, types.float64, types.int64))
 def advance(space: int, dt: float, frames: int) -> int:
-    """So many frames on end; returns how many went well."""
+    """So many frames on end, until somebody has fallen asleep (`record.rouse`); returns how many went well."""
     for i in range(frames):
+        if i > 0 and state_of(space).asleep:
+            return i
         _step(space, dt)
         if user_data(space) == 0 or state_of(space).failed or state_of(space).stop:
             return i

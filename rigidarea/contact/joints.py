@@ -22,6 +22,7 @@ from ..store import JOINT, KINDS, STATE, row_of_body
 _user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 _call_user = caller(types.void(types.uintp, types.uintp))
 _call = caller(types.void(types.uintp, types.float64))
+_call_force = caller(types.float64(types.uintp, types.float64))
 
 #: Places of a class's functions.
 PRE_STEP, APPLY_CACHED, APPLY = 0, 1, 2
@@ -47,6 +48,49 @@ def idle(constraint: int, x: float) -> None:
 def no_impulse(constraint: int) -> float:
     """The impulse of a joint that is taken."""
     return 0.0
+
+
+@kernel(forceinline=True)
+def _joint_of(s: Any, constraint: int) -> int:
+    joints = joints_of(s)
+    for i in range(len(joints)):
+        k = (s.joint_cursor + i) % len(joints)
+        if joints[k].address == constraint:
+            s.joint_cursor = k + 1
+            return k
+    return -1
+
+
+@kernel
+def _ask_once(s: Any, joint: Any) -> None:
+    """For this frame a spring's force function, if it is the user's, is ours, which asks it once (`spring`)."""
+    joint.force_at = 0
+    kinds = array_at(s.springs_at, (6,), np.uint64)
+    for i in range(0, 6, 3):
+        if kinds[i] == joint.kind:
+            own = _words(joint.address + np.int64(kinds[i + 1]), 1)
+            if own[0] != kinds[i + 2]:
+                joint.force_at = np.int64(kinds[i + 1])
+                joint.force_func = own[0]
+                joint.asked = 0
+                own[0] = s.spring_at
+
+
+@callback(types.float64(types.uintp, types.float64))
+def spring(constraint: int, x: float) -> float:
+    """In the place of a spring's force function of the user's: what it says in the first substep holds for the frame.
+
+    x: distance or angle.
+    """
+    s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
+    k = _joint_of(s, constraint)
+    if k < 0:
+        return 0.0
+    joint = joints_of(s)[k]
+    if joint.asked == 0:
+        joint.asked = 1
+        joint.force = _call_force(joint.force_func, constraint, x)
+    return float(joint.force)
 
 
 @kernel
@@ -80,6 +124,7 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
                 joint.count = kinds[2 * KINDS + k]
         before[0] = s.seize_at
         after[0] = s.release_at
+        _ask_once(s, joint)
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
             if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
                 tables.counters[ANEW] = 1
@@ -97,17 +142,6 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
             tables.bodies[tables.apart[i, 1]].joined = 1
 
 
-@kernel(forceinline=True)
-def _joint_of(s: Any, constraint: int) -> int:
-    joints = joints_of(s)
-    for i in range(len(joints)):
-        k = (s.joint_cursor + i) % len(joints)
-        if joints[k].address == constraint:
-            s.joint_cursor = k + 1
-            return k
-    return -1
-
-
 @kernel
 def give_back(s: Any, joint: Any) -> None:
     """The joint as it was, its impulse that of the whole frame."""
@@ -119,12 +153,25 @@ def give_back(s: Any, joint: Any) -> None:
             impulse[0] = joint.x
             if joint.count > 1:
                 impulse[1] = joint.y
+    if joint.force_at > 0:
+        own = _words(joint.address + np.int64(joint.force_at), 1)
+        if own[0] == s.spring_at:
+            own[0] = joint.force_func
+        joint.force_at = 0
     before = _words(joint.address + s.constraint_pre_solve, 1)
     after = _words(joint.address + s.constraint_post_solve, 1)
     if before[0] == s.seize_at:
         before[0] = joint.pre_solve
     if after[0] == s.release_at:
         after[0] = joint.post_solve
+
+
+@kernel
+def give_back_untaken(s: Any) -> None:
+    """The joints of bodies that have fallen asleep in this step: Chipmunk has not called them."""
+    for joint in joints_of(s):
+        if joint.taken == 0:
+            give_back(s, joint)
 
 
 @callback(types.void(types.uintp, types.uintp))

@@ -74,10 +74,7 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.counters.copy(),
         [np.array(joint_impulse(joint)) for joint in space.constraints],
         np.array(
-            [
-                tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist()
-                for b in space.bodies
-            ]
+            [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
     )
 
@@ -106,6 +103,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         rows=store.tables.rows[: len(regions)],
         sorted=np.concatenate((order, rest)).astype(np.int32),
     )
+    tables.bodies["since"] = np.inf
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
     for p in np.flatnonzero(lost):  # one of its shapes is gone

@@ -17,8 +17,10 @@ from numba import types
 from ..chipmunk import function
 from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
+from ..kernel.meet import DONE, meets_within
 from ..kernel.memory import array_at, caller
 from ..kernel.place import place
+from ..kernel.solve import find_near, may_touch
 from ..kernel.tables import (
     ANEW,
     BODIES,
@@ -26,12 +28,14 @@ from ..kernel.tables import (
     FIXED,
     FREE_PAIRS,
     LED,
+    NEAR,
     SHAPES,
+    TURN,
     Tables,
     find_pair,
     new_pair,
 )
-from ..store import STATE, load_tables, row_of_body
+from ..store import STATE, load_pool, load_tables, load_work, row_of_body
 from .joints import take_joints
 
 #: What machine code asks Python for.
@@ -42,13 +46,16 @@ timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
 shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
 time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
+activate = function("cpBodyActivate", types.void(types.uintp))
 hash_id = function("cpShapeGetHashID", types.uintp(types.uintp))
 body_type = function("cpBodyGetType", types.int32(types.uintp))
 _call_ask = caller(types.void(types.uintp))
 _call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
 _call_count = caller(types.int32(types.uintp))
 
-_STATIC = 2  # enum cpBodyType
+#: What sleeps wakes for somebody who comes by more than this in a frame, of its own smallest extent. Whoever is slower
+#: comes to overlap it a little, for which Chipmunk wakes it.
+WAKING = 0.01
 
 
 @kernel(inline="always")
@@ -128,9 +135,22 @@ def read_motion(s: Any, address: int, body: Any) -> None:
     body.inverse_moment = floats(address + s.body_inverse_moment, 1)[0]
 
 
+@kernel(forceinline=True)
+def _notice(s: Any, address: int, body: Any) -> None:
+    """A body that is awake, as it is now, and whether it has been set so by the user."""
+    x, y, angle = body.x, body.y, body.angle
+    vx, vy, w = body.vx, body.vy, body.w
+    read_place(s, address, body)
+    read_motion(s, address, body)
+    set_place = x != body.x or y != body.y or angle != body.angle
+    if body.stamp >= 0 and (set_place or vx != body.vx or vy != body.vy or w != body.w):
+        body.since = 0.0
+
+
 @kernel
-def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
-    """All bodies: those that are awake as they are now, the others as what does not move."""
+def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
+    """All bodies: those that are awake as they are now, the others as what does not move. Whether any is asleep."""
+    asleep = False
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         body = tables.bodies[i]
@@ -138,9 +158,8 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
             continue
         met = body.stamp >= 0
         x, y, angle = body.x, body.y, body.angle
+        _notice(s, address, body)
         body.stamp = s.frame
-        read_place(s, address, body)
-        read_motion(s, address, body)
         body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
@@ -166,6 +185,8 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
             x, y, angle = body.x, body.y, body.angle
             read_place(s, body.address, body)
             read_motion(s, body.address, body)
+            body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+            asleep |= body.mobile == 1
             body.inverse_mass = 0.0  # asleep, or static
             body.inverse_moment = 0.0
             body.gain_x = 0.0
@@ -177,6 +198,55 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
             body.kind = FIXED
             if x != body.x or y != body.y or angle != body.angle:
                 body.stamp = s.frame  # moved by hand
+    return asleep
+
+
+@callback(types.void(types.uintp, types.float64))
+def rouse(space: int, dt: float) -> None:
+    """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame.
+
+    Chipmunk wakes what somebody overlaps at the frame's start. What is met within the frame would be a wall, on which
+    a blow is spent before anybody sees an overlap. (Within its step Chipmunk cannot wake anybody before it has paired
+    bodies and arbiters, and then the frame has begun.)
+    """
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    if s.asleep == 0 or s.explicit:
+        return
+    tables = load_tables(s)
+    for address in members(space, s.space_bodies):
+        i = row_of_body(s, address)
+        if i < 0 or tables.bodies[i].stamp != s.frame:
+            return  # somebody new: the frame will look at everybody first
+        body = tables.bodies[i]
+        _notice(s, address, body)
+        if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
+            return
+    tables.counters[TURN] = 0  # everybody
+    g = floats(space + s.space_gravity, 2)
+    while find_near(load_pool(s), load_tables(s), s.frame, dt, dt, g[0], g[1]) != DONE:
+        if not ask(s, MORE_PAIRS):
+            return
+    tables = load_tables(s)
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -dt):
+            continue
+        sleeper = a if a.kind == FIXED else b
+        comer = b if a.kind == FIXED else a
+        way = dt * (abs(comer.vx) + abs(comer.vy) + abs(comer.w) * sleeper.extent)
+        if not sleeper.mobile or way <= WAKING * sleeper.extent:
+            continue
+        met = meets_within(load_pool(s), tables, load_work(s), pair, dt)
+        while met < 0:
+            if not ask(s, MORE_WORK):
+                return
+            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, dt)
+        if met > 0:
+            activate(sleeper.address)
 
 
 @kernel(forceinline=True)
@@ -213,7 +283,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     if fresh and not ask(s, REGISTER):
         return False
     tables = load_tables(s)
-    _watch(s, tables, space, dt)
+    s.asleep = _watch(s, tables, space, dt)
     solid = False
     retyped = False
     for i in range(tables.counters[SHAPES]):

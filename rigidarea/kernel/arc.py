@@ -96,6 +96,8 @@ def top(px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: flo
     gx = 0.5 * (px + qx) - cx
     gy = 0.5 * (py + qy) - cy
     g2 = gx * gx + gy * gy
+    if px == qx and py == qy:  # a whole circle, whose ring is its centre
+        return cx + r, cy
     if g2 <= 0.5 * r * r:  # a wide arc: across its chord
         gx = qy - py
         gy = px - qx

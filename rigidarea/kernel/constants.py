@@ -18,6 +18,9 @@ RELEASE_STEPS = 15.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.
 RELEASE_SPEED = 1.0
+#: And what somebody has put there with no more than so many times the load that the pair carries, where no stiffness is
+#: given: k A of two discs in one place is thousands of times their weight, which walls and joints would have to bear.
+PLACED_LOADS = 30.0
 #: Damping ratio, for e = 0, of a contact at rest that the step follows.
 REST_DAMPING = 1.0
 #: Tangential over normal stiffness. Cundall & Strack (1979) leave it free; 2/7 makes a sphere's two periods equal.
@@ -47,6 +50,10 @@ LOAD_TIME = 0.5
 #: A stiffness grows by no more than this factor a frame, and shrinks by that one.
 MOST_STIFFER = 1.2
 SOFTER = 1.05
+#: A force that has grown with its stiffness, by this factor at least for so many frames on end, is no load: the two are
+#: held overlapped by joints. (A load is what it is, however stiff that on which it lies.)
+HELD = 1.02
+HELD_FRAMES = 10
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1

@@ -71,9 +71,13 @@ def pose_of(body: Any) -> Pose:
 
 @kernel
 def earlier(body: Any, time: float) -> Pose:
-    """Where they were `time` ago, at the velocity at which it has come; negative: will be, at its present velocity."""
+    """Where they were `time` ago, at the velocity at which it has come; negative: will be, at its present velocity.
+
+    What the user has put there, or sent off from there, has been there before.
+    """
     if body.kind != DRIFTS:
         return pose_of(body)
+    time = min(time, body.since)
     came = 1.0 if time > 0.0 else 0.0
     angle = time * (body.w - came * body.kick_w)
     cd = math.cos(angle)
@@ -272,13 +276,34 @@ def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     return int(min(n, MOST_LOOKS)) + 1
 
 
+@kernel(forceinline=True)
+def _since(a: Any, b: Any) -> float:
+    """How long one of the two has moved by itself (time)."""
+    return max(a.since if a.kind == DRIFTS else 0.0, b.since if b.kind == DRIFTS else 0.0)
+
+
+@kernel(forceinline=True)
+def _unseen(pair: Any, h: float) -> float:
+    """For how long nobody has looked at a pair without a region: a substep, and what it waited for Chipmunk (time)."""
+    return h + (pair.waited if pair.waiting == pair.stamp - 1 else 0.0)
+
+
 @kernel
 def overlap_before(
     pool: Pool, work: Work, ia: int, ib: int, a: Any, b: Any, h: float, looks: int
 ) -> tuple[int, float]:
-    """(regions, how long ago) at the first of `looks` places on the way of the last h where the two overlap."""
+    """(regions, how long ago) at the first of `looks` places on the way of the last h where the two overlap.
+
+    As they are now if they did so already where the user has put them.
+    """
+    way = min(h, _since(a, b))
+    if way < h:
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, way), ib, earlier(b, way), work)
+        if n != 0:
+            n, _ = overlap_of_outlines(pool, ia, pose_of(a), ib, pose_of(b), work)
+            return n, 0.0
     for i in range(looks):
-        back = h * (looks - 1 - i) / looks
+        back = way * (looks - 1 - i) / looks
         n, _ = overlap_of_outlines(pool, ia, earlier(a, back), ib, earlier(b, back), work)
         if n != 0:
             return n, back
@@ -286,8 +311,38 @@ def overlap_before(
 
 
 @kernel
+def meets_within(pool: Pool, tables: Tables, work: Work, pair: Any, h: float) -> int:
+    """Whether the two overlap somewhere on the way of the next h, at their present velocities: regions, 0, OVERFLOW."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    ia = sa.outline
+    ib = sb.outline
+    if sa.mirror >= 0 or sb.mirror >= 0:
+        ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
+    looks = jumped(tables, pair, a, b, h)
+    for i in range(looks):
+        ahead = -h * (i + 1) / looks
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, ahead), ib, earlier(b, ahead), work)
+        if n != 0:
+            return n
+    return 0
+
+
+@kernel
 def _touch(
-    pool: Pool, work: Work, law: Law, region: Any, ia: int, ib: int, a: Any, b: Any, back: float, h: float
+    pool: Pool,
+    work: Work,
+    law: Law,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
+    unseen: float,
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
@@ -308,7 +363,7 @@ def _touch(
         if u <= 0.0 or root < 0.0:
             return come
         tau = 2.0 * d / (u + math.sqrt(root))
-        if tau + back > MOST_ARRIVED * h:
+        if tau + back > min(MOST_ARRIVED * unseen, _since(a, b)):
             return come
         come = True
         best = -1
@@ -402,11 +457,13 @@ def _enter(
     phase2 = stiffness * inverse * h * h
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
-    placed = law.followed != math.inf and back == 0.0 and _jumped_in(region, 0.0, a, b, h)
+    unseen = _unseen(pair, h)
+    placed = law.followed != math.inf and back == 0.0 and _jumped_in(region, 0.0, a, b, unseen)
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
-        region.mode = STRUCK if _touch(pool, work, law, region, ia, ib, a, b, back, h) else REST
+        touched = _touch(pool, work, law, region, ia, ib, a, b, back, h, unseen)
+        region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
@@ -422,6 +479,7 @@ def _enter(
         region.first_speed = 0.0
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
+        region.placed = SPENT
 
 
 @kernel
@@ -452,7 +510,7 @@ def _await(
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
-        return _touch(pool, work, law, region, ia, ib, a, b, -ahead, h) and region.back >= -0.5 * h
+        return _touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h) and region.back >= -0.5 * h
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
@@ -496,9 +554,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         ia, ib = shown_sides(pool, tables, pair, earlier(a, h), earlier(b, h))
     fresh = pair.head < 0
     back = 0.0
-    looks = jumped(tables, pair, a, b, h) if fresh else 1
+    unseen = _unseen(pair, h) if fresh else h
+    looks = jumped(tables, pair, a, b, unseen) if fresh else 1
     if looks > 1:
-        n, back = overlap_before(pool, work, ia, ib, a, b, h, looks)
+        n, back = overlap_before(pool, work, ia, ib, a, b, unseen, looks)
         if back > 0.0:
             pose_a = earlier(a, back)
             pose_b = earlier(b, back)
@@ -599,9 +658,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             before = region.depth
             if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
                 region.placed = 0
-            if region.placed == SPENT and region.stiffness * patch.area <= 1.1 * region.force:
+            carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
+            if region.placed == SPENT and carried:
                 region.placed = 0
-            if region.placed != PLACED and patch.depth > 2.0 * before:
+            if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
                 if _jumped_in(region, before, a, b, h):
                     region.placed = PLACED

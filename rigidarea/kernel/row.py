@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import HIT, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import HIT, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
@@ -266,6 +266,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(firm / inverse)
         c += theta * (1.0 + RELEASE_STEPS) * h * firm
         least = least_extent(a, b)
+        if r.placed == PLACED and law.stiffness == 0.0:
+            elastic = min(elastic, PLACED_LOADS * max(pair.least, pair.load))
         slowest = elastic / (RELEASE_SPEED * least)
         if r.placed == PLACED:
             c = slowest
@@ -410,7 +412,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     r.friction = row.lt / h
     if law.stiffness == 0.0:
         pair.carrying += normal
-        if r.mode == IMPACT:
+        if r.mode == IMPACT or r.placed == PLACED:
             pair.area = -math.inf  # no load, and no change of stiffness in the middle of it
         elif last and r.mode != NEARING:
             pair.area += area_allowed(law, r, a, b)

@@ -52,6 +52,7 @@ def drift(tables: Tables, frame: int, time: float) -> None:
             body.x += time * body.vx
             body.y += time * body.vy
             body.angle += time * body.w
+            body.since += time
             place(body)
 
 
@@ -158,7 +159,7 @@ def _after(one: Any, other: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def _may_touch(tables: Tables, pair: Any, h: float) -> bool:
+def may_touch(tables: Tables, pair: Any, h: float) -> bool:
     """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
@@ -248,7 +249,6 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     return True
 
 
-@kernel
 def gather(
     pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
 ) -> tuple[int, int]:
@@ -265,9 +265,12 @@ def gather(
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if pair.head < 0 and (not _may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
+        if pair.head < 0 and (not may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
             continue
         if not allowed(tables, pair, frame):
+            if pair.stamp != frame:
+                pair.waited = h if pair.waiting != frame else pair.waited + h
+                pair.waiting = frame
             continue
         status = meet(pool, tables, work, law, p, h)
         if status != DONE:
@@ -298,7 +301,7 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if _cannot_meet(pool, tables, pair, a, b, h) or not _may_touch(tables, pair, -h):
+        if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue
         if not allowed(tables, pair, frame):
             continue

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import LOAD_TIME, MOST_STIFFER, SOFTER, SPREAD, WEIGHTLESS_PHASE2
+from .constants import HELD, HELD_FRAMES, LOAD_TIME, MOST_STIFFER, SOFTER, SPREAD, WEIGHTLESS_PHASE2
 from .jit import kernel
 from .tables import LAW_AREA, Law
 
@@ -86,6 +86,7 @@ def carry(pair: Any, dt: float) -> None:
     """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it.
 
     Too soft, it goes half of the way, in powers, to a tenth more than it must be; far too stiff, it softens slowly.
+    What joints hold overlapped presses back as much as it is stiff: if that does not take it apart it is left as it is.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
@@ -93,6 +94,12 @@ def carry(pair: Any, dt: float) -> None:
         pair.firm = max(wanted, pair.carrying / dt / pair.area)
         k = pair.stiffness
         if wanted > k:
+            pressed = pair.carrying / dt
+            pair.held = pair.held + 1.0 if pressed > HELD * pair.pressed else 0.0
+            pair.pressed = pressed
+        else:
+            pair.held = 0.0
+        if wanted > k and pair.held <= HELD_FRAMES:
             pair.stiffness = min(MOST_STIFFER, math.sqrt(1.1 * wanted / k)) * k
         elif wanted < 0.5 * k:  # a load that comes and goes is not followed
             pair.stiffness = k / SOFTER

@@ -56,6 +56,10 @@ BODY = record(
         ("old_vx", "f8"),
         ("old_vy", "f8"),
         ("old_w", "f8"),
+        (
+            "since",
+            "f8",
+        ),  # how long it has moved by itself: since the user last set its place or velocity (time)
         ("extent", "f8"),  # smallest extent of its shapes (length)
         ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
         ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
@@ -111,6 +115,11 @@ PAIR = record(
         ("side_b", "i4"),
         ("near", "i8"),  # search that last found it near
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        (
+            "waiting",
+            "i8",
+        ),  # frame in which it last waited for that, since a callback of the user's will hear of it
+        ("waited", "f8"),  # how long, in that frame (time)
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("swapped", "i4"),  # 1: the arbiter's A is our B
         ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
@@ -131,6 +140,8 @@ PAIR = record(
         ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
+        ("pressed", "f8"),  # the force when it was last made stiffer
+        ("held", "f8"),  # for how many frames on end the force has grown by that
         (
             "order",
             "f8",

@@ -35,14 +35,14 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     """
     if pair.stamp == frame:
         return bool(pair.verdict)
+    if _heard(tables, pair):
+        return bool(pair.verdict) and pair.stamp == frame - 1  # friction and elasticity as they were set then
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     pair.friction = sa.friction * sb.friction
     pair.elasticity = sa.elasticity * sb.elasticity
     pair.surface_x = sb.surface_x - sa.surface_x
     pair.surface_y = sb.surface_y - sa.surface_y
-    if _heard(tables, pair):
-        return bool(pair.verdict) and pair.stamp == frame - 1
     return True
 
 
