@@ -46,7 +46,7 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility"),
+    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live"),
     *("near", "apart", "sorted", "keys", "values", "counters", "slots", "body_keys", "body_rows", "joints"),
     *("kept_bodies", "kept_pairs", "kept_regions", "kept_counters"),
 ]
@@ -94,6 +94,7 @@ JOINT = record(
         ("pre_solve", "u8"),  # the user's callbacks; 0: none
         ("post_solve", "u8"),
         ("taken", "i4"),  # 1: between the two, we run it
+        ("mine", "i4"),  # 1: taken, and of the turn that is being solved
         ("a", "i4"),  # rows of its bodies; -1: not ours
         ("b", "i4"),
         ("at", "i4"),  # where it keeps its impulse (bytes), and how many numbers that is; -1: unknown
@@ -146,7 +147,6 @@ STATE = record(
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
-        ("substeps_before", "i8"),
         ("stop", "i8"),  # 1: something waits in Python
         ("seen_at", "u8"),  # room for every body's place
         ("scratch_at", "u8"),  # room for what nobody reads
@@ -254,6 +254,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.rows_at, (s.rows_n,), ROW),
         array_at(s.factors_at, (s.factors_n,), FACTOR),
         array_at(s.mobility_at, (s.mobility_n,), MOBILITY),
+        array_at(s.live_at, (s.live_n,), np.int32),
         array_at(s.near_at, (s.near_n,), np.int32),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.sorted_at, (s.sorted_n,), np.int32),
@@ -303,6 +304,7 @@ class Store:
             np.zeros(0, ROW),
             np.zeros(0, FACTOR),
             np.zeros(16, MOBILITY),
+            np.zeros(16, np.int32),
             np.zeros(0, np.int32),
             np.zeros((4, 2), np.int32),
             np.zeros(0, np.int32),
@@ -442,7 +444,8 @@ class Store:
                 bodies = np.zeros(2 * len(self.tables.bodies), BODY)
                 bodies[: len(self.tables.bodies)] = self.tables.bodies
                 mobility = np.zeros(len(bodies), MOBILITY)
-                self.tables = self.tables._replace(bodies=bodies, mobility=mobility)
+                live = np.zeros(len(bodies), np.int32)
+                self.tables = self.tables._replace(bodies=bodies, mobility=mobility, live=live)
             self.tables.counters[BODIES] = max(self.tables.counters[BODIES], row + 1)
             self.tables.bodies[row] = np.zeros((), BODY)
             self.tables.bodies[row]["address"], self.tables.bodies[row]["stamp"] = address, -1

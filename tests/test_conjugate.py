@@ -33,12 +33,14 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
         r["l1"], r["l2"], r["lt"] = 1e6, 1e6, 0.0  # far from every bound
         r["f1"], r["f2"], r["ft"] = (r["l1"], r["l2"], r["lt"]) + rng.normal(size=3)
     counters = np.zeros(tables.COUNTERS, np.int64)
-    counters[tables.BODIES], counters[tables.ROWS] = n, len(pairs)
+    counters[tables.BODIES] = counters[tables.LIVE] = n
+    counters[tables.ROWS] = len(pairs)
     mine = dict(
         bodies=bodies,
         rows=rows,
         factors=np.zeros(len(pairs), conjugate.FACTOR),
         mobility=np.zeros(n, conjugate.MOBILITY),
+        live=np.arange(n, dtype=np.int32),
         counters=counters,
     )
     return SimpleNamespace(**mine, n=n, pairs=pairs)
@@ -49,7 +51,7 @@ def tables_of(s: SimpleNamespace) -> Any:
     from rigidarea.store import Store
 
     return Store().tables._replace(
-        bodies=s.bodies, rows=s.rows, factors=s.factors, mobility=s.mobility, counters=s.counters
+        bodies=s.bodies, rows=s.rows, factors=s.factors, mobility=s.mobility, live=s.live, counters=s.counters
     )
 
 

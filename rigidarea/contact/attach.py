@@ -13,7 +13,7 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout
-from ..kernel.constants import FOLLOWED, SUBSTEPS
+from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
 from ..store import Store
@@ -73,7 +73,7 @@ class AreaContact:
         state["rest_speed"] = -1.0 if settings["rest_speed"] is None else settings["rest_speed"]
         state["explicit"] = settings["integration"] == "explicit"
         state["followed"] = math.inf if state["explicit"] else FOLLOWED
-        state["substeps"] = state["substeps_before"] = SUBSTEPS
+        state["substeps"] = SUBSTEPS
         state["held"] = state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
         self._scratch = np.zeros(8)
@@ -298,12 +298,12 @@ class AreaContact:
     ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
-        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, and more where
-            teeth or slots of a concave outline would pass each other unseen (`kernel.solve.needed`).
+        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, and more for islands
+            where teeth or slots of a concave outline would pass each other unseen. `ask` has islands take more.
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
             its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
 
-        Returns the substeps of the last frame.
+        Returns the substeps of the last frame, of the island that took most.
         Raises ValueError for arguments out of range, SimulationError (naming body and frame) where a body's state
         stops being finite; all bodies are then as they were before that frame.
         """
@@ -334,6 +334,23 @@ class AreaContact:
         finally:
             self._state["substeps"], self._state["steps_given"], self._state["tolerance"] = SUBSTEPS, 0, 0.0
         return int(self._state["taken"])
+
+    def ask(self, body: pymunk.Body, steps: int | None) -> None:
+        """Have a body's island take at least so many substeps a frame; None takes it back.
+
+        An island is what is near one another within a frame, or jointed, directly or through others that move: gears
+        beside a pile may take sixteen while the pile takes two. Ignored where `step` is given a tolerance.
+        Raises ValueError for a body that is not in the space, or steps that are no whole number from 1 to 1,024.
+        """
+        if not isinstance(body, pymunk.Body) or body.space is not self.space:
+            raise ValueError(f"body must be one of the space's, got {body!r:.80}")
+        if steps is not None:
+            _count(steps, "steps")
+            if steps > MOST_SUBSTEPS:
+                raise ValueError(f"expected steps <= {MOST_SUBSTEPS}, got {steps}")
+        row = self._store.body(address_of(body._body))
+        self._store.tables.bodies[row]["asked"] = steps or 0
+        self._store.sync()  # the table may have grown
 
     def _step_alone(self) -> bool:
         """Whether pymunk has something to do around each step."""

@@ -4,7 +4,8 @@ The constraint (`hidden`, known to Chipmunk alone) has a class of its own, and C
 where a constraint's turn is: `silence` after the pairs are known, so that its own solver finds nothing to do; `solve`
 once velocities are integrated; `report` after its sweeps, so that whoever asks an arbiter gets an answer.
 
-`solve` is the frame: substeps of drift, kick, overlap, rows, sweeps, drift.
+`solve` is the frame: substeps of drift, kick, overlap, rows, sweeps, drift; island by island where some take more of
+them than others (`kernel.islands`).
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, SEARCH_SWEEPS
+from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, SEARCH_SWEEPS, SUBSTEPS
+from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note, number, part, share_kicks
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
@@ -32,13 +34,13 @@ from ..kernel.solve import (
     join,
     kick,
     kinetic,
-    needed,
+    pace,
     place,
     respond_explicitly,
     sweep,
     warm_start,
 )
-from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, ROWS, SUBSTEP, Tables, rehash
+from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, MET, NEAR, ROWS, SUBSTEP, TURN, Tables, rehash
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
 from .joints import (
     APPLY,
@@ -98,8 +100,10 @@ def silence(constraint: int, dt: float) -> None:
 
 
 @kernel
-def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> bool:
+def _start(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
+
+    What those did is spread over the frame (`gain`).
 
     False: the state of one (`broken`) is not finite. Later that would have spread to others.
     """
@@ -129,21 +133,20 @@ def _start(s: Any, space: int, tables: Tables, dt: float, h: float) -> bool:
             s.broken = i if s.broken < 0 else s.broken
             continue
         whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
-        body.kick_x = 0.0
-        body.kick_y = 0.0
-        body.kick_w = 0.0
+        body.gain_x = 0.0
+        body.gain_y = 0.0
+        body.gain_w = 0.0
         if not whole:
-            share = h / dt
-            body.kick_x = (body.vx - body.old_vx) * share
-            body.kick_y = (body.vy - body.old_vy) * share
-            body.kick_w = (body.w - body.old_w) * share
+            body.gain_x = body.vx - body.old_vx
+            body.gain_y = body.vy - body.old_vy
+            body.gain_w = body.w - body.old_w
             body.vx = body.old_vx
             body.vy = body.old_vy
             body.w = body.old_w
         elif s.explicit:  # the kick has been given; contacts want to know it all the same
-            body.kick_x = body.vx - body.old_vx
-            body.kick_y = body.vy - body.old_vy
-            body.kick_w = body.w - body.old_w
+            body.gain_x = body.vx - body.old_vx
+            body.gain_y = body.vy - body.old_vy
+            body.gain_w = body.w - body.old_w
     return bool(s.broken < 0)
 
 
@@ -197,37 +200,65 @@ def _joint(s: Any, tables: Tables, joint: Any, which: int, x: float) -> None:
 @kernel
 def _joints(s: Any, tables: Tables, which: int, x: float) -> None:
     for joint in joints_of(s):
-        if joint.taken:
+        if joint.mine:
             _joint(s, tables, joint, which, x)
 
 
+@kernel(forceinline=True)
+def _substeps_of(tables: Tables, joint: Any, before: bool) -> int:
+    """The substeps in which a joint is solved, or (before) was in the last frame: those of what it moves."""
+    n = 0
+    for i in (joint.a, joint.b):
+        if i >= 0:
+            n = max(n, tables.bodies[i].taken if before else tables.bodies[i].steps)
+    return int(n)
+
+
 @kernel
-def _start_joints(s: Any, tables: Tables, h: float, factor: float) -> None:
-    """The joints as they are where the bodies are now, and what they did last."""
+def _own_joints(s: Any, tables: Tables) -> int:
+    """Which joints belong to the present turn: how many."""
+    turn = tables.counters[TURN]
+    count = 0
     for joint in joints_of(s):
-        if joint.taken:
+        joint.mine = 0
+        if joint.taken and (turn == 0 or _substeps_of(tables, joint, False) == turn):
+            joint.mine = 1
+            count += 1
+    return count
+
+
+@kernel
+def _start_joints(s: Any, tables: Tables, h: float, first: bool) -> None:
+    """The joints as they are where the bodies are now, and what they did last: of the last frame's sum, a share."""
+    for joint in joints_of(s):
+        if joint.mine:
             if joint.a >= 0:
                 write_place(s, tables.bodies[joint.a])
             if joint.b >= 0:
                 write_place(s, tables.bodies[joint.b])
     for joint in joints_of(s):
-        if joint.taken:
-            if factor != 1.0:
-                scale_impulse(joint, factor)
+        if joint.mine:
+            if first:
+                scale_impulse(joint, 1.0 / (_substeps_of(tables, joint, True) or SUBSTEPS))
             _joint(s, tables, joint, PRE_STEP, h)
     _joints(s, tables, APPLY_CACHED, 1.0)
 
 
 @kernel
-def _contacts(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
+def _find_near(s: Any, space: int, h: float, time: float) -> bool:
+    """Find the pairs that are near. Whether there was memory for them."""
     g = floats(space + s.space_gravity, 2)
-    while True:
-        status = find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1])
-        if status == DONE:
-            break
+    while find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1]) != DONE:
         if not ask(s, MORE_PAIRS):
             return False
+    return True
+
+
+@kernel
+def _contacts(s: Any, space: int, h: float, time: float) -> bool:
+    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
+    if not _find_near(s, space, h, time):
+        return False
     load_tables(s).counters[SUBSTEP] += 1
     load_tables(s).counters[ROWS] = 0
     start = 0
@@ -256,65 +287,91 @@ def _join(s: Any, h: float, first: bool) -> int:
 
 
 @kernel
+def _everybody(s: Any, space: int) -> None:
+    """All bodies go through the substeps together."""
+    g = floats(space + s.space_gravity, 2)
+    everybody(load_tables(s), g[0], g[1])
+
+
+@kernel
 def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
-    if not _start(s, space, load_tables(s), dt, dt):
+    if not _start(s, space, load_tables(s)):
         return False
+    _everybody(s, space)
+    share_kicks(load_tables(s), 1)
     if not _contacts(s, space, dt, dt):
         return False
     tables = load_tables(s)
+    s.contacts = tables.counters[ROWS]
     respond_explicitly(tables)
     finish(tables, load_law(s), s.frame, dt, True)
     return True
 
 
 @kernel
+def _solve(s: Any, h: float, jointed: bool) -> bool:
+    """The sweeps and searches of a substep, and the rows that join them. Whether there was memory for those.
+
+    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
+    """
+    tables = load_tables(s)
+    energy = kinetic(tables)
+    small = pace(tables, load_law(s), energy, h)
+    warm_start(tables)
+    searches = s.sweeps // SEARCH_SWEEPS
+    sweeps = s.sweeps if jointed else s.sweeps - 2 * searches
+    for more in range(1 + MORE_SWEEPS):
+        look = 0
+        wait = 1
+        moved = 0.0
+        for k in range(sweeps):
+            if k == look:  # less and less often, as long as nobody joins
+                joined = _join(s, h, k == 0 and more == 0)
+                if joined < 0:
+                    return False
+                wait = 1 if joined > 0 else 2 * wait
+                look += wait
+                tables = load_tables(s)
+                if tables.counters[ROWS] == 0 and not jointed:
+                    return True  # nothing that could change a velocity
+            moved = sweep(tables, k % 2 == 0)
+            if jointed:
+                _joints(s, tables, APPLY, h)
+            if k == sweeps // 3:
+                search_together(tables, searches)
+        if moved <= small and (jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)):
+            break
+    return True
+
+
+@kernel
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
-    """A frame in n substeps. Whether there was memory for it."""
+    """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
     h = dt / n
-    if not _start(s, space, load_tables(s), dt, h):
-        return False
+    tables = load_tables(s)
+    joints = _own_joints(s, tables)
+    share_kicks(tables, n)
     for i in range(n):
         drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
         kick(load_tables(s), s.frame)
         if not _contacts(s, space, h, dt - i * h):
             return False
         tables = load_tables(s)
-        if s.joint_count > 0:
-            _start_joints(s, tables, h, 1.0 / s.substeps_before if i == 0 else 1.0)
-        energy = kinetic(tables)
-        warm_start(tables)
-        searches = s.sweeps // SEARCH_SWEEPS
-        sweeps = s.sweeps if s.joint_count > 0 else s.sweeps - 2 * searches
-        look = 0
-        wait = 1
-        for k in range(sweeps):
-            if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h, k == 0)
-                if joined < 0:
-                    return False
-                wait = 1 if joined > 0 else 2 * wait
-                look += wait
-                tables = load_tables(s)
-                if tables.counters[ROWS] == 0 and s.joint_count == 0:
-                    break  # nothing that could change a velocity
-            sweep(tables, k % 2 == 0)
-            if s.joint_count > 0:
-                _joints(s, tables, APPLY, h)
-            if k == sweeps // 3:
-                search_together(tables, searches)
-        if s.joint_count == 0:  # contacts add no energy: where they do, they are not solved yet
-            most = GAINED * energy + held_back(tables, h)
-            for k in range(MORE_SWEEPS * s.sweeps):
-                if kinetic(tables) <= most:
-                    break
-                sweep(tables, k % 2 == 0)
-        if s.joint_count > 0:
+        if joints > 0:
+            _start_joints(s, tables, h, i == 0)
+        if not _solve(s, h, joints > 0):
+            return False
+        tables = load_tables(s)
+        if joints > 0:
             for joint in joints_of(s):
-                if joint.taken:
+                if joint.mine:
                     add_impulse(joint)
         finish(tables, load_law(s), s.frame, h, i == n - 1)
-    drift(load_tables(s), s.frame, 0.5 * h)
+    tables = load_tables(s)
+    drift(tables, s.frame, 0.5 * h)
+    note(tables, n)
+    s.contacts += tables.counters[ROWS]
     return True
 
 
@@ -336,6 +393,7 @@ def _again(s: Any) -> bool:
         return False
     tables = load_tables(s)
     tables.counters[ANEW] = 1
+    tables.counters[NEAR] = 0
     rehash(tables)
     for joint in joints_of(s):
         if joint.taken:
@@ -371,17 +429,55 @@ def _see(s: Any) -> None:
 
 
 @kernel
+def _turns(s: Any, space: int, dt: float) -> int:
+    """A frame in which some bodies want more substeps than others: how many the finest took; 0: no memory for it."""
+    g = floats(space + s.space_gravity, 2)
+    load_tables(s).counters[TURN] = 0
+    if not _find_near(s, space, dt, dt):
+        return 0
+    tables = load_tables(s)
+    part(tables)
+    for joint in joints_of(s):
+        if joint.taken:
+            connect(tables, joint.a, joint.b)
+    numbers = number(tables, g[0], g[1])
+    turn = next_turn(tables, FINEST)
+    most = max(turn, s.substeps)
+    if numbers < 2:
+        _everybody(s, space)
+        return int(most) if _substeps(s, space, dt, most) else 0
+    if not _keep(s):
+        return 0
+    last = load_tables(s).counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
+    while turn > 0:
+        load_tables(s).counters[SUBSTEP] = last - turn
+        if not _substeps(s, space, dt, turn):
+            return 0
+        turn = next_turn(load_tables(s), turn)
+    if load_tables(s).counters[MET] and _again(
+        s
+    ):  # (where tables have grown, the next frame finds what has met)
+        s.contacts = 0
+        _everybody(s, space)
+        if not _substeps(s, space, dt, most):
+            return 0
+    return int(most)
+
+
+@kernel
 def _frame(s: Any, space: int, dt: float) -> bool:
-    """All substeps of a frame: so many, or as many as the tolerance needs.
+    """All substeps of a frame: so many, or as many as an island wants, or as the tolerance needs.
 
     The error of n substeps falls as 1/n^2 while nothing new happens, so that two runs, of n and 2n, differ by three
     times the error of the finer one (Richardson). Where something does happen it falls as 1/n, and the difference
     is the error itself: that is what is compared.
     """
-    n = s.substeps
-    if s.steps_given == 0:
-        n = max(n, needed(load_pool(s), load_tables(s), dt))
+    s.contacts = 0
+    if not _start(s, space, load_tables(s)):
+        return False
+    n = demand(load_pool(s), load_tables(s), dt, s.substeps, s.steps_given == 0)
     if s.tolerance > 0.0:
+        _everybody(s, space)
         if not _keep(s) or not _substeps(s, space, dt, n):
             return False
         while 2 * n <= MOST_SUBSTEPS:
@@ -389,15 +485,21 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             if not _again(s):  # the tables have grown: from here on with what there is
                 break
             n *= 2
+            s.contacts = 0
             if not _substeps(s, space, dt, n):
                 return False
             if _difference(s) <= s.tolerance:
                 break
-    elif not _substeps(s, space, dt, n):
+    elif n > s.substeps:
+        n = _turns(s, space, dt)
+    else:
+        _everybody(s, space)
+        if not _substeps(s, space, dt, n):
+            return False
+    if n == 0:
         return False
     if s.stiffness_given == 0:
         adapt_stiffness(load_tables(s), dt)
-    s.substeps_before = n
     s.taken = n
     return True
 
@@ -462,7 +564,6 @@ def solve(constraint: int, coefficient: float) -> None:
         ask(s, BROKEN)
     if not good:
         _undo(s, tables)
-    s.contacts = tables.counters[ROWS]
     _finish_frame(s, tables, good)
 
 

@@ -46,8 +46,8 @@ class Memory(NamedTuple):
     counters: np.ndarray
     joints: list[np.ndarray]
     """Impulses."""
-    substeps: int
-    """Of the last frame."""
+    substeps: np.ndarray
+    """(n, 2) int: of each body, those asked for its island, and those of the last frame."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
@@ -71,7 +71,12 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.shapes.copy(),
         tables.counters.copy(),
         [np.array(joint_impulse(joint)) for joint in space.constraints],
-        int(store.state[0]["substeps_before"]),
+        np.array(
+            [
+                tables.bodies[store.row_of(address_of(b._body))][["asked", "taken"]].tolist()
+                for b in space.bodies
+            ]
+        ),
     )
 
 
@@ -106,7 +111,9 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     store.drop_near()
     tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
     rehash(tables)
-    store.state[0]["substeps_before"] = memory.substeps
+    for body, (asked, taken) in zip(space.bodies, memory.substeps):
+        row = tables.bodies[store.row_of(address_of(body._body))]
+        row["asked"], row["taken"] = asked, taken
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)

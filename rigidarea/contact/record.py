@@ -168,6 +168,9 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> None:
             read_motion(s, body.address, body)
             body.inverse_mass = 0.0  # asleep, or static
             body.inverse_moment = 0.0
+            body.gain_x = 0.0
+            body.gain_y = 0.0
+            body.gain_w = 0.0
             body.kick_x = 0.0
             body.kick_y = 0.0
             body.kick_w = 0.0

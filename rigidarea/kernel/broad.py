@@ -15,10 +15,12 @@ from .pool import Pool
 from .tables import (
     APART,
     BODIES,
+    FIXED,
     FREE_PAIRS,
     NEAR,
     SEARCH,
     SHAPES,
+    TURN,
     Tables,
     end_pair,
     find_pair,
@@ -51,14 +53,17 @@ def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, floa
 
 @kernel
 def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
-    """Whether a shape that moves leaves its box, h before now or h after it. Renews all boxes."""
+    """Whether a shape that moves leaves its box, h before now or h after it. Renews the boxes of the turn's shapes."""
     gone = False
+    turn = tables.counters[TURN]
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
         if shape.outline < 0:
             continue
         body = tables.bodies[shape.body]
         if body.stamp != frame and shape.low_x <= shape.high_x:
+            continue
+        if turn != 0 and body.steps != turn and body.kind != FIXED:
             continue
         low_x, low_y, high_x, high_y = box_of(pool, shape, body)
         shape.left = low_x

@@ -21,7 +21,7 @@ from typing import Any
 from .jit import kernel
 from .memory import record
 from .row import push
-from .tables import BODIES, ROWS, Tables
+from .tables import LIVE, ROWS, Tables
 
 #: What one row takes part with: unknowns are end 1, end 2, friction.
 FACTOR = record(
@@ -75,7 +75,8 @@ LEAST_COMPLIANCE = 1e-6
 @kernel
 def _free(tables: Tables) -> None:
     """Every body as mobile as it is alone."""
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
         body = tables.bodies[i]
         m = tables.mobility[i]
         m.mxx = body.inverse_mass
@@ -210,7 +211,8 @@ def take_part(tables: Tables) -> None:
 @kernel
 def _forget(tables: Tables) -> None:
     """No velocities, no impulses."""
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
         m = tables.mobility[i]
         m.x = 0.0
         m.y = 0.0
@@ -303,7 +305,8 @@ def descend(tables: Tables, before: float) -> float:
         return 0.0
     beta = product / before if before > 0.0 else 0.0
     curvature = 0.0
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
         body = tables.bodies[i]
         m = tables.mobility[i]
         m.ux = m.x + (beta * m.ux if beta > 0.0 else 0.0)
@@ -374,7 +377,8 @@ def _best(tables: Tables) -> float:
                 f.e11 * f.z1 * f.z1 + f.e22 * f.z2 * f.z2 + 2.0 * f.e12 * f.z1 * f.z2 + f.et * f.zt * f.zt
             )
             _give(row, f, tables.mobility[row.a], tables.mobility[row.b])
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
         body = tables.bodies[i]
         m = tables.mobility[i]
         curvature += body.inverse_mass * (m.x * m.x + m.y * m.y) + body.inverse_moment * m.w * m.w

@@ -11,10 +11,10 @@ MOST_SUBSTEPS = 1024
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler
 #: is stable up to 4; its restitution is then within 0.002.
 FOLLOWED = 0.05
-#: A contact pressed too far opens again in so many substeps (1/e time), times w h where that is above 1: the row's S,
-#: its release overdamped. Less: what sweeps have left unsolved is handed back before they have learnt of it, and piles
-#: sway; more: they go on sliding for seconds. The stiffer, the more of it is left.
-RELEASE_STEPS = 9.0
+#: A contact pressed too far opens again in so many substeps (1/e time): the row's S. More, and what the sweeps have
+#: left unsolved outweighs it: a contact opens under its load, and piles never come to rest; less, and what the sweeps
+#: have not learnt of yet is handed back.
+RELEASE_STEPS = 15.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.
 RELEASE_SPEED = 1.0
@@ -54,6 +54,10 @@ SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 5
 #: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
-#: converged: sweeps go on, up to so many times as many.
+#: converged.
 GAINED = 1.005
+#: Nor is it, where the last sweep has still changed speeds by more than what pushes gives in a substep, and this part
+#: of the bodies' speed.
+MOVED = 0.1
+#: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

@@ -15,7 +15,7 @@ import numpy as np
 from .arc import SAME_CIRCLE, across, circle_circle, on_arc, segment
 from .jit import kernel
 from .pool import LEAF
-from .work import A_EDGE, B_EDGE, TANGLED, Relative, measure, placed, put
+from .work import A_EDGE, B_EDGE, NO_AREA, TANGLED, Relative, measure, placed, put
 
 #: Two crossings nearer than this, over the radius: the boundaries only touch. (An edge cuts off a chord of nothing or
 #: of 1e-8 of the radius: less comes from a corner that lies on the circle to rounding.)
@@ -187,15 +187,63 @@ def _cut_by_arc(
 ) -> tuple[bool, bool, float, float, float, float]:  # fmt: skip
     """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit)."""
     d2 = (cx - ax) ** 2 + (cy - ay) ** 2
-    if p_in == q_in and (d2 >= (a + r) * (a + r) or d2 <= (a - r) * (a - r)):
-        return False, False, 0.0, 0.0, 0.0, 0.0
-    dx, dy, x1, y1, x2, y2 = circle_circle(ax, ay, a, cx, cy, r)
     if p_in == q_in:
-        reach = -a if p_in else a
-        if not on_arc(px, py, qx, qy, a, ax + reach * dx, ay + reach * dy):
+        if d2 >= (a + r) * (a + r) or d2 <= (a - r) * (a - r):
             return False, False, 0.0, 0.0, 0.0, 0.0
+        reach = (-a if p_in else a) / math.sqrt(d2)
+        if not on_arc(px, py, qx, qy, a, ax + reach * (cx - ax), ay + reach * (cy - ay)):
+            return False, False, 0.0, 0.0, 0.0, 0.0
+    _, _, x1, y1, x2, y2 = circle_circle(ax, ay, a, cx, cy, r)
+    if p_in == q_in:
         return True, True, x1, y1, x2, y2
     return q_in, p_in, x1, y1, x2, y2
+
+
+@kernel
+def _cut_off(
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, own: int,
+    cx: float, cy: float, r: float, ux: float, uy: float, half: float, distance: float,
+) -> int:  # fmt: skip
+    """The region that one straight edge along (ux, uy) cuts off a disc whose centre lies `distance` to its right.
+
+    half: of the chord. No more than half of the disc, and in closed form.
+    """
+    area, moment = segment(half, distance, r)
+    if area <= NO_AREA * 16.0 * half * half:
+        return 0
+    fx = cx - distance * uy
+    fy = cy + distance * ux
+    hx = half * ux
+    hy = half * uy
+    p[0, 0] = fx - hx
+    p[0, 1] = fy - hy
+    p[1, 0] = fx + hx
+    p[1, 1] = fy + hy
+    p[2, 0] = cx - r * uy
+    p[2, 1] = cy + r * ux
+    label[0] = own
+    bows[0, 2] = 0.0
+    mine = B_EDGE if own == A_EDGE else A_EDGE
+    for v in range(1, 3):
+        label[v] = mine
+        bows[v, 0] = cx
+        bows[v, 1] = cy
+        bows[v, 2] = r
+    along = moment / area
+    sign = 2.0 if own == A_EDGE else -2.0
+    loop = loops[0]
+    loop.start = 0
+    loop.stop = 3
+    loop.area = area
+    loop.x = fx - along * uy
+    loop.y = fy + along * ux
+    loop.chord_x = sign * hx
+    loop.chord_y = sign * hy
+    loop.lever = 0.0
+    loop.straight = 0.0
+    loop.region = 0
+    loop.arcs = 1
+    return 1
 
 
 @kernel
@@ -220,6 +268,7 @@ def disc_convex(
     crossed = 0
     open_ = False  # left, and not entered since, at (out_x, out_y)
     out_x = out_y = in_x = in_y = 0.0
+    edge_x = edge_y = edge_half = edge_distance = 0.0  # of the last straight edge that cuts the circle
     for first in range(0, count, LEAF):
         row = leaf + first // LEAF
         far_x = max(0.0, abs(kx - boxes[row, 0]) - boxes[row, 2])
@@ -256,6 +305,10 @@ def disc_convex(
                         uy /= length
                         distance = turn / length
                         half = math.sqrt(max(0.0, (r - abs(distance)) * (r + abs(distance))))
+                        edge_x = ux
+                        edge_y = uy
+                        edge_half = half
+                        edge_distance = distance
                         fx = kx + distance * uy
                         fy = ky - distance * ux
                         enters = not p_in
@@ -302,6 +355,8 @@ def disc_convex(
     touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
     if crossed == 0 or touched:
         n = _nested(kx, ky, r, points, arcs, begin, count, own, p, label, bows, loops, noise)
+    elif crossed == 1 and v == 1 and edge_distance < 0.0 and bows[0, 2] == 0.0:
+        n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance)
     else:
         if open_:
             v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)

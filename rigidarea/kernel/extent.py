@@ -26,12 +26,16 @@ def extent(
         low = min(low, h)
         high = max(high, h)
         r = bows[j, 2] if arcs else 0.0
-        if r != 0.0:
-            for reach in (-abs(r), abs(r)):
-                fx = bows[j, 0] + reach * nx
-                fy = bows[j, 1] + reach * ny
-                if on_arc(polygon[j, 0], polygon[j, 1], x, y, r, fx, fy):
-                    low = min(low, nx * fx + ny * fy)
-                    high = max(high, nx * fx + ny * fy)
+        if (
+            r != 0.0
+        ):  # no more than half a turn: it reaches furthest on the side to which it bulges, or at its ends
+            px = polygon[j, 0]
+            py = polygon[j, 1]
+            reach = r if nx * (y - py) - ny * (x - px) > 0.0 else -r
+            fx = bows[j, 0] + reach * nx
+            fy = bows[j, 1] + reach * ny
+            if on_arc(px, py, x, y, r, fx, fy):
+                low = min(low, nx * fx + ny * fy)
+                high = max(high, nx * fx + ny * fy)
         j = i
     return low, high

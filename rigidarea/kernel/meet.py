@@ -40,6 +40,7 @@ from .tables import (
     Tables,
     free_regions,
 )
+from .turning import curvature_of_disc, curvatures
 
 DONE, GROW_WORK, GROW_REGIONS = 0, 1, 2
 
@@ -55,6 +56,8 @@ class Patch(NamedTuple):
     chord: float
     middle: float
     straight: float
+    curve_a: float
+    curve_b: float
     depth: float
     reach: float  # its extent along the direction
     blind: bool  # the chord is nothing: no direction of its own
@@ -90,12 +93,12 @@ def _reach_along(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: f
 
 
 @kernel
-def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) -> float:
+def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float, reach: float) -> float:
     """How far a loop's outlines have gone into each other: its least width, of those across n and its longest edges.
 
-    Along n alone a thin long strip would seem deep, since its chord runs from corner to opposite corner.
+    Along n (`reach`) alone a thin long strip would seem deep, its chord running from corner to opposite corner.
     """
-    least = _reach_along(work, start, stop, arcs, nx, ny)
+    least = reach
     for own in range(2):
         longest = 0.0
         bx = 0.0
@@ -118,8 +121,8 @@ def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float) 
 
 
 @kernel
-def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Patch:
-    """Loop k of the work, of outline ia at `pose`."""
+def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose) -> Patch:
+    """Loop k of the work, of outlines ia at `pose` and ib."""
     loop = work.loops[k]
     head = pool.heads[ia]
     lx = loop.x + head.x
@@ -141,10 +144,29 @@ def _patch(pool: Pool, work: Work, law: Law, k: int, ia: int, pose: Pose) -> Pat
         middle = loop.lever / chord
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
-    depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
-    reach = _reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny) if not blind else chord
     straight = min(loop.straight, chord)
-    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, depth, reach, blind)
+    depth = chord
+    reach = chord
+    curve_a = 0.0
+    curve_b = 0.0
+    if not blind:
+        reach = _reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
+        if straight > 0.0 or loop.arcs == 0 or chord == 0.0:
+            depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny, reach)
+        else:
+            depth = min(reach, 2.0 * loop.area / chord)  # of a crescent its chord's normal says too much
+            both = 12.0 * loop.area / (chord * chord * chord)
+            if head.disc:
+                curve_a = curvature_of_disc(head.radius, chord)
+                curve_b = both - curve_a
+            elif pool.heads[ib].disc:
+                curve_b = curvature_of_disc(pool.heads[ib].radius, chord)
+                curve_a = both - curve_b
+            else:
+                curve_a, curve_b = curvatures(
+                    work.polygon, work.label, work.bows, loop.start, loop.stop, loop.area, chord
+                )
+    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, curve_a, curve_b, depth, reach, blind)
 
 
 @kernel
@@ -186,6 +208,8 @@ def _fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float)
     region.chord = patch.chord
     region.middle = patch.middle
     region.straight = patch.straight
+    region.curve_a = patch.curve_a
+    region.curve_b = patch.curve_b
     region.depth = patch.depth
     region.arm_a = (patch.x - ax) * patch.ny - (patch.y - ay) * patch.nx
     region.arm_b = (patch.x - bx) * patch.ny - (patch.y - by) * patch.nx
@@ -296,7 +320,7 @@ def _touch(
             n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
             least = np.inf
             for k in range(n):
-                patch = _patch(pool, work, law, k, ia, pose)
+                patch = _patch(pool, work, law, k, ia, ib, pose)
                 far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
                 if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
                     least = far
@@ -305,7 +329,7 @@ def _touch(
                 break
         if best < 0:
             return come
-        patch = _patch(pool, work, law, best, ia, pose)
+        patch = _patch(pool, work, law, best, ia, ib, pose)
         ax, ay = _centre(a, pose)
         bx, by = _centre(b, other)
         _fill(region, patch, ax, ay, bx, by)
@@ -388,6 +412,8 @@ def _enter(
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
     slow = _slow(law, gain, stiffness * inverse, h)
+    if region.mode == REST and not placed and phase2 > law.followed and min(1.0, pair.elasticity) * u > slow:
+        region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
     region.first_speed = max(u, 0.0)
     region.opened = 0
     if u <= slow:
@@ -501,7 +527,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             if on_line == 0.0:
                 continue  # reaches under the line without crossing it
             area_cap = 2.0 * on_line * on_line  # only the line's end pokes in
-        patch = _patch(pool, work, law, k, ia, pose_a)
+        patch = _patch(pool, work, law, k, ia, ib, pose_a)
         r = _match(regions, old, patch.x, patch.y, stamp)
         born = r < 0
         if born:
@@ -560,6 +586,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             patch.chord,
             middle,
             straight,
+            0.0 if past else patch.curve_a,
+            0.0 if past else patch.curve_b,
             patch.depth,
             patch.reach,
             patch.blind,
@@ -596,6 +624,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         ):
             region.born = 1  # hit at a speed of which its present overlap says nothing
         elif region.mode >= STRUCK:
+            if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
+                region.l1 = 0.0
+                region.l2 = 0.0
+                region.lt = 0.0
             region.mode = REST
     free_regions(regions, counters, old)
     pair.head = kept
@@ -672,7 +704,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
             continue
-        patch = _patch(pool, work, law, k, ia, pose_a)
+        patch = _patch(pool, work, law, k, ia, ib, pose_a)
         if patch.blind or patch.reach <= deepest:
             continue
         r = counters[FREE_REGION]

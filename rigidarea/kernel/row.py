@@ -32,6 +32,7 @@ from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
 from .stiffness import area_allowed
 from .tables import IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
+from .turning import turning_speed
 
 ROW = record(
     [
@@ -174,7 +175,8 @@ def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None
     """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
 
     Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
-    point of application. A corner is thicker between them: the thicker end then has all of the depth.
+    point of application. A corner is thicker between them: the thicker end then has all of the depth. No end is asked
+    to open: they do not overlap yet, whatever is seen of the overlap to come when they come from aside.
     """
     row.alpha = 0.0
     row.alpha_t = 0.0
@@ -183,14 +185,14 @@ def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None
     turn = a.w - b.w
     _one_point(r, a, b)
     if row.ends == 1:
-        row.t1 = (speed * r.back - r.depth + r.rest_depth) / h
+        row.t1 = max(0.0, (speed * r.back - r.depth + r.rest_depth) / h)
         return
     length = row.e2 - row.e1
     mean = r.area / r.chord
     lean = min(1.0, max(-1.0, 3.0 * (row.e1 + row.e2) / length))
     left = r.rest_depth - r.depth + mean * abs(lean)
-    row.t1 = ((speed - turn * row.e1) * r.back - mean * lean + left) / h
-    row.t2 = ((speed - turn * row.e2) * r.back + mean * lean + left) / h
+    row.t1 = max(0.0, ((speed - turn * row.e1) * r.back - mean * lean + left) / h)
+    row.t2 = max(0.0, ((speed - turn * row.e2) * r.back + mean * lean + left) / h)
 
 
 @kernel
@@ -258,13 +260,11 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.l2 = 0.0
         row.lt = r.lt * (h / r.step)
     else:
-        phase2 = stiffness * inverse * h * h
+        firm = max(stiffness, region_stiffness(law, pair.firm, r.chord))
+        phase2 = firm * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
-        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
-        steps = min(
-            RELEASE_STEPS * max(1.0, math.sqrt(phase2)), max(RELEASE_STEPS, 1.0 / (RELEASE_SPEED * h))
-        )
-        c += theta * (1.0 + steps) * h * stiffness
+        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(firm / inverse)
+        c += theta * (1.0 + RELEASE_STEPS) * h * firm
         least = least_extent(a, b)
         slowest = elastic / (RELEASE_SPEED * least)
         if r.placed == PLACED:
@@ -295,6 +295,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
+            row.t1 = turning_speed(r, a, b, row.lt, h)
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
@@ -350,8 +351,10 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
 
 
 @kernel(forceinline=True)
-def visit(row: Any, a: Any, b: Any) -> None:
+def visit(row: Any, a: Any, b: Any) -> float:
     """Solve one row for the bodies' present velocities: both ends as a block, then friction under them.
+
+    Returns by how much that has changed the speed at which the row's bodies close or slip (length/time).
 
     Friction sees what the ends have just done to the slip (`slip1`, `slip2`) before the bodies do: one push for all.
     """
@@ -387,6 +390,7 @@ def visit(row: Any, a: Any, b: Any) -> None:
     dt = lt - row.lt
     row.lt = lt
     push(row, a, b, d1, d2, dt)
+    return max(abs(d1 + d2), abs(dt)) * row.weight
 
 
 @kernel

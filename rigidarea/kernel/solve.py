@@ -10,18 +10,32 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import FEATURE, MOST_SUBSTEPS, STRAIGHT_WAY
+from .constants import MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
 from .place import seen_from
 from .pool import Pool
 from .row import make_row, push, settle, visit
 from .stiffness import carry
-from .tables import ANEW, BODIES, DRIFTS, NEAR, ROWS, SUBSTEP, Law, Tables
+from .tables import (
+    ANEW,
+    BODIES,
+    DRIFTS,
+    FIRST,
+    FIXED,
+    LAST,
+    LIVE,
+    MET,
+    NEAR,
+    ROWS,
+    SUBSTEP,
+    TURN,
+    TURNED,
+    Law,
+    Tables,
+)
 from .work import Work
 
 #: What a kernel may ask for before it can go on.
@@ -40,8 +54,8 @@ def place(body: Any) -> None:
 @kernel
 def drift(tables: Tables, frame: int, time: float) -> None:
     """Move every body that we move, at its present velocity."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
         if body.stamp == frame and body.kind == DRIFTS:
             body.x += time * body.vx
             body.y += time * body.vy
@@ -52,8 +66,8 @@ def drift(tables: Tables, frame: int, time: float) -> None:
 @kernel
 def kick(tables: Tables, frame: int) -> None:
     """What everything but contacts and joints adds in a substep."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
         if body.stamp == frame:
             body.vx += body.kick_x
             body.vy += body.kick_y
@@ -61,35 +75,6 @@ def kick(tables: Tables, frame: int) -> None:
             body.came_vx = body.vx
             body.came_vy = body.vy
             body.came_w = body.w
-
-
-@kernel
-def needed(pool: Pool, tables: Tables, dt: float) -> int:
-    """Substeps that a frame of dt needs, so that no outline passes a tooth of a concave one between two of them.
-
-    Convex bodies are met wherever they come (`meet`); teeth, slots and hooks move under a contact that is there
-    already, by no more than a FEATURE of the chord on which such an outline lies.
-    """
-    most = 1.0
-    for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        if sa.left > sb.right or sb.left > sa.right or sa.bottom > sb.top or sb.bottom > sa.top:
-            continue
-        face = np.inf
-        for shape in (sa, sb):
-            head = pool.heads[shape.outline]
-            if not head.convex and not head.disc:
-                face = min(face, head.face)
-        if face == np.inf:
-            continue
-        a = tables.bodies[sa.body]
-        b = tables.bodies[sb.body]
-        way = math.hypot(a.vx - b.vx, a.vy - b.vy)
-        way += abs(a.w) * max(sa.half_x, sa.half_y) + abs(b.w) * max(sb.half_x, sb.half_y)
-        most = max(most, way * dt / (FEATURE * face))
-    return int(min(most, float(MOST_SUBSTEPS))) + 1
 
 
 @kernel
@@ -101,13 +86,16 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx:
     if search(pool, tables, max(time, 2.0 * h)) < 0:
         return GROW_PAIRS
     tables.counters[ANEW] = 0
-    _arrange(tables, gx, gy)
+    arrange(tables, gx, gy)
     return DONE
 
 
 @kernel
-def _arrange(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first."""
+def arrange(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first.
+
+    Where a frame is made of turns (`islands`), turn by turn.
+    """
     size = math.hypot(gx, gy)
     ux, uy = (-gx / size, -gy / size) if size > 0.0 else (0.0, 1.0)
     near = tables.near
@@ -127,6 +115,9 @@ def _arrange(tables: Tables, gx: float, gy: float) -> None:
         share = 0.5 if a.mobile and b.mobile else 1.0
         pair.order = share * (ux * x + uy * y)
         pair.beside = share * abs(ux * y - uy * x)
+        pair.turn = turn_of(a, b) if tables.counters[TURNED] else 0
+        if pair.turn < 0:
+            tables.counters[MET] = 1
     gap = 1
     while gap < n:
         gap = 3 * gap + 1
@@ -139,10 +130,36 @@ def _arrange(tables: Tables, gx: float, gy: float) -> None:
                 j -= gap
             near[j] = p
         gap //= 3
+    bound(tables)
+
+
+@kernel
+def turn_of(a: Any, b: Any) -> int:
+    """The turn to which a pair of bodies belongs; -1: to two."""
+    if a.kind == FIXED or b.kind == FIXED or a.steps == b.steps:
+        return int(max(a.steps, b.steps))
+    return -1
+
+
+@kernel
+def bound(tables: Tables) -> None:
+    """Where in `near` the pairs of the present turn are."""
+    counters = tables.counters
+    turn = counters[TURN]
+    first = 0
+    while first < counters[NEAR] and tables.pairs[tables.near[first]].turn < turn:
+        first += 1
+    last = first
+    while last < counters[NEAR] and tables.pairs[tables.near[last]].turn == turn:
+        last += 1
+    counters[FIRST] = first
+    counters[LAST] = last
 
 
 @kernel(forceinline=True)
 def _after(one: Any, other: Any) -> bool:
+    if one.turn != other.turn:
+        return bool(one.turn > other.turn)
     if one.order != other.order:
         return bool(one.order > other.order)
     return bool(one.beside > other.beside)
@@ -265,7 +282,7 @@ def gather(
 ) -> tuple[int, int]:
     """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
     counters = tables.counters
-    for i in range(start, counters[NEAR]):
+    for i in range(max(start, counters[FIRST]), counters[LAST]):
         p = tables.near[i]
         pair = tables.pairs[p]
         sa = tables.shapes[pair.a]
@@ -287,7 +304,7 @@ def gather(
             _part(pool, tables, pair, a, b)
         elif not _add_rows(tables, law, p, h, -1):
             return GROW_REGIONS, i
-    return DONE, counters[NEAR]
+    return DONE, counters[LAST]
 
 
 @kernel
@@ -301,7 +318,7 @@ def join(
     """
     counters = tables.counters
     before = counters[ROWS]
-    for i in range(start, counters[NEAR]):
+    for i in range(max(start, counters[FIRST]), counters[LAST]):
         p = tables.near[i]
         pair = tables.pairs[p]
         old = pair.head
@@ -318,7 +335,7 @@ def join(
             return status, i, counters[ROWS] - before
         if not _add_rows(tables, law, p, h, old):
             return GROW_REGIONS, i, counters[ROWS] - before
-    return DONE, counters[NEAR], counters[ROWS] - before
+    return DONE, counters[LAST], counters[ROWS] - before
 
 
 @kernel
@@ -330,20 +347,36 @@ def warm_start(tables: Tables) -> None:
 
 
 @kernel
-def sweep(tables: Tables, up: bool) -> None:
-    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps)."""
+def sweep(tables: Tables, up: bool) -> float:
+    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps).
+
+    Returns the largest change of a contact's speed (length/time).
+    """
     n = tables.counters[ROWS]
+    most = 0.0
     for i in range(n):
         row = tables.rows[i if up else n - 1 - i]
-        visit(row, tables.bodies[row.a], tables.bodies[row.b])
+        most = max(most, visit(row, tables.bodies[row.a], tables.bodies[row.b]))
+    return most
+
+
+@kernel
+def pace(tables: Tables, law: Law, energy: float, h: float) -> float:
+    """The change of speed in a sweep that is small: beside what pushes gives in a substep, and the bodies' speed."""
+    mass = 0.0
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.inverse_mass > 0.0:
+            mass += 1.0 / body.inverse_mass
+    return law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
 
 
 @kernel
 def kinetic(tables: Tables) -> float:
     """Kinetic energy of all that contacts may move."""
     total = 0.0
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
             total += 0.5 * (body.vx * body.vx + body.vy * body.vy) / body.inverse_mass
         if body.inverse_moment > 0.0:
@@ -370,8 +403,8 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
         settle(row, region, law, tables.pairs[region.pair], a, b, h, last)
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
         if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
             if body.kind == DRIFTS:
                 body.x += body.shift_x

@@ -90,6 +90,7 @@ def carry(pair: Any, dt: float) -> None:
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
         wanted = max(pair.load, pair.least) / pair.area
+        pair.firm = max(wanted, pair.carrying / dt / pair.area)
         k = pair.stiffness
         if wanted > k:
             pair.stiffness = min(MOST_STIFFER, math.sqrt(1.1 * wanted / k)) * k

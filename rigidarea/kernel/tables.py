@@ -37,7 +37,10 @@ BODY = record(
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
-        ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
+        ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
+        ("gain_y", "f8"),
+        ("gain_w", "f8"),
+        ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
@@ -55,6 +58,11 @@ BODY = record(
         ("extent", "f8"),  # smallest extent of its shapes (length)
         ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
         ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
+        ("asked", "i4"),  # substeps a frame that the user wants for its island, at least; 0: none
+        ("wants", "i4"),  # substeps that it wants in this frame
+        ("steps", "i4"),  # that its island takes; 0: it does not move
+        ("taken", "i4"),  # that it took in the last frame; 0: it was not there
+        ("island", "i4"),  # row of a body of the same island (`islands`)
     ]
 )
 
@@ -106,6 +114,7 @@ PAIR = record(
         ("swapped", "i4"),  # 1: the arbiter's A is our B
         ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
         ("points", "i4"),  # how many contact points it had
+        ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("friction", "f8"),
         ("elasticity", "f8"),
         ("surface_x", "f8"),  # surface velocity, B's minus A's
@@ -115,6 +124,10 @@ PAIR = record(
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
+        (
+            "firm",
+            "f8",
+        ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
         (
@@ -156,6 +169,11 @@ REGION = record(
         ("chord", "f8"),  # (length)
         ("middle", "f8"),  # of the chord, from the point of application along it (length)
         ("straight", "f8"),  # of the chord, as far as both boundaries are straight (length)
+        (
+            "curve_a",
+            "f8",
+        ),  # curvatures of the two sides (1/length), where not both have a straight stretch; else 0
+        ("curve_b", "f8"),
         ("depth", "f8"),  # extent along the direction (length)
         # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
         ("back", "f8"),
@@ -191,10 +209,12 @@ REGION = record(
 
 #: Counters: free regions' list head, how many are free, free pairs' list head, how many; shapes and bodies in use;
 #: searches and substeps so far; pairs that are near; rows of this substep; body pairs kept apart by joints; the first
-#: substep of this frame; 1: search anew.
+#: substep of this frame; 1: search anew. Of turns (`islands`): bodies that are live; where the live pairs begin in
+#: `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by turns; 1: two turns have met.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
-COUNTERS = 12
+LIVE, FIRST, LAST, TURN, TURNED, MET = range(12, 18)
+COUNTERS = 18
 
 
 class Law(NamedTuple):
@@ -221,6 +241,7 @@ class Tables(NamedTuple):
     rows: np.ndarray  # (n,) ROW
     factors: np.ndarray  # (n,) FACTOR, of the rows
     mobility: np.ndarray  # (n,) MOBILITY, of the bodies
+    live: np.ndarray  # (n,) int32: bodies that go through the substeps now
     near: np.ndarray  # (n,) int32: pairs that may touch, in the order of the sweeps
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
@@ -282,9 +303,11 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.stamp = -1
         pair.verdict = 1
         pair.arbiter = 0
+        pair.turn = 0
         pair.jx = 0.0
         pair.jy = 0.0
         pair.stiffness = 0.0
+        pair.firm = 0.0
         pair.carrying = 0.0
         pair.area = 0.0
         pair.axis_x = 0.0

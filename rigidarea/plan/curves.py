@@ -32,14 +32,17 @@ class Facet(NamedTuple):
     extent: float  # of the smallest body that lies on it (length)
     clearance: float  # least difference of radii to what lies in it or around it (length)
     known: bool  # whether it can be sampled anew
-    lever: float  # of a tooth: how far from the pitch point it bears, over the radius; 1 without teeth
+    lever: (
+        float  # of a tooth: how far from the pitch point it bears, over the radius; of a pin: radius over arm
+    )
+    driven: bool  # turned by something, against teeth or slots
 
     def error(self, p: float, turn: float, pressed: bool) -> float:
         """What facets that turn by so much leave at penetration p."""
         sagitta = float(est.tolerance_for_turn(self.radius, turn))
         if (
-            not pressed
-        ):  # driven: the direction swings by the turn, rms turn/sqrt(12), the ratio by that at its lever
+            self.driven or not pressed
+        ):  # the direction swings by the turn, rms turn/sqrt(12), the ratio by that lever
             return self.lever * turn / math.sqrt(12.0)
         lost = float(est.facet_loss(turn, self.angle, sagitta, p * self.extent))
         return min(LOST, max(lost, sagitta / self.clearance))
@@ -87,21 +90,38 @@ def facets_of(seen: Survey, time: float) -> list[Facet]:
             continue
         near = seen.owner[seen.pairs[(seen.pairs == k).any(axis=1)]].ravel()
         extent = float(seen.extent[near].min(initial=math.inf))
-        lever = 1.0
-        if seen.concave[k]:  # teeth bear as far as a pitch from the pitch point, four times a tip's width
-            lever = min(1.0, 4.0 * tooth(outline) / float(seen.reach[seen.owner[k]]))
+        if seen.concave[k]:
+            lever = tooth_lever(outline, float(seen.reach[seen.owner[k]]))
+        else:  # against what is straight a pin's facets turn nothing; they lift it, so far from where it turns about
+            middle = 0.5 * (seen.boxes[k, :2] + seen.boxes[k, 2:])
+            arm = math.dist(middle, seen.bodies[seen.owner[k]].position)
+            lever = abs(float(seen.radius[k])) / (abs(float(seen.radius[k])) + arm)
         found.append(
             Facet(
-                *(k, facet_angle(outline), run_over(seen, k, time), abs(float(seen.radius[k]))),
-                *(
-                    extent if math.isfinite(extent) else 0.0,
-                    clearance(seen, k),
-                    outline._resample is not None,
-                    lever,
-                ),
+                shape=k,
+                turn=facet_angle(outline),
+                angle=run_over(seen, k, time),
+                radius=abs(float(seen.radius[k])),
+                extent=extent if math.isfinite(extent) else 0.0,
+                clearance=clearance(seen, k),
+                known=outline._resample is not None,
+                lever=lever,
+                driven=driven(seen, k),
             )
         )
     return found
+
+
+def driven(seen: Survey, k: int) -> bool:
+    """Whether something turns this shape against teeth or slots, or those against it."""
+    mine = seen.pairs[(seen.pairs == k).any(axis=1) & seen.concave[seen.pairs].any(axis=1)]
+    own = seen.owner[mine].ravel()
+    return bool((seen.spin[own[~seen.moves[own]]] > 0.0).any())
+
+
+def tooth_lever(outline: Outline, reach: float) -> float:
+    """How far from the pitch point a tooth bears, over the radius: about a pitch, four times a tip's width."""
+    return min(1.0, 4.0 * tooth(outline) / reach)
 
 
 def clearance(seen: Survey, k: int) -> float:

@@ -11,7 +11,7 @@ import pymunk
 from numpy.typing import NDArray
 
 from . import estimates as est
-from .curves import MANY_TEETH, Facet, facets_of, pockets, tooth
+from .curves import MANY_TEETH, Facet, facets_of, pockets, tooth, tooth_lever
 from .survey import TOUCH, Array, Survey, support
 
 
@@ -31,7 +31,8 @@ class Facts:
     frame: float
     time: float
     tower: int  # layers of the highest pile
-    wanted: float  # sweeps with which its loads are found
+    wanted: float  # sweeps of Chipmunk's with which its loads are found
+    shared: bool  # whether a body of it lies on two
     flat: (
         Worst | None
     )  # how many times its depth a flush body sinks: what it carries, how near its base's edge it stands
@@ -51,13 +52,25 @@ class Facts:
     curves: Array  # (curves, 6): see `_curves`
     gap: tuple[float, int]  # least time between two touches in a row, body
     teeth: tuple[float, int]  # way of a tooth in a frame over its chord, shape
-    driven: tuple[
-        float, bool, int
-    ]  # fastest spin of teeth or slots (1/time), whether they engage anew, shape
+    driven: tuple[float, int]  # fastest spin of teeth or slots times their lever (1/time), shape
+    seat: float  # of those: chord on which a tooth bears over the square of the smaller extent (1/length), the least
+    tumbling: float  # fastest spin of what has corners (1/time)
+    offset: float  # of discs that are about to meet: speed times offset over R² (1/time), the largest
     facets: list[Facet]
     facet_share: float  # error that the facets of a curve sampled anew may have
     fixed_turns: dict[int, float]  # turns between facets that the user has asked for (radians)
     overlapped: tuple[float, int]  # deepest overlap at the start over the extent, pair
+
+    @property
+    def least_sweeps(self) -> int:
+        """With fewer sweeps its loads are not found."""
+        tips = self.corner is not None or self.leaning is not None
+        return est.LEAST_PILE_SWEEPS if tips or (self.piled and self.shared) else est.LEAST_SWEEPS
+
+    @property
+    def least_steps(self) -> int:
+        """With fewer substeps it may fall."""
+        return est.LEAST_PILE_STEPS if self.tower > 2 else 1
 
     @property
     def piled(self) -> bool:
@@ -74,8 +87,8 @@ def _worst(values: Array, among: NDArray[np.bool_]) -> Worst | None:
 
 def facts(seen: Survey, frame: float, time: float) -> Facts:
     """Reduce a survey to what decides over a time, in frames of that length."""
-    n, g, free, owner = len(seen.bodies), seen.g, seen.moves, seen.owner
-    layers, load, heavier = support(seen)
+    n, g, free, owner = len(seen.bodies), seen.g, seen.moves & ~seen.held, seen.owner
+    layers, load, heavier, shared = support(seen)
     ratio = np.where(free, load / np.where(free, seen.mass, 1.0), 1.0)
     a, b = owner[seen.pairs].T
     reached = seen.gaps <= TOUCH * seen.thickness[seen.pairs].min(axis=1, initial=math.inf)
@@ -104,7 +117,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
     carried = (
         np.maximum(np.maximum(layers, ratio), np.where(piled, heavier, 1.0))
         * crossings
-        / np.maximum(margin, 1e-3)
+        * est.leaning(np.maximum(margin, 1e-3), seen.reach / extent)
     )
     held = partners > 1  # by its neighbours: it leans, and does not fall over
     leaning = _worst(
@@ -120,6 +133,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         time=time,
         tower=tower,
         wanted=float(est.sweeps_wanted(float(tower), max(heavier, 1.0))),
+        shared=shared,
         flat=_worst(carried, free & polygon & ~corners & (g > 0.0)),
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
         corner=_worst(1.0 / extent, corners & upright & ~held),
@@ -138,6 +152,9 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         gap=_gap(seen),
         teeth=_teeth(seen, frame),
         driven=_driven(seen),
+        seat=_seat(seen),
+        tumbling=float(seen.spin[free & polygon].max(initial=0.0)),
+        offset=_offset(seen),
         facets=facets_of(seen, time),
         facet_share=0.0,
         fixed_turns={},
@@ -221,7 +238,7 @@ def _drops(seen: Survey) -> tuple[Array, NDArray[np.bool_], float]:
     touching = np.zeros(n, bool)
     close = seen.gaps <= TOUCH * seen.thickness[seen.pairs].min(axis=1, initial=math.inf)
     touching[seen.owner[seen.pairs[close]].ravel()] = True
-    falling = np.flatnonzero(seen.moves[seen.owner] & ~touching[seen.owner])
+    falling = np.flatnonzero((seen.moves & ~seen.held)[seen.owner] & ~touching[seen.owner])
     for start in range(0, len(falling), 256):  # in blocks: all against all
         k = falling[start : start + 256, None]
         below = (right > left[k]) & (left < right[k]) & (high <= low[k]) & (seen.owner != seen.owner[k])
@@ -299,22 +316,55 @@ def _teeth(seen: Survey, frame: float) -> tuple[float, int]:
     return worst, which
 
 
-def _driven(seen: Survey) -> tuple[float, bool, int]:
-    """The fastest spin among pairs with a concave outline (1/time), whether teeth engage anew, the shape.
+def _driven(seen: Survey) -> tuple[float, int]:
+    """The fastest spin among pairs with a concave outline that something drives, times its lever (1/time); the shape.
 
-    Gears from about a dozen teeth up hand over while another pair still bears (contact ratio above one); slots,
-    cams and hooks begin from nothing each time.
+    Gears from about a dozen teeth up hand over while another pair still bears (contact ratio above one), and bear as
+    far from the pitch point as a tooth is wide; slots, cams and hooks begin from nothing each time, anywhere.
     """
-    fastest, anew, which = 0.0, False, -1
+    fastest, which = 0.0, -1
     for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
-        spin = float(max(seen.spin[seen.owner[i]], seen.spin[seen.owner[j]]))
-        if spin <= 0.0 or seen.g > 0.0:
+        own = seen.owner[[i, j]]
+        driver = own[~seen.moves[own]]
+        spin = float(seen.spin[driver].max(initial=0.0)) if seen.g > 0.0 else float(seen.spin[own].max())
+        if spin <= 0.0:
             continue
         outlines = [seen.shapes[k].outline for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
-        few = min(map(pockets, outlines)) < MANY_TEETH
-        if (few, spin) > (anew, fastest):
-            fastest, anew, which = spin, few, int(i)
-    return fastest, anew, which
+        lever = 1.0
+        if min(map(pockets, outlines)) >= MANY_TEETH:  # twice: the pair that takes over is met a substep late
+            lever = 2.0 * max(
+                tooth_lever(seen.shapes[k].outline, float(seen.reach[seen.owner[k]]))  # type: ignore[attr-defined]
+                for k in (i, j)
+                if seen.concave[k]
+            )
+        if lever * spin > fastest:
+            fastest, which = lever * spin, int(i)
+    return fastest, which
+
+
+def _seat(seen: Survey) -> float:
+    """Of what is driven with teeth or slots: its chord over s², the least (1/length); infinite without."""
+    least = math.inf
+    for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
+        own = seen.owner[[i, j]]
+        if seen.spin[own[~seen.moves[own]]].max(initial=0.0) > 0.0:
+            chords = [tooth(seen.shapes[k].outline) for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
+            least = min(least, min(chords) / float(seen.extent[own].min()) ** 2)
+    return least
+
+
+def _offset(seen: Survey) -> float:
+    """Of discs that may meet: v b/R², the largest (1/time). See `estimates.late_direction`."""
+    if not len(seen.pairs):
+        return 0.0
+    i, j = seen.pairs.T
+    middle = 0.5 * (seen.boxes[:, :2] + seen.boxes[:, 2:])
+    way = seen.velocity[seen.owner[i]] - seen.velocity[seen.owner[j]]
+    apart = middle[i] - middle[j]
+    radius = seen.radius[i] + seen.radius[j]
+    both = (seen.radius[i] > 0.0) & (seen.radius[j] > 0.0)
+    missed = np.abs(way[:, 0] * apart[:, 1] - way[:, 1] * apart[:, 0])  # speed times offset
+    return float(np.max(np.where(both, missed, 0.0) / np.where(both, radius, 1.0) ** 2, initial=0.0))
 
 
 def _overlapped(seen: Survey) -> tuple[float, int]:

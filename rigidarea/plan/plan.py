@@ -19,6 +19,7 @@ from . import costs, elastic
 from . import estimates as est
 from .curves import FACETS
 from .facts import AHEAD, Facts, facts
+from .parts import Part, parts_of
 from .predict import Cause, Setting, causes, total
 from .survey import survey
 
@@ -58,8 +59,9 @@ class Plan:
     `level`: "rigid" (area contact) or "pymunk" (Chipmunk's own response); `steps` substeps a frame of `frame` (time);
     `sweeps` a substep; `penetration`, the fraction of a body's smallest extent that contacts may sink by, or
     `stiffness` where it was given; `sampling`, the sagitta of each curved outline that is sampled anew (length).
-    `error` is predicted, `cost_s_per_s` too (processor time over simulated time). `reachable`: whether any setting
-    is predicted to be within the tolerance; where none is, the plan is the one with the least predicted error.
+    `finer`: bodies whose islands take more substeps than `steps`, and how many. `error` is predicted, `cost_s_per_s`
+    too (processor time over simulated time). `reachable`: whether any setting is predicted to be within the tolerance;
+    where none is, the plan is the one with the least predicted error.
     """
 
     def __init__(
@@ -79,6 +81,9 @@ class Plan:
         self.level, self.steps, self.sweeps, self.penetration = "rigid", 2, 10, 2e-4
         self.stiffness: float | None = None
         self.sampling: dict[pymunk.Shape, float] = {}
+        self.finer: dict[pymunk.Body, int] = {}
+        self._parts: list[tuple[Part, int]] = []
+        self._asked: set[pymunk.Body] = set()
         self.reachable = False
         self.error = self.cost_s_per_s = math.inf
         self.causes: list[Cause] = []
@@ -96,15 +101,14 @@ class Plan:
         sampled = dict(self.sampling)
         if keep:
             given["level"] = self.level
-        before = self.steps, self.sweeps, self.penetration
+        before, finer = (self.steps, self.sweeps, self.penetration), dict(self.finer)
         current = attached(self.space)
         self.stiffness = given.get("stiffness", current.stiffness if current is not None else None)
         seen = survey(self.space, min(self.seconds, AHEAD * self.frame), self.frame)
         found = facts(seen, self.frame, self.seconds)
         self._asked_turns(found)
         self._survey, self._facts = seen, found
-        touching = int((seen.gaps <= 0.0).sum())
-        moving = int(seen.moves.sum())
+        touching, moving = _touching(found), _moving(found)
         best: tuple[float, float, Setting] | None = None
         least: tuple[float, float, Setting] | None = None
         for setting in self._candidates(found, given):
@@ -123,8 +127,21 @@ class Plan:
             chosen = Setting(self.level, int(steps), int(sweeps), depth)
             self.error, cost = total(found, chosen), _cost(chosen, moving, touching)
             self.reachable = self.error <= MARGIN * self.tolerance
+        self._parts = []
+        if chosen.level == "rigid" and "steps" not in given:
+            apart = self._apart(given, cost if best or keep else math.inf, chosen if keep else None)
+            if apart is not None:
+                chosen, cost, self._parts = apart
+                self.reachable = True
         self.level, self.steps, self.sweeps, self.penetration = chosen
         self.causes = causes(found, chosen)
+        if self._parts:
+            told = [
+                cause for part, n in self._parts for cause in causes(part.facts, chosen._replace(steps=n))
+            ]
+            self.causes = sorted(told, key=lambda cause: -cause.error)
+            self.error = self.causes[0].error if self.causes else 0.0
+        self.finer = self._finer(finer if keep else {})
         if keep:
             self.sampling = sampled
         else:
@@ -140,11 +157,8 @@ class Plan:
         """Settings to weigh: of each number of steps and sweeps the penetration that suits it best."""
         steps = (given["steps"],) if "steps" in given else STEPS
         piled = found.piled
-        tips = found.corner is not None
-        least = est.LEAST_PILE_SWEEPS if piled or tips else est.LEAST_SWEEPS
-        most = max(
-            2 * least, found.wanted / 2.0
-        )  # with more of them, more is conjugate: it helps heavy loads alone
+        least = found.least_sweeps
+        most = 2 * est.LEAST_PILE_SWEEPS  # beyond, substeps help more
         sweeps = (given["sweeps"],) if "sweeps" in given else tuple(n for n in SWEEPS if least <= n <= most)
         if not piled:
             sweeps = sweeps[:1]
@@ -161,8 +175,63 @@ class Plan:
         native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
         if native:
             slop = given.get("penetration", SLOP * self.tolerance / found.tower)
-            out += [Setting("pymunk", n, m, slop) for n in steps for m in sweeps]
+            native_sweeps = (given["sweeps"],) if "sweeps" in given else SWEEPS if piled else SWEEPS[:1]
+            out += [Setting("pymunk", n, m, slop) for n in steps for m in native_sweeps]
         return out
+
+    def _apart(
+        self, given: dict[str, Any], whole: float, least: Setting | None
+    ) -> tuple[Setting, float, list[tuple[Part, int]]] | None:
+        """Each part's own substeps, where that is cheaper than the `whole` costs (s a frame); None where it is not.
+
+        Sweeps and penetration are the space's: the most, and the least, that a part wants. least: no coarser than that.
+        """
+        parts = parts_of(self._survey, self.space, self.frame, self.seconds)
+        if len(parts) < 2:
+            return None
+        best = []
+        for part in parts:
+            self._asked_turns(part.facts)
+            good = [
+                (self._cost_of(part, setting), setting)
+                for setting in self._candidates(part.facts, {**given, "level": "rigid"})
+                if total(part.facts, setting) <= MARGIN * self.tolerance
+            ]
+            if not good:
+                return None
+            best.append(min(good)[1])
+        sweeps = max([setting.sweeps for setting in best] + ([least.sweeps] if least else []))
+        found = None
+        for depth in sorted({setting.penetration for setting in best}):
+            if least is not None and depth > least.penetration:
+                continue
+            told = []
+            for part in parts:
+                each = (n for n in STEPS if self._within(part, Setting("rigid", n, sweeps, depth)))
+                told.append((part, next(each, 0)))
+            if not all(n for _, n in told):
+                continue
+            steps = [(_moving(part.facts), _touching(part.facts), n) for part, n in told]
+            cost = costs.turns_frame(steps, sweeps)
+            if cost < whole and (found is None or cost < found[1]):
+                found = Setting("rigid", min(n for _, n in told), sweeps, depth), cost, told
+        return found
+
+    def _within(self, part: Part, setting: Setting) -> bool:
+        return total(part.facts, setting) <= MARGIN * self.tolerance
+
+    def _cost_of(self, part: Part, setting: Setting) -> float:
+        return _cost(setting, _moving(part.facts), _touching(part.facts))
+
+    def _finer(self, before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:
+        """Bodies whose islands take more than the space: as planned, as before at least, as the user says."""
+        wanted = {body: n for part, n in self._parts for body in part.bodies}
+        for body, n in before.items():
+            wanted[body] = max(n, wanted.get(body, 0))
+        for target, settings in self.overrides.items():
+            if isinstance(target, pymunk.Body) and "steps" in settings:
+                wanted[target] = settings["steps"]
+        return {body: n for body, n in wanted.items() if n > self.steps and body.space is self.space}
 
     def _asked_turns(self, found: Facts) -> None:
         """The share that facets may have, and what has been asked for."""
@@ -190,7 +259,8 @@ class Plan:
         """Say otherwise, and plan the rest around it; None takes a word back. Returns the plan.
 
         target None: the whole space: level ("rigid", "pymunk"), steps, sweeps, penetration, stiffness. A shape:
-        sampling (sagitta, length). A body with a material: level ("rigid", "compliant", "modal").
+        sampling (sagitta, length). A body: steps, at least so many for its island; with a material: level ("rigid",
+        "compliant", "modal").
         Raises ValueError for what is none of these, before anything has changed.
         """
         checked = {}
@@ -225,7 +295,13 @@ class Plan:
                 space.collision_slop = self.penetration * smallest
             return None
         if current is None:
-            return attach(space, self.stiffness, penetration=self.penetration)
+            current = attach(space, self.stiffness, penetration=self.penetration)
+        for body in self._asked - self.finer.keys():
+            if body.space is space:
+                current.ask(body, None)
+        for body, steps in self.finer.items():
+            current.ask(body, steps)
+        self._asked = set(self.finer)
         if current.stiffness != self.stiffness:
             current.stiffness = self.stiffness
         current.penetration = self.penetration
@@ -283,6 +359,25 @@ class Plan:
                     cause.who,
                 )
             )
+        for part, steps in self._parts:
+            worst = max(
+                causes(part.facts, self._setting(steps)), key=lambda cause: cause.error, default=worst
+            )
+            first = part.bodies[0]
+            out.append(
+                Line(
+                    f"{len(part.bodies)} {part.kind}",
+                    f"{steps} substeps",
+                    f"{worst.name}: {worst.number}",
+                    worst.error,
+                    self._cost_of(part, self._setting(steps)),
+                    first,
+                )
+            )
+        for target, settings in self.overrides.items():
+            if isinstance(target, pymunk.Body) and "steps" in settings:
+                text = f"{settings['steps']} substeps for its island (yours)"
+                out.append(Line(self._name(target), text, "", float("nan"), 0.0, target))
         for shape, sagitta in self.sampling.items():
             yours = " (yours)" if "sampling" in self.overrides.get(shape, {}) else ""
             turn = est.facet_turn(abs(float(seen.radius[seen.shapes.index(shape)])) or 1.0, sagitta)
@@ -321,6 +416,9 @@ class Plan:
                 )
             )
         return out
+
+    def _setting(self, steps: int) -> Setting:
+        return Setting(self.level, steps, self.sweeps, self.penetration)
 
     @property
     def idle_speed(self) -> float:
@@ -375,6 +473,16 @@ class Plan:
         return f"plan for {self.tolerance:g} over {self.seconds:g} s: {verdict} {self.error:.1e}\n{table}"
 
 
+def _moving(found: Facts) -> int:
+    """How many bodies move."""
+    return int(found.seen.moves.sum())
+
+
+def _touching(found: Facts) -> int:
+    """How many pairs touch."""
+    return int((found.seen.gaps <= 0.0).sum())
+
+
 def _cost(setting: Setting, bodies: int, pairs: int) -> float:
     if setting.level == "pymunk":
         return costs.native_frame(bodies, setting.steps, setting.sweeps)
@@ -391,10 +499,10 @@ def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, A
         allowed: tuple[str, ...] = SETTINGS[:-1]
     elif isinstance(target, pymunk.Shape):
         allowed = ("sampling",)
-    elif isinstance(target, pymunk.Body) and target in materials:
-        allowed = ("level",)
+    elif isinstance(target, pymunk.Body):
+        allowed = ("steps", "level") if target in materials else ("steps",)
     else:
-        raise ValueError(f"expected None, a shape, or a body with a material to override, got {target!r}")
+        raise ValueError(f"expected None, a shape, or a body to override, got {target!r}")
     if name not in allowed:
         raise ValueError(f"expected one of {', '.join(allowed)} to override here, got {name!r}")
     if value is None:

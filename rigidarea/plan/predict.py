@@ -77,10 +77,11 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         error = LEAN * math.sqrt(p) + 0.5 * g * h * h * f.leaning.value
         told.append(Cause("corner", error, bodies[f.leaning.body], f"leans on a corner, sqrt({p:.0e})"))
     if f.pile:
-        error = est.pile_sag(g, h, 1.0 / f.pile.value, f.wanted, s.sweeps)
-        if s.sweeps < est.LEAST_PILE_SWEEPS or s.steps < est.LEAST_PILE_STEPS:
+        wanted = est.sweeps_ours(f.wanted, f.shared)
+        error = est.pile_sag(g, h, 1.0 / f.pile.value, wanted, s.sweeps)
+        if s.sweeps < f.least_sweeps or s.steps < f.least_steps:
             error = max(error, LOST)
-        text = f"{f.wanted:.0f} sweeps carry its load, {f.tower} high" + (
+        text = f"{wanted:.0f} sweeps carry its load, {f.tower} high" + (
             f", {f.crossings:.0f} seams" * (f.crossings > 1.0)
         )
         told.append(Cause("pile", float(error), bodies[f.pile.body], text))
@@ -98,25 +99,16 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         if phase2 < FOLLOWED:
             told.append(Cause("followed", FOLLOWED_BOUNCE, None, f"(w h)² = {phase2:.2g} < {FOLLOWED}"))
     for rate, extent, rho, who, lasts, bounces in f.curves:
-        pressed = 1.0 + rate * rho / g  # k follows the load, and here it is g + v²/rho
+        pressed = 1.0 + rate * rho / g  # k follows the load on the average, and here it is g + v²/rho
         lost = est.curve_loss(math.sqrt(rate), 1.0, h, lasts, est.resting_phase2(g * pressed, h, p, extent))
-        told.append(
-            Cause(
-                "curve",
-                min(LOST, lost),
-                bodies[int(who)],
-                f"turns by {math.sqrt(rate) * h:.1e} rad a substep",
-            )
-        )
-        sinks = p * max(pressed, extent / rho) / (TANGENT_STIFFNESS if f.rough else 1.0)
-        told.append(
-            Cause(
-                "sinking",
-                min(LOST, sinks),
-                bodies[int(who)],
-                f"{p * extent / rho:.1e} of its clearance or path",
-            )
-        )
+        sinks = p * max(pressed, pressed ** (2.0 / 3.0) * extent / rho)  # an arc's lens is d^(3/2)
+        if f.rough:
+            lost *= ROLLING
+            sinks /= TANGENT_STIFFNESS
+        turns = f"turns by {math.sqrt(rate) * h:.1e} rad a substep"
+        told.append(Cause("curve", min(LOST, lost + sinks), bodies[int(who)], turns))
+        text = f"{p * extent / rho:.1e} of its clearance or path"
+        told.append(Cause("sinking", min(LOST, sinks), bodies[int(who)], text))
         if (
             bounces
         ):  # about as fast as from its side: how deep that goes over the clearance, and where touch lies
@@ -124,6 +116,12 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
             late = float(est.bounce_error(g, h, math.sqrt(2.0 * g * rho)))
             told.append(
                 Cause("bounce", min(LOST, max(deep, late)), bodies[int(who)], f"in a clearance of {rho:.2g}")
+            )
+    if g > 0.0 and math.isfinite(f.seat):
+        most = max(est.driven_penetration(g, h, f.seat), STIFFEST)
+        if p > most:
+            told.append(
+                Cause("teeth give", LOST, f.seen.shapes[f.driven[1]], f"p <= {most:.0e}, or they swing")
             )
     depth, pair = f.overlapped
     if depth > ALREADY:
@@ -139,6 +137,10 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
     return told + _shared(f, s, h)
 
 
+#: Penetration that is as good as none.
+STIFFEST = 1e-9
+#: What friction rolls along a curve loses so many times as much.
+ROLLING = 1.5
 #: What leans has a corner at either end, and each sinks.
 LEAN = 2.0
 #: A tower is planned as if so many times as high: buckling grows slowly near its limit.
@@ -157,11 +159,11 @@ def _shared(f: Facts, s: Setting, h: float) -> list[Cause]:
             )
         )
     if f.driven[0] > 0.0:
-        turn = f.driven[0] * h
-        error = 0.5 * turn if f.driven[1] else turn * turn
-        told.append(
-            Cause("drive", min(LOST, error), f.seen.shapes[f.driven[2]], f"turns by {turn:.1e} rad a substep")
-        )
+        turn = (
+            f.driven[0] * h
+        )  # within a substep the direction stays: the ratio is off by that at half its turn
+        text = f"turns by {turn:.1e} rad a substep, where it bears"
+        told.append(Cause("drive", min(LOST, 0.5 * turn), f.seen.shapes[f.driven[1]], text))
     if f.teeth[0] > s.steps:
         told.append(
             Cause(
@@ -187,8 +189,8 @@ def _native(f: Facts, s: Setting) -> list[Cause]:
     if g > 0.0:
         told.append(Cause("first order", h / f.time, None, f"h/T = {h / f.time:.1e}"))
     else:  # impulses are exact; the direction in which they act is that of the step after touch
-        late = f.seen.apart * h / float(f.seen.extent.min(initial=math.inf))
-        told.append(Cause("first order", min(LOST, late), None, f"v h/s = {late:.1e}"))
+        late = max(f.offset * h, h / f.time, f.tumbling * h)
+        told.append(Cause("first order", min(LOST, late), None, f"met {h:.1e} late"))
     if f.landing:
         error = g * h * f.landing.value
         told.append(Cause("landing", min(LOST, error), bodies[f.landing.body], f"g h/v = {error:.1e}"))

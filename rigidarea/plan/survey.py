@@ -34,10 +34,12 @@ class Survey(NamedTuple):
     gravity: tuple[float, float]
     mass: Array  # (bodies,), infinite where nothing moves it
     moment: Array
+    velocity: Array  # (bodies, 2)
     speed: Array
     spin: Array
     extent: Array  # (bodies,) smallest extent of its shapes (length); infinite where nothing moves it
     reach: Array  # (bodies,) half the diagonal of what it covers (length)
+    held: NDArray[np.bool_]  # (bodies,) by a pivot on what does not move: it does not fall
     owner: Ints  # (shapes,) body
     boxes: Array  # (shapes, 4) left, bottom, right, top
     thickness: Array  # (shapes,) smallest extent (length)
@@ -191,10 +193,12 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         gravity=gravity,
         mass=mass,
         moment=moment,
+        velocity=velocity,
         speed=speed,
         spin=np.abs(spin),
         extent=extent,
         reach=reach,
+        held=_held(space, index, free),
         owner=owner,
         boxes=boxes,
         thickness=table[:, 5],
@@ -268,15 +272,26 @@ def _apart(a: pymunk.Shape, b: pymunk.Shape) -> bool:
     return not (one.categories & other.mask and other.categories & one.mask)
 
 
+def _held(space: pymunk.Space, index: dict[pymunk.Body, int], free: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """(bodies,) which are held by a pivot on a body that does not move on its own."""
+    found = np.zeros(len(free), bool)
+    for joint in space.constraints:
+        if isinstance(joint, pymunk.PivotJoint):
+            a, b = (index.get(body, -1) for body in (joint.a, joint.b))
+            found[b] |= b >= 0 and (a < 0 or not free[a])
+            found[a] |= a >= 0 and (b < 0 or not free[b])
+    return found & free
+
+
 def joined(space: pymunk.Space) -> set[frozenset[pymunk.Body]]:
     """Pairs of bodies that a joint keeps from colliding."""
     return {frozenset((joint.a, joint.b)) for joint in space.constraints if not joint.collide_bodies}
 
 
-def support(seen: Survey) -> tuple[Ints, Array, float]:
+def support(seen: Survey) -> tuple[Ints, Array, float, bool]:
     """How many bodies stand below each (layers, 1 on the ground), and what each carries, its own mass included (mass).
 
-    And the largest mass of a body over that of one below it.
+    And the largest mass of a body over that of one below it, and whether a body lies on two.
 
     Loads go down along the pairs that touch, from the highest body on, shared alike by all that lie below.
     """
@@ -287,7 +302,7 @@ def support(seen: Survey) -> tuple[Ints, Array, float]:
     )
     pairs = seen.owner[seen.pairs[touching]]
     if not len(pairs) or seen.g == 0.0:
-        return layers, load, 1.0
+        return layers, load, 1.0, False
     boxes = seen.boxes
     middle = np.zeros((n, 2))
     weight = np.zeros(n)
@@ -315,4 +330,5 @@ def support(seen: Survey) -> tuple[Ints, Array, float]:
             deep[u] = 1 + max((deep[lo] for lo in below[u] if free[lo]), default=0)
     light = seen.moves[upper] & seen.moves[lower]
     heavier = float((seen.mass[upper[light]] / seen.mass[lower[light]]).max(initial=1.0))
-    return np.array(deep), np.array(carried), heavier
+    shared = any(free[u] and len(set(under)) > 1 for u, under in enumerate(below))
+    return np.array(deep), np.array(carried), heavier, shared

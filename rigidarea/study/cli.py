@@ -15,6 +15,7 @@ from ..report import lines, output_arguments, write_json
 BENCHES = {
     "everyday": "game scenes at the defaults, beside pymunk at 1 and 4 steps a frame and Box2D",
     "frames": "crowds of up to 10,000 bodies",
+    "islands": "a pile, gears and balls in one level, each in its own substeps",
     "kernels": "one overlap, beside shapely",
     "memory": "of a crowd, a body",
     "sleep": "a sleeping pyramid of 5,050 boxes",
@@ -148,7 +149,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, page, start
+    from . import bench, draw, draw_bench, everyday, islands, page, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -176,6 +177,8 @@ def _bench(arguments: argparse.Namespace) -> int:
     elif arguments.what == "kernels":
         report = bench.kernels(arguments.scene)
         draw.kernel_times(report, arguments.out)
+    elif arguments.what == "islands":
+        report = islands.islands()
     elif arguments.what == "step":
         report = start.step()
     elif arguments.what == "start":

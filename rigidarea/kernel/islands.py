@@ -1,0 +1,189 @@
+"""Which bodies go through a frame together, and in how many substeps.
+
+An island is what is near one another, or jointed, directly or through others that move; what does not move parts
+islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast or
+delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
+(`tables.live`) and pairs (from counters[FIRST] to counters[LAST] of `tables.near`) alone.
+
+Near is what a search has found for the whole frame. A blow within it may carry a body further: then two turns meet
+(counters[MET]), and the frame is run again as one.
+"""
+
+from __future__ import annotations
+
+import math
+
+from .constants import FEATURE, MOST_SUBSTEPS
+from .jit import kernel
+from .pool import Pool
+from .solve import arrange, bound, turn_of
+from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TURN, TURNED, Tables
+
+#: More substeps than any turn has.
+FINEST = 1 << 30
+
+
+@kernel
+def demand(pool: Pool, tables: Tables, dt: float, n: int, teeth: bool) -> int:
+    """How many substeps each body wants in a frame of dt, n at least; the most that any does.
+
+    What it has been asked for (`asked`). teeth: also as many as no outline needs to pass a tooth of a concave one
+    unseen. Convex bodies are met wherever they come (`meet`); teeth, slots and hooks move under a contact that is
+    there already, by no more than a FEATURE of the chord on which such an outline lies.
+    """
+    most = n
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        body.wants = n
+        if body.kind != FIXED:
+            body.wants = max(n, body.asked)
+            most = max(most, body.wants)
+    if not teeth:
+        return most
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        if sa.left > sb.right or sb.left > sa.right or sa.bottom > sb.top or sb.bottom > sa.top:
+            continue
+        face = math.inf
+        for shape in (sa, sb):
+            head = pool.heads[shape.outline]
+            if not head.convex and not head.disc:
+                face = min(face, head.face)
+        if face == math.inf:
+            continue
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        way = math.hypot(a.vx - b.vx, a.vy - b.vy)
+        way += abs(a.w) * max(sa.half_x, sa.half_y) + abs(b.w) * max(sb.half_x, sb.half_y)
+        wants = int(min(max(1.0, way * dt / (FEATURE * face)), float(MOST_SUBSTEPS))) + 1
+        a.wants = max(a.wants, wants)
+        b.wants = max(b.wants, wants)
+        most = max(most, wants)
+    return most
+
+
+@kernel
+def everybody(tables: Tables, gx: float, gy: float) -> None:
+    """All bodies and pairs in one turn; (gx, gy) gravity, by which pairs are sorted."""
+    counters = tables.counters
+    counters[TURN] = 0
+    counters[LIVE] = counters[BODIES]
+    for i in range(counters[BODIES]):
+        tables.live[i] = i
+    if counters[TURNED]:
+        counters[TURNED] = 0
+        arrange(tables, gx, gy)
+    counters[FIRST] = 0
+    counters[LAST] = counters[NEAR]
+
+
+@kernel
+def _root(tables: Tables, i: int) -> int:
+    """The body that stands for the island of body i (union-find with halving: Tarjan & van Leeuwen 1984)."""
+    bodies = tables.bodies
+    while bodies[i].island != i:
+        bodies[i].island = bodies[bodies[i].island].island
+        i = bodies[i].island
+    return i
+
+
+@kernel
+def connect(tables: Tables, i: int, j: int) -> None:
+    """The islands of bodies i and j are one; nothing where one of the two does not move (or is none: -1)."""
+    if i < 0 or j < 0 or tables.bodies[i].kind == FIXED or tables.bodies[j].kind == FIXED:
+        return
+    i = _root(tables, i)
+    j = _root(tables, j)
+    if i != j:
+        tables.bodies[max(i, j)].island = min(i, j)
+
+
+@kernel
+def part(tables: Tables) -> None:
+    """Every body for itself, then what is near is one."""
+    for i in range(tables.counters[BODIES]):
+        tables.bodies[i].island = i
+    for k in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[k]]
+        connect(tables, tables.shapes[pair.a].body, tables.shapes[pair.b].body)
+
+
+@kernel
+def number(tables: Tables, gx: float, gy: float) -> int:
+    """Each island takes as many substeps as the body of it that wants most; how many numbers: 0, 1, or 2 for more.
+
+    After `part` and `connect`. Leaves the near pairs turn by turn.
+    """
+    counters = tables.counters
+    bodies = tables.bodies
+    for i in range(counters[BODIES]):
+        bodies[i].steps = bodies[i].wants if bodies[i].kind != FIXED else 0
+    for i in range(counters[BODIES]):
+        if bodies[i].kind != FIXED:
+            root = _root(tables, i)
+            bodies[root].steps = max(bodies[root].steps, bodies[i].steps)
+    first = 0
+    numbers = 0
+    for i in range(counters[BODIES]):
+        if bodies[i].kind != FIXED:
+            bodies[i].steps = bodies[_root(tables, i)].steps
+            if numbers == 0:
+                first = bodies[i].steps
+                numbers = 1
+            elif bodies[i].steps != first:
+                numbers = 2
+    moved = counters[TURNED] == 0
+    for k in range(counters[NEAR]):
+        pair = tables.pairs[tables.near[k]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        moved |= pair.turn != turn_of(a, b)
+    counters[TURNED] = 1
+    if moved:
+        arrange(tables, gx, gy)
+    counters[MET] = 0
+    return numbers
+
+
+@kernel
+def next_turn(tables: Tables, last: int) -> int:
+    """The largest number of substeps below `last` that an island takes; 0: there is none.
+
+    Its bodies and pairs are live then. What does not move belongs to every turn.
+    """
+    counters = tables.counters
+    turn = 0
+    for i in range(counters[BODIES]):
+        steps = tables.bodies[i].steps
+        if steps < last:
+            turn = max(turn, steps)
+    counters[TURN] = turn
+    n = 0
+    for i in range(counters[BODIES]):
+        if tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn:
+            tables.live[n] = i
+            n += 1
+    counters[LIVE] = n
+    bound(tables)
+    return turn
+
+
+@kernel
+def share_kicks(tables: Tables, n: int) -> None:
+    """Of what a frame adds to the velocities of those that are live, a substep's share."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.kick_x = body.gain_x / n
+        body.kick_y = body.gain_y / n
+        body.kick_w = body.gain_w / n
+
+
+@kernel
+def note(tables: Tables, n: int) -> None:
+    """Those that are live have taken n substeps."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.kind != FIXED:
+            body.taken = n
