@@ -54,7 +54,6 @@ class Facts:
     gap: tuple[float, int]  # least time between two touches in a row, body
     teeth: tuple[float, int]  # way of a tooth in a frame over its chord, shape
     driven: tuple[float, int]  # fastest spin of teeth or slots times their lever (1/time), shape
-    seat: float  # of those: chord on which a tooth bears over the square of the smaller extent (1/length), the least
     tumbling: float  # fastest spin of what has corners (1/time)
     offset: float  # of discs that are about to meet: speed times offset over R² (1/time), the largest
     facets: list[Facet]
@@ -154,7 +153,6 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         gap=_gap(seen),
         teeth=_teeth(seen, frame),
         driven=_driven(seen),
-        seat=_seat(seen),
         tumbling=float(seen.spin[free & polygon].max(initial=0.0)),
         offset=_offset(seen),
         facets=facets_of(seen, time),
@@ -349,17 +347,6 @@ def _driven(seen: Survey) -> tuple[float, int]:
         if lever * spin > fastest:
             fastest, which = lever * spin, int(i)
     return fastest, which
-
-
-def _seat(seen: Survey) -> float:
-    """Of what is driven with teeth or slots: its chord over s², the least (1/length); infinite without."""
-    least = math.inf
-    for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
-        own = seen.owner[[i, j]]
-        if seen.spin[own[~seen.moves[own]]].max(initial=0.0) > 0.0:
-            chords = [tooth(seen.shapes[k].outline) for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
-            least = min(least, min(chords) / float(seen.extent[own].min()) ** 2)
-    return least
 
 
 def _offset(seen: Survey) -> float:
