@@ -89,8 +89,11 @@ def facets_of(seen: Survey, time: float) -> list[Facet]:
             continue
         near = seen.owner[seen.pairs[(seen.pairs == k).any(axis=1)]].ravel()
         extent = float(seen.extent[near].min(initial=math.inf))
-        if seen.concave[k]:
-            lever = tooth_lever(outline, float(seen.reach[seen.owner[k]]))
+        reach = float(seen.reach[seen.owner[k]])
+        if seen.concave[k] and pockets(outline) >= MANY_TEETH:
+            lever = tooth_lever(outline, reach)
+        elif seen.concave[k]:  # the ends of slots
+            lever = min(1.0, abs(float(seen.radius[k])) / reach)
         else:  # against what is straight a pin's facets turn nothing; they lift it, so far from where it turns about
             middle = 0.5 * (seen.boxes[k, :2] + seen.boxes[k, 2:])
             arm = math.dist(middle, seen.bodies[seen.owner[k]].position)

@@ -66,15 +66,6 @@ def resting_phase2(gravity: Number, h: float, p: Number, extent: Number) -> Numb
     return gravity * h * h / (p * extent)
 
 
-def driven_penetration(gravity: Number, h: float, seat: Number) -> Number:
-    """p with which teeth that are driven do not swing on their contact (dimensionless): g h² L/s².
-
-    k goes by the weight, m g/(p s²), so that a tooth of chord L has (w h)² = g h² L/(p s²). A drive asks for speeds,
-    not for depths: from w h = 1 on a contact takes back within a substep what it is off, and does not swing.
-    """
-    return gravity * h * h * seat
-
-
 def drift_of_phase(frequency: Number, h: float, time: float) -> Number:
     """Phase that leapfrog gains on an oscillation in a time (radians): (w h)²/24 · w T.
 
@@ -249,7 +240,7 @@ def sweeps_wanted(layers: Number, ratio: Number) -> Number:
     """Sweeps of Gauss and Seidel with which a load has gone through a pile (dimensionless): CARRY n sqrt(ratio).
 
     A chain of n masses has modes whose squared frequencies reach from about (pi/2n)² to 4, and conjugate sweeps
-    take half the root of that quotient for each e-fold: 2 n/pi (Hestenes and Stiefel 1952); ln(10⁴) of them are 6
+    take half the root of that quotient for each e-fold: 2 n/pi (Hestenes and Stiefel 1952); ln(100) of them are 3
     n. `ratio`: the mass of a body over that of one below it, whose root widens the quotient. Fewer of ours do where
     nothing is shared (`sweeps_ours`).
     """
@@ -280,8 +271,8 @@ def pile_sag(gravity: Number, h: float, extent: Number, wanted: Number, sweeps: 
 
 # --- numbers that are not derived ----------------------------------------------------------------------------------
 
-CARRY = 6.0
-"""Conjugate sweeps a layer: (2/pi) ln(10⁴), 5.9 (dimensionless). A pyramid of 25 rows is within 1 % with that."""
+CARRY = 3.0
+"""Conjugate sweeps a layer: (2/pi) ln(100), which is 2.9 (dimensionless)."""
 LEAST_SWEEPS, LEAST_PILE_SWEEPS = 5, 10
 """Of a body on a fixed one, whose normal forces at a face's two ends and friction answer to each other, and of a
 tower; and of a pile whose supports are shared, or of a body that tips from one end of its face to the other. The

@@ -53,8 +53,8 @@ class Facts:
     curves: Array  # (curves, 7): see `_curves`
     gap: tuple[float, int]  # least time between two touches in a row, body
     teeth: tuple[float, int]  # way of a tooth in a frame over its chord, shape
-    driven: tuple[float, int]  # fastest spin of teeth or slots times their lever (1/time), shape
-    seat: float  # of those: chord on which a tooth bears over the square of the smaller extent (1/length), the least
+    driven: tuple[float, int]  # fastest spin of teeth times their lever (1/time), shape
+    slots: tuple[float, int]  # fastest spin of slots, cams and hooks (1/time), shape
     tumbling: float  # fastest spin of what has corners (1/time)
     offset: float  # of discs that are about to meet: speed times offset over R² (1/time), the largest
     facets: list[Facet]
@@ -153,8 +153,8 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         curves=_curves(seen, time),
         gap=_gap(seen),
         teeth=_teeth(seen, frame),
-        driven=_driven(seen),
-        seat=_seat(seen),
+        driven=_driven(seen, True),
+        slots=_driven(seen, False),
         tumbling=float(seen.spin[free & polygon].max(initial=0.0)),
         offset=_offset(seen),
         facets=facets_of(seen, time),
@@ -325,11 +325,12 @@ def _teeth(seen: Survey, frame: float) -> tuple[float, int]:
     return worst, which
 
 
-def _driven(seen: Survey) -> tuple[float, int]:
+def _driven(seen: Survey, many: bool) -> tuple[float, int]:
     """The fastest spin among pairs with a concave outline that something drives, times its lever (1/time); the shape.
 
     Gears from about a dozen teeth up hand over while another pair still bears (contact ratio above one), and bear as
-    far from the pitch point as a tooth is wide; slots, cams and hooks begin from nothing each time, anywhere.
+    far from the pitch point as a tooth is wide; slots, cams and hooks (not many) begin from nothing each time,
+    anywhere.
     """
     fastest, which = 0.0, -1
     for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
@@ -339,9 +340,11 @@ def _driven(seen: Survey) -> tuple[float, int]:
         if spin <= 0.0:
             continue
         outlines = [seen.shapes[k].outline for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
+        if (min(map(pockets, outlines)) >= MANY_TEETH) != many:
+            continue
         lever = 1.0
-        if min(map(pockets, outlines)) >= MANY_TEETH:  # twice: the pair that takes over is met a substep late
-            lever = 2.0 * max(
+        if many:  # with that of the pair before and of the pair after, which are met a substep late
+            lever = 3.0 * max(
                 tooth_lever(seen.shapes[k].outline, float(seen.reach[seen.owner[k]]))  # type: ignore[attr-defined]
                 for k in (i, j)
                 if seen.concave[k]
@@ -349,17 +352,6 @@ def _driven(seen: Survey) -> tuple[float, int]:
         if lever * spin > fastest:
             fastest, which = lever * spin, int(i)
     return fastest, which
-
-
-def _seat(seen: Survey) -> float:
-    """Of what is driven with teeth or slots: its chord over s², the least (1/length); infinite without."""
-    least = math.inf
-    for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
-        own = seen.owner[[i, j]]
-        if seen.spin[own[~seen.moves[own]]].max(initial=0.0) > 0.0:
-            chords = [tooth(seen.shapes[k].outline) for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
-            least = min(least, min(chords) / float(seen.extent[own].min()) ** 2)
-    return least
 
 
 def _offset(seen: Survey) -> float:
