@@ -28,6 +28,7 @@ from ..kernel.tables import (
     FREE_PAIRS,
     LED,
     NEAR,
+    SEARCH,
     SHAPES,
     TURN,
     Tables,
@@ -390,8 +391,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
                 return
             tables = load_tables(s)
         p = new_pair(tables, a, b)
-        tables.counters[ANEW] = 1
     pair = tables.pairs[p]
+    if pair.near != tables.counters[SEARCH]:  # new, or parted in the last frame
+        tables.counters[ANEW] = 1
     pair.stamp = now
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1
