@@ -233,6 +233,17 @@ def test_any_two_against_shapely(kernel: Any, name: str, other: str) -> None:
         compared(kernel, KINDS[name], pa, KINDS[other], pb, 1e-7)
 
 
+@pytest.mark.parametrize("shrunk", [0.5, 0.9, 1 - 4e-6, 1 - 1e-9])
+def test_a_capsule_in_a_larger_one(kernel: Any, shrunk: float) -> None:
+    """Boundaries that do not cross, one inside the other: whichever is asked first, and however near they are."""
+    outer, inner = shapes.capsule(0.8, 0.4), shapes.capsule(0.8 * shrunk, 0.4 * shrunk)
+    shift = 0.2 * (1 - shrunk)
+    for a, b in ((outer, inner), (inner, outer)):
+        found = kernel.one(a, (0, 0, 0.7), b, (shift, -shift, 0.7))
+        assert found.count[0] == 1
+        assert found.area[0] == pytest.approx(inner.area, rel=1e-12)
+
+
 @pytest.mark.slow
 def test_a_thousand_against_shapely_at_100_000_points(kernel: Any) -> None:
     rng = np.random.default_rng(11)

@@ -166,8 +166,19 @@ def first_touch(kernel: Any) -> Callable[..., np.ndarray]:
     return touch
 
 
-def compare(kernel: Any, pairs: list[Pair]) -> tuple[int, list[str]]:
-    """(pairs whose count of regions was compared, what is wrong)."""
+class Tally(NamedTuple):
+    """What pairs have shown."""
+
+    counted: int  # pairs whose count of regions was compared
+    wrong: list[str]
+    area: float  # worst error, over the smaller one's
+    centroid: (
+        float  # worst error over what is allowed (1e-9 of the smaller one's size, the poses' own rounding)
+    )
+
+
+def compare(kernel: Any, pairs: list[Pair]) -> Tally:
+    """The kernel against `wide_overlap`."""
     outlines = [outline for pair in pairs for outline in (pair.a, pair.b)]
     n = np.arange(len(pairs))
     poses = [
@@ -176,6 +187,7 @@ def compare(kernel: Any, pairs: list[Pair]) -> tuple[int, list[str]]:
     ]
     found = kernel.many(outlines, 2 * n, 2 * n + 1, *poses)
     wrong, counted = [], 0
+    worst = worst_centroid = 0.0
     wide = wide_overlap.W
     for k, (how, a, b, pose_a, pose_b) in enumerate(pairs):
         c, s = np.cos(wide(pose_a[2])), np.sin(wide(pose_a[2]))
@@ -191,6 +203,7 @@ def compare(kernel: Any, pairs: list[Pair]) -> tuple[int, list[str]]:
         if found.count[k] < 0 or not off <= 1e-9:
             wrong.append(f"{label} count {found.count[k]} area off by {off:.2e}")
             continue
+        worst = max(worst, off)
         sure = want.least > 1e-8 * size**2 and want.near > 1e-6 * size  # else rounding may close a neck
         if sure and len(area) != len(want.regions):
             wrong.append(f"{label} {len(area)} regions instead of {len(want.regions)}")
@@ -208,20 +221,26 @@ def compare(kernel: Any, pairs: list[Pair]) -> tuple[int, list[str]]:
                 continue
             gap = np.hypot(*(at - centre.astype(float)).T)
             best = int(np.argmin(gap + abs(area - float(value)) / size))
+            worst_centroid = max(worst_centroid, float(gap[best]) / room)
             if gap[best] > room or abs(area[best] - float(value)) > 1e-9 * size**2:
                 wrong.append(f"{label} centroid off by {gap[best] / size:.2e}, allowed {room / size:.2e}")
-    return counted, wrong
+    return Tally(counted, wrong, worst, worst_centroid)
 
 
 def check(kernel: Any, seed: int, count: int, batch: int = 200) -> None:
     rng = np.random.default_rng(seed)
     outlines = bank(seed, 4 if count < 1000 else 30)
     touch = first_touch(kernel)
-    counted = 0
-    for _ in range(0, count, batch):
-        sure, wrong = compare(kernel, [random_pair(rng, outlines, touch) for _ in range(min(batch, count))])
-        counted += sure
-        assert not wrong, "\n".join(wrong)
+    shown = [
+        compare(kernel, [random_pair(rng, outlines, touch) for _ in range(min(batch, count))])
+        for _ in range(0, count, batch)
+    ]
+    counted, wrong = sum(tally.counted for tally in shown), [w for tally in shown for w in tally.wrong]
+    area, centroid = max(tally.area for tally in shown), max(tally.centroid for tally in shown)
+    told = f"{len(wrong)} wrong of {count} pairs, {counted} counts compared, area off by {area:.1e} at the worst, "
+    told += f"a centroid by {centroid:.2f} of what is allowed"
+    print(told)
+    assert not wrong, "\n".join([told, *wrong[:20]])
     assert counted > 0.4 * count  # else the test would show little
 
 

@@ -9,7 +9,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.kernel import broad, tables
-from rigidarea.kernel.solve import place
+from rigidarea.kernel.place import place
 from rigidarea.store import Store
 
 SQUARE = ra.Outline([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])

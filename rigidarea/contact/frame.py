@@ -23,6 +23,7 @@ from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
+from ..kernel.place import place
 from ..kernel.solve import (
     adapt_stiffness,
     drift,
@@ -35,12 +36,12 @@ from ..kernel.solve import (
     kick,
     kinetic,
     pace,
-    place,
     respond_explicitly,
     sweep,
     warm_start,
 )
 from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, MET, NEAR, ROWS, SUBSTEP, TURN, Tables, rehash
+from ..kernel.verdict import wait_for_verdicts
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
 from .joints import (
     APPLY,
@@ -467,6 +468,18 @@ def _turns(s: Any, space: int, dt: float) -> int:
 
 
 @kernel
+def _wait_for_verdicts(s: Any, dt: float) -> bool:
+    """What has passed a shape that the user is to be asked about goes back to it. Whether there was memory for that."""
+    start = 0
+    while True:
+        status, start = wait_for_verdicts(load_pool(s), load_tables(s), load_work(s), s.frame, dt, start)
+        if status == DONE:
+            return True
+        if not ask(s, MORE_WORK):
+            return False
+
+
+@kernel
 def _frame(s: Any, space: int, dt: float) -> bool:
     """All substeps of a frame: so many, or as many as an island wants, or as the tolerance needs.
 
@@ -498,7 +511,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         _everybody(s, space)
         if not _substeps(s, space, dt, n):
             return False
-    if n == 0:
+    if n == 0 or not _wait_for_verdicts(s, dt):
         return False
     if s.stiffness_given == 0:
         adapt_stiffness(load_tables(s), dt)

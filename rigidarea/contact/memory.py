@@ -46,11 +46,13 @@ class Memory(NamedTuple):
     counters: np.ndarray
     joints: list[np.ndarray]
     """Impulses."""
-    substeps: np.ndarray
-    """(n, 2) int: of each body, those asked for its island, and those of the last frame."""
+    bodies: np.ndarray
+    """(n, 3) int: of each body, the substeps asked for its island, those of the last frame, whether it was pushed."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
+#: What a body keeps.
+_BODY = ("asked", "taken", "pushed")
 #: What a shape keeps.
 _SHAPE = (
     *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),
@@ -72,10 +74,7 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.counters.copy(),
         [np.array(joint_impulse(joint)) for joint in space.constraints],
         np.array(
-            [
-                tables.bodies[store.row_of(address_of(b._body))][["asked", "taken"]].tolist()
-                for b in space.bodies
-            ]
+            [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
     )
 
@@ -112,9 +111,10 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     store.drop_near()
     tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
     rehash(tables)
-    for body, (asked, taken) in zip(space.bodies, memory.substeps):
+    for body, values in zip(space.bodies, memory.bodies):
         row = tables.bodies[store.row_of(address_of(body._body))]
-        row["asked"], row["taken"] = asked, taken
+        for name, value in zip(_BODY, values):
+            row[name] = value
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)

@@ -19,7 +19,8 @@ from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, meets_within
 from ..kernel.memory import array_at, caller
-from ..kernel.solve import find_near, may_touch, place
+from ..kernel.place import place
+from ..kernel.solve import find_near, may_touch
 from ..kernel.tables import (
     ANEW,
     BODIES,

@@ -13,7 +13,7 @@ from rigidarea.flexible.boundary import build
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
-from rigidarea.flexible.mesh import Mesh, resample, triangulate
+from rigidarea.flexible.mesh import Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
 from rigidarea.outline import Outline
@@ -44,7 +44,8 @@ def elastic_body(
 
     size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
     free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers; clamped may be a function that
-    says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, on the rings themselves.
+    says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, finer than
+    the mesh: their polygon has the rings' area (with 1 they are the mesh's nodes).
     growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the rings'
     coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
     ``triangulate`` and ``reduce``, and for a size that asks for more nodes than fit into memory.
@@ -76,6 +77,7 @@ def elastic_body(
     profile, low, high, share, first = [], [], [], [], 0
     for k in contact_rings:
         fine = resample(rings[k], size, refine)
+        fine = fine if refine == 1 else keep_area(fine)
         node = np.arange(len(fine)) // refine
         profile.append(fine - body.centre)
         low.append(first + node)

@@ -9,13 +9,12 @@ from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.flexible.search import narrow
+from rigidarea.flexible.search import NEAR, keep, narrow
 from rigidarea.kernel.jit import entry, kernel
 
 #: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
 #: differ, and have no small ratio, so that no edge of a drawing is along it.
 ASIDE = (1e-12, 0.618e-12)
-NEAR = 0.1  # of the search's margin: how much farther than that leaves are looked at
 
 
 @kernel(forceinline=True)
@@ -24,13 +23,6 @@ def poses(x, buf):  # type: ignore[no-untyped-def]
     for b in range(len(x)):
         buf.pose[b, 0], buf.pose[b, 1] = x[b, 0], x[b, 1]
         buf.pose[b, 2], buf.pose[b, 3] = np.cos(x[b, 2]), np.sin(x[b, 2])
-
-
-@kernel(forceinline=True)
-def _moved(now, then, size):  # type: ignore[no-untyped-def]
-    """How far no point of a body of radius ``size`` has moved between two poses."""
-    dx, dy, c, s = now[0] - then[0], now[1] - then[1], now[2] - then[2], now[3] - then[3]
-    return np.sqrt(dx * dx + dy * dy) + size * np.sqrt(c * c + s * s)
 
 
 @kernel
@@ -83,22 +75,6 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _look(a, pa, b, pb, reach, margin, size, sp, found, p):  # type: ignore[no-untyped-def]
-    """Searches pair p anew: within ``reach``, which allows for a motion by ``margin``.
-
-    Where nothing is near, within twice as much, and so on: two bodies far apart need not be searched until they have
-    come near each other.
-    """
-    found.found[p] = nodal.search(a, pa, b, pb, reach, sp)
-    found.margin[p] = margin
-    while found.found[p] == 0 and 0.0 < found.margin[p] < size:
-        if nodal.search(a, pa, b, pb, reach + found.margin[p], sp) != 0:
-            break
-        found.margin[p] *= 2.0
-        reach += 0.5 * found.margin[p]
-
-
-@kernel
 def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
     """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``scratch``.
 
@@ -119,11 +95,8 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         ia, ib = pairs[p, 0], pairs[p, 1]
         pa, pb = buf.pose[ia], buf.pose[ib]
         dx, dy = pb[0] - pa[0], pb[1] - pa[1]
-        # the search, of undeformed bodies, holds while no point has moved, relative to the other body, by more than
-        # the margin
-        bend = buf.bend[ia] + buf.bend[ib]
-        reach = st.margin + bend + (st.q if st.sts else 0.0)
-        if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + reach:
+        bend = buf.bend[ia] + buf.bend[ib] + (st.q if st.sts else 0.0)
+        if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + bend:
             found.found[p] = -1
             continue
         a, wa, b, wb = (
@@ -133,20 +106,13 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             work_at(bodies, ib),
         )
         sp = of_pair(s, found, p)
-        moved = abs(bend - found.bend[p])
-        moved += _moved(pa, found.posed[p, 0], sy.size[ia]) + _moved(pb, found.posed[p, 1], sy.size[ib])
-        if found.found[p] < 0 or moved > found.margin[p]:
-            _look(a, pa, b, pb, reach, st.margin, min(sy.size[ia], sy.size[ib]), sp, found, p)
-            found.bend[p] = bend
-            for i in range(4):
-                found.posed[p, 0, i], found.posed[p, 1, i] = pa[i], pb[i]
-        n_pairs = found.found[p]
+        n_pairs = keep(a, pa, b, pb, st.margin, min(sy.size[ia], sy.size[ib]), bend, sp, found, p)
         if n_pairs < 0:
             return n_pairs
-        if n_pairs == 0:
-            continue
-        # of these, those near now: twice the last deformation, as it grows from one evaluation to the next
-        n_pairs = narrow(a, pa, b, pb, n_pairs, NEAR * st.margin + 2.0 * bend + (st.q if st.sts else 0.0), sp)
+        if (
+            n_pairs > 0 and not st.sts
+        ):  # near now: within twice the last deformation, as it grows from one to the next
+            n_pairs = narrow(a, pa, b, pb, n_pairs, NEAR * st.margin + 2.0 * bend, sp)
         if n_pairs == 0:
             continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
@@ -166,6 +132,9 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             n = nodal.contact(a, wa, pa, qa, b, wb, moved_b, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         if n < 0:
             return n
+        if n > 0:
+            dx, dy = s.regions[0]["x"] - pb[0], s.regions[0]["y"] - pb[1]
+            found.pole[p, 0], found.pole[p, 1] = pb[2] * dx + pb[3] * dy, -pb[3] * dx + pb[2] * dy
         for i in range(first, s.load.made[0]):
             s.load.side[i] = ia if s.load.side[i] == 0 else ib
         if total + n > len(buf.regions):

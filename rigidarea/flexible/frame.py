@@ -29,32 +29,37 @@ Array = NDArray[np.float64]
 @entry
 def inertia_forces(
     j0: float, h: Array, g: Array, stiff: Array, fx: float, fy: float, q: Array, dq: Array, ddq: Array, omega: float,
-    alpha: float, out: Array,
+    alpha: float, out: Array, work: Array,
 ) -> float:  # fmt: skip
     """M q̈ − Q_v of one body: returns the row of θ (a moment), writes the modal rows (m,) to ``out``.
 
     j0: moment of inertia of the undeformed body; h, g, stiff: ``stretch``, ``coupling`` and ``geometric`` (3, m, m, or
     none: (0, m, m)) of ``modes.Reduced``; fx, fy: force on the hub, body frame; omega, alpha: angular velocity and
-    acceleration of the frame. The rows of R are m R̈.
+    acceleration of the frame. work (4, m). The rows of R are m R̈.
     """
     m = len(q)
     if m == 0:
         return j0 * alpha
-    moment = 0.0
-    j = j0
+    gq, gd, free, tension = work[0], work[1], work[2], work[3]
     for i in range(m):
-        gq = gd = 0.0
-        for k in range(m):
-            gq += g[i, k] * q[k]
-            gd += g[i, k] * dq[k]
-        free, tension = q[i], 0.0
-        if len(stiff) > 0:
-            for k in range(m):
-                free -= stiff[0, i, k] * q[k]
-                tension += (fx * stiff[1, i, k] + fy * stiff[2, i, k]) * q[k]
-        j += 2.0 * h[i] * q[i] + q[i] * free
-        moment += gq * ddq[i] + 2.0 * omega * (h[i] + free) * dq[i]
-        out[i] = gq * alpha + ddq[i] - omega * omega * (h[i] + free) + 2.0 * omega * gd + tension
+        gq[i] = gd[i] = tension[i] = 0.0
+        free[i] = q[i]
+    # by rows, which lie in memory as they are used: G is antisymmetric, S symmetric
+    for k in range(m):
+        row, x, y = g[k], q[k], dq[k]
+        for i in range(m):
+            gq[i] -= row[i] * x
+            gd[i] -= row[i] * y
+    for k in range(m if len(stiff) > 0 else 0):
+        spin, along, across, x = stiff[0, k], stiff[1, k], stiff[2, k], q[k]
+        for i in range(m):
+            free[i] -= spin[i] * x
+            tension[i] += (fx * along[i] + fy * across[i]) * x
+    moment, j = 0.0, j0
+    for i in range(m):
+        j += 2.0 * h[i] * q[i] + q[i] * free[i]
+        moment += gq[i] * ddq[i] + 2.0 * omega * (h[i] + free[i]) * dq[i]
+        out[i] = gq[i] * alpha + ddq[i] - omega * omega * (h[i] + free[i]) + 2.0 * omega * gd[i] + tension[i]
     return moment + j * alpha
 
 

@@ -19,6 +19,7 @@ from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
 from rigidarea.kernel.jit import entry, kernel
 from rigidarea.kernel.memory import array_at, caller, record
+from rigidarea.store import OFFSETS
 
 Ints = NDArray[np.int64]
 
@@ -48,20 +49,8 @@ LINK = record(
         ("warm_x", "f8"), ("warm_y", "f8"),  # of the last step
     ]
 )  # fmt: skip
-#: Columns of ``offsets``: byte offsets in Chipmunk's body.
-OFFSETS = (
-    "body_position",
-    "body_angle",
-    "body_cog",
-    "body_transform",
-    "body_velocity",
-    "body_spin",
-    "body_force",
-    "body_torque",
-    "body_inverse_mass",
-    "body_inverse_moment",
-)
-POSITION, ANGLE, COG, TRANSFORM, VELOCITY, SPIN, FORCE, TORQUE, INVERSE_MASS, INVERSE_MOMENT = range(10)
+#: Where Chipmunk's structs have what: byte offsets, by the names of ``store.OFFSETS``.
+PLACES = record([(name, "i8") for name in OFFSETS])
 
 #: Part of a joint's load that reaches its hub in a step: the hub yields to the loads of the step before, which is
 #: stable while contacts are less than 2 / this - 1 times as stiff as the body between hub and contact.
@@ -77,26 +66,26 @@ def _floats(address, n):  # type: ignore[no-untyped-def]
 
 
 @entry
-def gather(members: Any, offsets: Ints, gx: float, gy: float, damping: float, dt: float) -> None:
+def gather(members: Any, offsets: Any, gx: float, gy: float, damping: float, dt: float) -> None:
     """Where Chipmunk has the members, how they move, and what acts on them for a frame of dt."""
     for m in range(len(members)):
         a = members[m]
-        p = _floats(a.address + np.uint64(offsets[POSITION]), 2)
-        v = _floats(a.address + np.uint64(offsets[VELOCITY]), 2)
-        cog = _floats(a.address + np.uint64(offsets[COG]), 2)
-        f = _floats(a.address + np.uint64(offsets[FORCE]), 2)
+        p = _floats(a.address + np.uint64(offsets.body_position), 2)
+        v = _floats(a.address + np.uint64(offsets.body_velocity), 2)
+        cog = _floats(a.address + np.uint64(offsets.body_cog), 2)
+        f = _floats(a.address + np.uint64(offsets.body_force), 2)
         a.x, a.y = p[0], p[1]
-        a.angle = _floats(a.address + np.uint64(offsets[ANGLE]), 1)[0]
+        a.angle = _floats(a.address + np.uint64(offsets.body_angle), 1)[0]
         a.vx, a.vy = v[0], v[1]
-        a.w = _floats(a.address + np.uint64(offsets[SPIN]), 1)[0]
+        a.w = _floats(a.address + np.uint64(offsets.body_spin), 1)[0]
         # the part and its hub stay where they are in the body, its centre of gravity may have been moved
         a.off_x += a.cog_x - cog[0]
         a.off_y += a.cog_y - cog[1]
         a.hub_x += a.cog_x - cog[0]
         a.hub_y += a.cog_y - cog[1]
         a.cog_x, a.cog_y = cog[0], cog[1]
-        a.inverse_mass = _floats(a.address + np.uint64(offsets[INVERSE_MASS]), 1)[0]
-        a.inverse_moment = _floats(a.address + np.uint64(offsets[INVERSE_MOMENT]), 1)[0]
+        a.inverse_mass = _floats(a.address + np.uint64(offsets.body_inverse_mass), 1)[0]
+        a.inverse_moment = _floats(a.address + np.uint64(offsets.body_inverse_moment), 1)[0]
         a.ax = a.ay = a.alpha = 0.0
         if a.inverse_mass > 0.0:
             keep = damping**dt
@@ -105,16 +94,16 @@ def gather(members: Any, offsets: Ints, gx: float, gy: float, damping: float, dt
             a.w *= keep
             a.ax = gx + f[0] * a.inverse_mass
             a.ay = gy + f[1] * a.inverse_mass
-            a.alpha = _floats(a.address + np.uint64(offsets[TORQUE]), 1)[0] * a.inverse_moment
+            a.alpha = _floats(a.address + np.uint64(offsets.body_torque), 1)[0] * a.inverse_moment
 
 
 @kernel
 def _write_place(a, offsets):  # type: ignore[no-untyped-def]
-    p = _floats(a.address + np.uint64(offsets[POSITION]), 2)
+    p = _floats(a.address + np.uint64(offsets.body_position), 2)
     p[0], p[1] = a.x, a.y
-    _floats(a.address + np.uint64(offsets[ANGLE]), 1)[0] = a.angle
+    _floats(a.address + np.uint64(offsets.body_angle), 1)[0] = a.angle
     c, s = np.cos(a.angle), np.sin(a.angle)
-    t = _floats(a.address + np.uint64(offsets[TRANSFORM]), 6)
+    t = _floats(a.address + np.uint64(offsets.body_transform), 6)
     t[0], t[1], t[2], t[3] = c, s, -s, c
     t[4] = a.x - (c * a.cog_x - s * a.cog_y)
     t[5] = a.y - (s * a.cog_x + c * a.cog_y)
@@ -122,13 +111,13 @@ def _write_place(a, offsets):  # type: ignore[no-untyped-def]
 
 @kernel
 def _write_motion(a, offsets):  # type: ignore[no-untyped-def]
-    v = _floats(a.address + np.uint64(offsets[VELOCITY]), 2)
+    v = _floats(a.address + np.uint64(offsets.body_velocity), 2)
     v[0], v[1] = a.vx, a.vy
-    _floats(a.address + np.uint64(offsets[SPIN]), 1)[0] = a.w
+    _floats(a.address + np.uint64(offsets.body_spin), 1)[0] = a.w
 
 
 @entry
-def give_back(members: Any, start: Any, offsets: Ints, used: bool) -> None:
+def give_back(members: Any, start: Any, offsets: Any, used: bool) -> None:
     """Chipmunk's bodies where the members are, their forces ``used`` up; those that are led as in ``start``."""
     for m in range(len(members)):
         a = members[m]
@@ -139,9 +128,9 @@ def give_back(members: Any, start: Any, offsets: Ints, used: bool) -> None:
         _write_motion(a, offsets)
         if not used:
             continue
-        f = _floats(a.address + np.uint64(offsets[FORCE]), 2)
+        f = _floats(a.address + np.uint64(offsets.body_force), 2)
         f[0] = f[1] = 0.0
-        _floats(a.address + np.uint64(offsets[TORQUE]), 1)[0] = 0.0
+        _floats(a.address + np.uint64(offsets.body_torque), 1)[0] = 0.0
 
 
 @kernel
@@ -198,9 +187,9 @@ def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-
             link.y += link.warm_y
     for m in range(len(members)):
         a = members[m]
-        v = _floats(a.address + np.uint64(offsets[VELOCITY]), 2)
+        v = _floats(a.address + np.uint64(offsets.body_velocity), 2)
         a.vx, a.vy = v[0], v[1]
-        a.w = _floats(a.address + np.uint64(offsets[SPIN]), 1)[0]
+        a.w = _floats(a.address + np.uint64(offsets.body_spin), 1)[0]
 
 
 @kernel

@@ -101,6 +101,21 @@ def resample(ring: Array, size: float, refine: int = 1) -> Array:
     return np.column_stack([np.interp(s, total, closed[:, 0]), np.interp(s, total, closed[:, 1])])
 
 
+def keep_area(ring: Array) -> Array:
+    """The points (k, 2) of a ring, evenly spaced between its corners, moved out so that their polygon has its area.
+
+    Chords of a curve lie inside it by 2/3 of their sagitta in the mean; the points go out by as much, a sixth of what
+    a point stands out of the line between its neighbours. A contact over many edges then has the curve's depth. Corners
+    stay.
+    """
+    before, after = np.roll(ring, 1, 0), np.roll(ring, -1, 0)
+    u, v = ring - before, after - ring
+    turn = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.einsum("ij,ij->i", u, v))
+    out = (ring - 0.5 * (before + after)) / 6
+    out[np.abs(turn) > CORNER] = 0.0
+    return ring + out
+
+
 def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | None = None) -> Mesh:
     """Mesh the region bounded by ``rings`` ([0] outer, counter-clockwise; then holes, clockwise).
 

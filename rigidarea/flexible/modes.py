@@ -25,7 +25,7 @@ from threadpoolctl import threadpool_limits
 
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
-from rigidarea.flexible.factor import substitute
+from rigidarea.flexible.factor import needed, substitute
 from rigidarea.flexible.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -147,12 +147,42 @@ class Flexibility:
         so little work on a busy machine; SuperLU's ``solve`` calls it as well, for one column after another.
         """
         loads = loads - np.einsum("ir,rc->ic", self._momentum, np.einsum("ir,ic->rc", self._rigid, loads))
+        u = self._supported(loads, np.ones(len(self._free), bool))
+        return u - np.einsum("ir,rc->ic", self._rigid, np.einsum("ir,ic->rc", self._momentum, u))
+
+    def _supported(self, loads: Array, wanted: NDArray[np.bool_]) -> Array:
+        """K⁺ times ``loads`` (2 n, c), where ``wanted``, see ``substitute``."""
         x = np.empty((len(self._free), loads.shape[1]))
         x[self._row] = loads[self._free]
-        substitute(*self._factors, x)
+        substitute(*self._factors, wanted, x)
         u = np.zeros(loads.shape)
         u[self._free] = x[self._column]
-        return u - np.einsum("ir,rc->ic", self._rigid, np.einsum("ir,ic->rc", self._momentum, u))
+        return u
+
+    def between(self, rows: sp.csc_array) -> Array:
+        """rowsᵀ C rows (i, i), for the displacements and loads of few nodes, ``rows`` (2 n, i).
+
+        With W = K⁺ M R and S = Rᵀ M W, C = K⁺ − W Rᵀ − R Wᵀ + R S Rᵀ: so that the loads that are solved for stay those
+        of single nodes, and only their own displacements are needed.
+        """
+        w = self._supported(self._momentum, np.ones(len(self._free), bool))
+        s = np.einsum("ir,ic->rc", self._momentum, w)
+        at, moved = np.asarray(rows.T @ self._rigid), np.asarray(rows.T @ w)
+        asked = np.zeros(rows.shape[0], bool)
+        asked[rows.indices] = True
+        wanted = np.zeros(len(self._free), bool)
+        wanted[self._column] = asked[self._free]
+        upper = sp.csc_array((self._factors[5], self._factors[4], self._factors[3])).tocsr()
+        needed(upper.indptr.astype(np.int64), upper.indices.astype(np.int64), wanted)
+        count, transposed = rows.shape[1], rows.T.tocsr()
+        c = np.empty((count, count))
+        for first in range(0, count, BLOCK):
+            part = slice(first, first + BLOCK)
+            c[:, part] = transposed @ self._supported(rows[:, part].toarray(), wanted)
+            c[:, part] += np.einsum("ir,cr->ic", at @ s - moved, at[part]) - np.einsum(
+                "ir,cr->ic", at, moved[part]
+            )
+        return c
 
     def modes(self, count: int) -> tuple[Array, Array]:
         """The first ``count`` elastic modes (2 n, count), mass-orthonormal, and their angular frequencies (count,).
@@ -210,10 +240,10 @@ def _reduce(
     phi, omega = response.modes(modes) if modes else (np.zeros((n, 0)), np.zeros(0))
     slowest = omega[0] if modes else response.modes(1)[1][0]
     at = np.asarray(rows.T @ phi)
-    c = np.empty((f + 3, f + 3))
+    c = response.between(rows)
     for first in range(0, f + 3, BLOCK):
         part = slice(first, first + BLOCK)
-        c[:, part] = rows.T @ response(rows[:, part].toarray()) - (at / omega**2) @ at[part].T
+        c[:, part] -= (at / omega**2) @ at[part].T
         c[part, part] = 0.5 * (c[part, part] + c[part, part].T)
         c[part, :first] = c[:first, part].T  # symmetric to the last bit, with no second matrix in memory
     m2 = np.repeat(mass, 2)

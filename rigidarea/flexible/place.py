@@ -17,34 +17,39 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 
-@kernel(forceinline=True)
-def displace(b: Boundary, w: Work, modal: Array, node: int, stamp: int) -> None:
-    """Displacement (body frame) of an FE node; modal (m,) are the coordinates q."""
-    w.displacement_stamp[node] = stamp
-    n_modes, static = b.modes.shape[1], b.flexibility.shape[0] > 0
-    if n_modes == 0 and not static:
-        return
-    x = y = 0.0
-    row_x, row_y = b.modes[2 * node], b.modes[2 * node + 1]
-    for k in range(n_modes):
-        x += row_x[k] * modal[k]
-        y += row_y[k] * modal[k]
-    if static:
-        load, loaded = w.node_load, w.loaded
-        row_x, row_y = b.flexibility[2 * node], b.flexibility[2 * node + 1]
+@kernel
+def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: int) -> None:
+    """Displacements (body frame) of the FE nodes ``first`` … ``end`` - 1; modal (m,) are the coordinates q.
+
+    Nodes that lie together are moved together: a load moves them by one piece of a row of C, which is symmetric.
+    """
+    w.displacement_stamp[first:end] = stamp
+    u = w.displacement[first:end].reshape(2 * (end - first))
+    u[:] = 0.0
+    for i in range(len(u) if b.modes.shape[1] > 0 else 0):
+        row, moved = b.modes[2 * first + i], 0.0
+        for k in range(len(row)):
+            moved += row[k] * modal[k]
+        u[i] = moved
+    if b.flexibility.shape[0] > 0:
+        flexibility, load, loaded = b.flexibility, w.node_load, w.loaded
         for k in range(loaded[-1]):
             j = loaded[k]
             fx, fy = load[j, 0], load[j, 1]
-            x += row_x[2 * j] * fx + row_x[2 * j + 1] * fy
-            y += row_y[2 * j] * fx + row_y[2 * j + 1] * fy
-        hub = len(row_x) - 3
+            row_x = flexibility[2 * j, 2 * first : 2 * end]
+            row_y = flexibility[2 * j + 1, 2 * first : 2 * end]
+            for i in range(len(u)):
+                u[i] += row_x[i] * fx + row_y[i] * fy
         for k in range(3):
-            x += row_x[hub + k] * w.hub_load[k]
-            y += row_y[hub + k] * w.hub_load[k]
-    if len(b.swell) > 0:
-        x += b.swell[2 * node] * w.spin[0]
-        y += b.swell[2 * node + 1] * w.spin[0]
-    w.displacement[node, 0], w.displacement[node, 1] = x, y
+            f = w.hub_load[k]
+            if f != 0.0:
+                row = flexibility[len(flexibility) - 3 + k, 2 * first : 2 * end]
+                for i in range(len(u)):
+                    u[i] += row[i] * f
+    if len(b.swell) > 0 and w.spin[0] != 0.0:
+        row, f = b.swell[2 * first : 2 * end], w.spin[0]
+        for i in range(len(u)):
+            u[i] += row[i] * f
 
 
 @kernel
@@ -55,9 +60,9 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -
     if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
         m, n, f, u = b.low[i], b.high[i], b.share[i], w.displacement
         if w.displacement_stamp[m] != stamp:
-            displace(b, w, modal, m, stamp)
+            displace(b, w, modal, m, m + 1, stamp)
         if w.displacement_stamp[n] != stamp:
-            displace(b, w, modal, n, stamp)
+            displace(b, w, modal, n, n + 1, stamp)
         x += (1.0 - f) * u[m, 0] + f * u[n, 0]
         y += (1.0 - f) * u[m, 1] + f * u[n, 1]
     w.position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
@@ -68,8 +73,25 @@ def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -
 def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
-    """``place`` for the points of the candidate leaves."""
+    """``place`` for the points of the candidate leaves; the nodes of leaves beside each other move together."""
     following, stamps = b.next, w.position_stamp
+    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
+        low = high = -1  # a run of nodes to be displaced
+        for k in range(n_pairs):
+            leaf = pairs[k, side]
+            start, end = b.low[b.right[leaf]], b.low[b.right[leaf] - b.left[leaf] - 1] + 1
+            if start >= low and end <= high:
+                continue
+            if w.displacement_stamp[start] == stamp and w.displacement_stamp[end - 1] == stamp:
+                continue
+            if low >= 0 and start <= high and end >= low:
+                low, high = min(low, start), max(high, end)
+                continue
+            if low >= 0:
+                displace(b, w, modal, low, high, stamp)
+            low, high = start, end
+        if low >= 0:
+            displace(b, w, modal, low, high, stamp)
     last = -1
     for k in range(n_pairs):
         leaf = pairs[k, side]

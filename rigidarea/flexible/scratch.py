@@ -96,20 +96,24 @@ def scratch(points: int, room: int = 0) -> Scratch:
 
 
 class Searches(NamedTuple):
-    """What the search left for each of p pairs, kept while nothing has moved by the margin; see ``Scratch``."""
+    """What the search left for each of p pairs, kept while b has moved little in the frame of a; see ``search``."""
 
     pairs: Ints  # (p, c, 2)
     found: Ints  # (p,) candidate leaves, -1 before the first search
-    posed: Array  # (p, 2, 4) poses then
-    bend: Array  # (p,) and the deformation allowed for
-    margin: Array  # (p,) and the motion
+    posed: Array  # (p, 4) pose of b in the frame of a then
+    bend: Array  # (p,) the deformation allowed for
+    margin: Array  # (p,) the motion allowed for, of the point ``held``
+    turn: Array  # (p,) and the turn about it
+    held: Array  # (p, 2) a point of b, in its frame
+    pole: Array  # (p, 2) that of the next search: the last contact
 
 
 def searches(pairs: int) -> Searches:
     """Room for one search each of so many pairs."""
     p = pairs
     return Searches(
-        np.zeros((p, CANDIDATES, 2), np.int64), np.full(p, -1), np.full((p, 2, 4), np.inf), np.zeros(p), np.zeros(p)
+        np.zeros((p, CANDIDATES, 2), np.int64), np.full(p, -1), np.zeros((p, 4)), np.zeros(p), np.zeros(p),
+        np.zeros(p), np.zeros((p, 2)), np.zeros((p, 2)),
     )  # fmt: skip
 
 

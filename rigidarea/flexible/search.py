@@ -17,9 +17,12 @@ from rigidarea.kernel.jit import entry, kernel
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+TURN = 3.0  # turn between two searches, in margins over the body's size
+NEAR = 0.1  # of the search's margin: how much farther than the deformation leaves are looked at
+
 
 @kernel(forceinline=True)
-def _relative(pose_a: Array, pose_b: Array) -> tuple[float, float, float, float]:
+def relative(pose_a: Array, pose_b: Array) -> tuple[float, float, float, float]:
     """Pose of b in the frame of a: cosine, sine, x, y."""
     c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
     sn = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
@@ -27,14 +30,16 @@ def _relative(pose_a: Array, pose_b: Array) -> tuple[float, float, float, float]
     return c, sn, pose_a[2] * dx + pose_a[3] * dy, -pose_a[3] * dx + pose_a[2] * dy
 
 
-@entry
-def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
-    """Fills ``s.pairs`` and ``s.close``, the leaves that come within ``margin``: their number, or MANY.
+@kernel
+def look(
+    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, turn: float, at: Array, s: Scratch
+) -> int:
+    """``search`` within ``margin``, and farther from the point ``at`` (b's frame) by ``turn`` of the distance to it.
 
-    Poses are (x, y, cos θ, sin θ). ``margin`` (length) covers the deformation and, where the list is kept for several
-    evaluations, the motion between them.
+    That is how far points come when b moves by ``margin`` there and turns by so many radians, in the frame of a.
+    Where gears mesh they roll: there nothing moves, while they turn.
     """
-    c, sn, tx, ty = _relative(pose_a, pose_b)
+    c, sn, tx, ty = relative(pose_a, pose_b)
     stack, out = s.stack, s.pairs
     count, top = 0, 1
     stack[0, 0] = stack[0, 1] = 0
@@ -43,11 +48,15 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
         i, j = stack[top, 0], stack[top, 1]
         ex = tx + c * b.centre[j, 0] - sn * b.centre[j, 1] - a.centre[i, 0]
         ey = ty + sn * b.centre[j, 0] + c * b.centre[j, 1] - a.centre[i, 1]
-        reach = a.radius[i] + b.radius[j] + margin
+        allowed = margin
+        if turn > 0.0:
+            fx, fy = b.centre[j, 0] - at[0], b.centre[j, 1] - at[1]
+            allowed += turn * (np.sqrt(fx * fx + fy * fy) + b.radius[j])
+        reach = a.radius[i] + b.radius[j] + allowed
         if ex * ex + ey * ey > reach * reach:
             continue
         if a.left[i] < 0 and b.left[j] < 0:
-            if _apart(a.box, i, b.box, j, c, sn, tx, ty, margin):
+            if _apart(a.box, i, b.box, j, c, sn, tx, ty, allowed):
                 continue
             if count == len(out):
                 return MANY
@@ -68,11 +77,21 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
 
 
 @entry
+def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, s: Scratch) -> int:
+    """Fills ``s.pairs`` and ``s.close``, the leaves that come within ``margin``: their number, or MANY.
+
+    Poses are (x, y, cos θ, sin θ). ``margin`` (length) covers the deformation and, where the list is kept for several
+    evaluations, the motion between them.
+    """
+    return look(a, pose_a, b, pose_b, margin, 0.0, pose_b, s)
+
+
+@entry
 def narrow(
     a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, n_pairs: int, margin: float, s: Scratch
 ) -> int:
     """Fills ``s.close`` with those of ``s.pairs`` whose boxes are within ``margin`` where the bodies are now."""
-    c, sn, tx, ty = _relative(pose_a, pose_b)
+    c, sn, tx, ty = relative(pose_a, pose_b)
     count = 0
     for k in range(n_pairs):
         i, j = s.pairs[k, 0], s.pairs[k, 1]
@@ -99,3 +118,30 @@ def _apart(
         or abs(dx * vx + dy * vy) > lb + la * cosine + wa * sine + margin
         or abs(dy * vx - dx * vy) > wb + la * sine + wa * cosine + margin
     )
+
+
+@kernel
+def keep(a, pa, b, pb, margin, size, bend, s, found, p):  # type: ignore[no-untyped-def]
+    """The leaves of pair p that are near, or may come near soon, in ``s.pairs``: their number, or MANY.
+
+    The search, of undeformed bodies, holds while b has moved little in the frame of a. Where it found nothing it is
+    done again with twice the margin, and so on: bodies far apart need not be searched until they have come near each
+    other. size: of the smaller body; bend: the largest deformation, or what else brings them together.
+    """
+    c, sn, x, y = relative(pa, pb)
+    at, was = found.held[p], found.posed[p]
+    dc, ds = c - was[0], sn - was[1]
+    dx, dy = x - was[2] + dc * at[0] - ds * at[1], y - was[3] + ds * at[0] + dc * at[1]
+    moved = np.sqrt(dx * dx + dy * dy) + abs(bend - found.bend[p])
+    if found.found[p] < 0 or moved > found.margin[p] or np.sqrt(dc * dc + ds * ds) > found.turn[p]:
+        at[0], at[1] = found.pole[p, 0], found.pole[p, 1]
+        was[0], was[1], was[2], was[3] = c, sn, x, y
+        found.bend[p] = bend
+        found.margin[p], found.turn[p] = margin, TURN * margin / size
+        found.found[p] = look(a, pa, b, pb, margin + bend, found.turn[p], at, s)
+        while found.found[p] == 0 and 0.0 < found.margin[p] < size:
+            if look(a, pa, b, pb, 2.0 * found.margin[p] + bend, 2.0 * found.turn[p], at, s) != 0:
+                break
+            found.margin[p] *= 2.0
+            found.turn[p] *= 2.0
+    return found.found[p]

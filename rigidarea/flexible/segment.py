@@ -58,13 +58,13 @@ def contact(
     k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
     Returns the number of resultants, or MANY.
     """
-    place_leaves(a, wa, pose_a, qa, s.close, n_pairs, 0, stamp)
-    place_leaves(b, wb, pose_b, qb, s.close, n_pairs, 1, stamp)
+    place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
+    place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
     next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
     next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
     load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
     load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
-    pairs, regions, leaves = s.close, s.regions, s.edge[0]
+    pairs, regions, leaves = s.pairs, s.regions, s.edge[0]
     count = end = 0
     while end < n_pairs:
         # a group of pairs with one leaf of the slave

@@ -12,8 +12,6 @@ which are unknowns eliminated like the modes (``condense``), so that bodies may 
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 from numpy.typing import NDArray
 
@@ -22,9 +20,10 @@ from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import correct_forces, evaluate, poses
 from rigidarea.flexible.frame import inertia_forces
-from rigidarea.flexible.hub import Hub, direction, hub_of, hub_rate, prescribed
+from rigidarea.flexible.hub import Hub, hub_of, hub_rate
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.place import clear_nodes
+from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of, solve
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -37,63 +36,15 @@ HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn whe
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
-PACE = 0.8  # the first correction is taken to leave what it left in the step before, to this power (E. Hairer and G.
-# Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.8)
-UNSEEN = 8  # steps in a row that may end on such a word
+PACE = 2.0  # the first correction of a step is taken to leave this many times what it left in the step before (after E.
+# Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.8),
+UNSEEN = 3e-6  # and where that is so small a part of the largest force, it is not looked at again,
+LOOK = 8  # but for one step in so many
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
 SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
 
 NO_CONVERGENCE = -10
-
-
-class Scheme(NamedTuple):
-    """Constants of generalised-α for one step length."""
-
-    am: float
-    gamma: float
-    beta: float
-    h: float
-    acc: float  # ∂ acceleration / ∂ position
-    vel: float  # ∂ velocity / ∂ position
-    correction: float  # ∂ auxiliary acceleration / ∂ acceleration
-    scale: float  # of the dynamic rows, inverse of the multipliers'
-
-
-@kernel
-def _scheme(rho: float, h: float) -> Scheme:
-    am, af = (2.0 * rho - 1.0) / (rho + 1.0), rho / (rho + 1.0)
-    gamma = 0.5 + af - am
-    beta = 0.25 * (gamma + 0.5) ** 2
-    acc = (1.0 - am) / (h * h * beta * (1.0 - af))
-    return Scheme(am, gamma, beta, h, acc, gamma / (h * beta), (1.0 - af) / (1.0 - am), beta * h * h)
-
-
-@kernel
-def solve(a: Array, b: Array, n: int) -> None:
-    """Gaussian elimination with partial pivoting, in place: b becomes the solution. n is at most a few dozen."""
-    for i in range(n):
-        p = i
-        for r in range(i + 1, n):
-            if abs(a[r, i]) > abs(a[p, i]):
-                p = r
-        if p != i:
-            for c in range(i, n):
-                a[i, c], a[p, c] = a[p, c], a[i, c]
-            b[i], b[p] = b[p], b[i]
-        if a[i, i] == 0.0:
-            continue
-        for r in range(i + 1, n):
-            f = a[r, i] / a[i, i]
-            if f != 0.0:
-                for c in range(i + 1, n):
-                    a[r, c] -= f * a[i, c]
-                b[r] -= f * b[i]
-    for i in range(n - 1, -1, -1):
-        s = b[i]
-        for c in range(i + 1, n):
-            s -= a[i, c] * b[c]
-        b[i] = s / a[i, i] if a[i, i] != 0.0 else 0.0
 
 
 @kernel
@@ -130,124 +81,6 @@ def _number(sy, buf):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyped-def]
-    """Residual and matrix of one free frame; ``moment`` of its inertia. Returns the largest force, and residual."""
-    m, rhs, k, size, mass = buf.matrix, buf.rhs, 3 * b, sy.size[b], sy.mass[b]
-    mux, muy = state.mu[b, 0], state.mu[b, 1]
-    weight_x, weight_y = mass * sy.gravity[0], mass * sy.gravity[1]
-    rhs[k] = mass * state.acc[b, 0] - weight_x - buf.load[b, 0] - mux
-    rhs[k + 1] = mass * state.acc[b, 1] - weight_y - buf.load[b, 1] - muy
-    rhs[k + 2] = moment - buf.load[b, 2] - (hub.x * muy - hub.y * mux) - hub.moment
-    reference = max(np.hypot(weight_x, weight_y), mass * abs(state.acc[b, 0]), mass * abs(state.acc[b, 1]),
-                    abs(moment) / size, abs(buf.load[b, 2]) / size)  # fmt: skip
-    worst = max(abs(rhs[k]), abs(rhs[k + 1]), abs(rhs[k + 2]) / size)
-    # dynamic rows times scale, multipliers over scale
-    m[k, k] = m[k + 1, k + 1] = mass * scheme.acc * scheme.scale
-    m[k + 2, k + 2] = (sy.inertia[b] * scheme.acc + sy.damper[b] * scheme.vel) * scheme.scale
-    for i in range(k, k + 3):
-        for j in range(3 * len(sy.mass)):
-            m[i, j] += buf.tangent[i, j] * scheme.scale
-        rhs[i] = scheme.scale * (buf.push[i] - rhs[i])
-    return reference, worst
-
-
-@kernel
-def _mode_rows(body: Boundary, w: Work, sy, buf, state, b, hub):  # type: ignore[no-untyped-def]
-    """Adds all but inertia to the modes' residual; returns the largest force, and residual, as nodal ones."""
-    lo, hi = sy.first[b], sy.first[b + 1]
-    if lo == hi:
-        return 0.0, 0.0
-    c, s = buf.pose[b, 2], buf.pose[b, 3]
-    mux, muy = state.mu[b, 0], state.mu[b, 1]
-    residual, modes = buf.modal_residual[lo:hi], body.modes
-    _less(residual, modes, len(modes) - 3, c * mux + s * muy, -s * mux + c * muy)
-    for j in range(hi - lo):
-        residual[j] -= modes[-1, j] * hub.moment
-    for n in range(w.loaded[-1]):
-        node = w.loaded[n]
-        _less(residual, modes, 2 * node, w.node_load[node, 0], w.node_load[node, 1])
-    reference = worst = 0.0
-    for j in range(hi - lo):
-        elastic = sy.square[lo + j] * state.q[lo + j]
-        residual[j] += sy.viscous[lo + j] * state.dq[lo + j] + elastic
-        reference, worst = max(reference, abs(elastic)), max(worst, abs(residual[j]))
-    # a modal force of φ f, made a nodal one by the largest entry a mass-orthonormal mode can have
-    root = np.sqrt(sy.mass[b])
-    return reference * root, worst * root
-
-
-@kernel
-def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None:
-    """Takes the modal forces of a force on one node, rows ``row`` and ``row`` + 1, from the residual."""
-    row_x, row_y = modes[row], modes[row + 1]
-    for j in range(len(residual)):
-        residual[j] -= row_x[j] * fx + row_y[j] * fy
-
-
-@kernel
-def _constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):  # type: ignore[no-untyped-def]
-    """Rows of one body's pin and drive, its compliance at the hub among them; returns the largest violation."""
-    m, rhs, k = buf.matrix, buf.rhs, 3 * b
-    lo, hi = sy.first[b], sy.first[b + 1]
-    c, s, n = buf.pose[b, 2], buf.pose[b, 3], len(body.modes)
-    worst = 0.0
-    for kind in range(3):
-        row = buf.column[k + kind]
-        if row < 0:
-            continue
-        if kind == 0:
-            g = state.x[b, 0] + hub.x - sy.anchor[b, 0]
-            m[row, k], m[row, k + 2] = 1.0, -hub.y
-        elif kind == 1:
-            g = state.x[b, 1] + hub.y - sy.anchor[b, 1]
-            m[row, k + 1], m[row, k + 2] = 1.0, hub.x
-        else:
-            g = state.x[b, 2] + hub.turn - prescribed(sy.drive[b], t)
-            m[row, k + 2] = 1.0
-        worst = max(worst, abs(g) / (sy.size[b] if kind < 2 else 1.0))
-        for i in range(k, k + 3):
-            m[i, row] = -m[row, i]
-        rhs[row] = -g - buf.push[3 * len(sy.mass) + k + kind]
-        e = direction(kind, c, s)
-        for other in range(3):
-            column = buf.column[k + other]
-            if column < 0:
-                continue
-            d = direction(other, c, s)
-            value = 0.0
-            if body.flexibility.shape[0] > 0:
-                for i in range(3):
-                    for j in range(3):
-                        value += e[i] * body.flexibility[n - 3 + i, n - 3 + j] * d[j]
-            for j in range(hi - lo):
-                pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-                pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]
-                value += pe * pd * w.mobility[j]
-            m[row, column] += value / scheme.scale
-        # modes move the hub by their own residual in this iteration
-        for j in range(hi - lo):
-            pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-            rhs[row] += pe * buf.modal_residual[lo + j] * w.mobility[j]
-    return worst
-
-
-@kernel
-def _held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
-    """The contacts' tangent of bodies that are held by their hubs."""
-    m, n3 = buf.matrix, 3 * len(sy.mass)
-    for i in range(n3):
-        row = buf.column[i]
-        if row < 0:
-            continue
-        for j in range(n3):
-            if sy.fixed[j // 3] == 0:
-                m[j, row] += buf.tangent[j, n3 + i]
-            m[row, j] -= buf.tangent[n3 + i, j]
-            if buf.column[j] >= 0:
-                m[row, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scheme.scale
-
-
-@kernel
 def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
     state.q[i] += d
     state.dq[i] += scheme.vel * d
@@ -256,7 +89,7 @@ def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
+def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
     """Newton's correction of one body, from the solution in ``buf.rhs``; returns the largest change over its size."""
     rhs, k, change = buf.rhs, 3 * b, 0.0
     lo, hi = sy.first[b], sy.first[b + 1]
@@ -281,7 +114,22 @@ def _correct(body: Boundary, w: Work, sy, buf, s_load, state, scheme, b):  # typ
         for i in range(s_load.made[0]):
             if s_load.side[i] == b:
                 f += buf.modal[i, j] * buf.answer[i]
-        _move_mode(state, scheme, lo + j, (f - buf.modal_residual[lo + j]) * w.mobility[j])
+        buf.modes[0, j], buf.modes[1, j] = (f - buf.modal_residual[lo + j]) * w.mobility[j], 0.0
+    # what these do to each other as the frame turns (G is antisymmetric), and by the damper on the hub
+    d, moved = buf.modes[0], buf.modes[1]
+    turning = state.acc[b, 2] + 2.0 * state.v[b, 2] * scheme.vel
+    if sy.damper[b] > 0.0:
+        turned = 0.0 if sy.fixed[b] == 1 else rhs[k + 2]
+        for j in range(hi - lo):
+            turned += body.modes[-1, j] * d[j]
+        for j in range(hi - lo):
+            moved[j] -= body.modes[-1, j] * sy.damper[b] * scheme.vel * turned
+    for m in range(hi - lo):
+        row, x = g[m], turning * d[m]
+        for j in range(hi - lo):
+            moved[j] += row[j] * x
+    for j in range(hi - lo):
+        _move_mode(state, scheme, lo + j, d[j] + moved[j] * w.mobility[j])
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
     w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
     rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
@@ -320,20 +168,21 @@ def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-un
 
 @kernel
 def _pace(buf, worst):  # type: ignore[no-untyped-def]
-    """The part of the residual that the first correction will leave, by what it left in steps before; 1: not known.
+    """The part of the residual that the first correction will leave, by what it left in steps before; 1: not known,
+    or nothing touches, and looking costs little.
 
     ``buf.pace``: the slowest of the last step in which that was seen, its first residual, contact regions, and the
     steps since.
     """
-    if buf.pace[1] == 0.0 or buf.pace[3] >= UNSEEN:
+    if buf.counts[0] == 0 or buf.pace[1] == 0.0 or buf.pace[3] >= LOOK:
         return 1.0
-    return buf.pace[0] ** PACE * max(1.0, worst / buf.pace[1])
+    return PACE * buf.pace[0] * max(1.0, worst / buf.pace[1])
 
 
 @kernel
 def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-untyped-def]
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
-    scheme = _scheme(st.rho, h)
+    scheme = scheme_of(st.rho, h)
     count = len(sy.mass)
     _predict(state, scheme)
     for b in range(count):
@@ -370,7 +219,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             moment = inertia_forces(
                 sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), geometric_at(bodies, b), w.hub_load[0],
                 w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
-                buf.modal_residual[lo:hi],
+                buf.modal_residual[lo:hi], buf.modes,
             )  # fmt: skip
             buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3] = (
                 hub.x,
@@ -380,7 +229,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             )
             buf.hubs[b, 4] = moment
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
-            force, left = _mode_rows(body, w, sy, buf, state, b, hub)
+            force, left = mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
         off = eliminate_loads(bodies, sy, buf, state, s.load)
         worst = max(worst, off)
@@ -391,13 +240,13 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 continue
             body, w = boundary_at(bodies, b), work_at(bodies, b)
             hub = Hub(buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3])
-            force, left = _frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
+            force, left = frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
             reference, worst = max(reference, force), max(worst, left)
-            open_most = max(open_most, _constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h))
+            open_most = max(open_most, constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h))
         total, gap = joint_rows(sy, buf, state, end)
         open_most = max(open_most, gap)
         if st.spread:
-            _held_contacts(sy, buf, scheme)
+            held_contacts(sy, buf, scheme)
         if before > 0.0:
             rate = worst / before
             slowest = max(slowest, rate)
@@ -411,7 +260,12 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
             return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
-        sure = rate < FAST and SURE * rate * worst <= TOLERANCE * reference and rate * open_most <= CLOSURE
+        left = (
+            SURE * rate * worst <= TOLERANCE * reference
+            if before > 0.0
+            else rate * worst <= UNSEEN * reference
+        )
+        sure = rate < FAST and left and rate * open_most <= CLOSURE
         sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
         if sure and before == 0.0:
             buf.pace[3] += 1.0
@@ -423,7 +277,17 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         for b in range(count):
             change = max(
                 change,
-                _correct(boundary_at(bodies, b), work_at(bodies, b), sy, buf, s.load, state, scheme, b),
+                _correct(
+                    boundary_at(bodies, b),
+                    work_at(bodies, b),
+                    coupling_at(bodies, b),
+                    sy,
+                    buf,
+                    s.load,
+                    state,
+                    scheme,
+                    b,
+                ),
             )
         correct_joints(sy, buf, state, end, scheme.scale)
         if sure:

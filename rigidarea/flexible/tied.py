@@ -11,8 +11,9 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi
 
 from rigidarea.chipmunk import address_of, kinds_of_joints, layout
-from rigidarea.flexible.inspace import LINK, MEMBER, OFFSETS
+from rigidarea.flexible.inspace import LINK, MEMBER, PLACES
 from rigidarea.flexible.integrate import Body
+from rigidarea.store import OFFSETS
 
 Pair = tuple[float, float]
 
@@ -82,7 +83,9 @@ class Tied:
                 row["at"], row["count"] = kinds[n + kinds.index(kind)], kinds[2 * n + kinds.index(kind)]
             row["warm_x"], row["warm_y"] = warm.get(int(row["address"]), (0.0, 0.0))
         at = layout()
-        self.offsets = np.array([at[name] for name in OFFSETS], np.int64)
+        self.offsets = np.zeros(1, PLACES)[0]
+        for name in OFFSETS:
+            self.offsets[name] = at[name]
 
     def release(self) -> None:
         """The bodies are pymunk's again."""

@@ -28,7 +28,8 @@ TANGENT_STIFFNESS = 2.0 / 7.0
 #: First touch slower than what the load gives in so many substeps (or natural times, where they are longer) is rest.
 REST_KICKS = 2.0
 #: Deeper (at first touch, or than before) than so many substeps' motion: put there, not come there. No impact then.
-MOST_ARRIVED = 2.0
+#: Three: what waits for the user's verdict comes as deep as in the whole frame of two, and half a substep.
+MOST_ARRIVED = 3.0
 #: Restitution below this is taken as this: the exact law's damping grows as 1/e.
 LEAST_RESTITUTION = 0.01
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
@@ -59,7 +60,7 @@ STRAIGHT_WAY = 0.1
 #: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
 SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
-SEARCH_SWEEPS = 5
+SEARCH_SWEEPS = 10
 #: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
 #: converged.
 GAINED = 1.005

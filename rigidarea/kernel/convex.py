@@ -33,8 +33,9 @@ def convex_pair(
     # where A enters B, and where it leaves: edge of A, edge of B, point
     in_a = in_b = out_a = out_b = -1
     in_x = in_y = out_x = out_y = 0.0
-    b_left = b_bottom = np.inf
-    b_right = b_top = -np.inf
+    # a box that holds B, and one that B's points fill: whatever holds B holds that
+    b_left = b_bottom = least_x = least_y = np.inf
+    b_right = b_top = most_x = most_y = -np.inf
     dx, dy = placed(qb, b0, rel)
     for j in range(b0, b0 + nb):
         cx = dx
@@ -45,6 +46,10 @@ def convex_pair(
         high_x = max(cx, dx) + bow
         low_y = min(cy, dy) - bow
         high_y = max(cy, dy) + bow
+        least_x = min(least_x, dx)
+        most_x = max(most_x, dx)
+        least_y = min(least_y, dy)
+        most_y = max(most_y, dy)
         b_left = min(b_left, low_x)
         b_right = max(b_right, high_x)
         b_bottom = min(b_bottom, low_y)
@@ -118,7 +123,7 @@ def convex_pair(
                     in_x = x2
                     in_y = y2
     if n == 0:
-        a_holds_b = b_left >= left and b_right <= right and b_bottom >= bottom and b_top <= top
+        a_holds_b = least_x >= left and most_x <= right and least_y >= bottom and most_y <= top
         b_holds_a = b_left <= left and b_right >= right and b_bottom <= bottom and b_top >= top
         return OTHERWISE if a_holds_b or b_holds_a else 0
     if n != 2 or in_a < 0 or out_a < 0:

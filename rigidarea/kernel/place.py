@@ -22,6 +22,15 @@ class Pose(NamedTuple):
     s: float
 
 
+@kernel(forceinline=True)
+def place(body: Any) -> None:
+    """What follows from a body's centre and angle."""
+    body.c = math.cos(body.angle)
+    body.s = math.sin(body.angle)
+    body.ox = body.x - (body.c * body.cog_x - body.s * body.cog_y)
+    body.oy = body.y - (body.s * body.cog_x + body.c * body.cog_y)
+
+
 @kernel
 def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
     """An outline (its head, its body's pose) as the first one sees it."""

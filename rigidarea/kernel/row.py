@@ -120,8 +120,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where it comes slowly to rest, nor where it has been pushed already:
-    others lie there.
+    so much further on it is put (`shift`). Not where it has been pushed already: others lie there.
     """
     back = r.back
     row.alpha = 0.0
@@ -148,9 +147,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if (leaving < 0.0 or touch * abs(back) > HIT * least_extent(a, b)) and not (
-        (a.mobile and a.pushed) or (b.mobile and b.pushed)
-    ):
+    if not ((a.mobile and a.pushed) or (b.mobile and b.pushed)):
         row.shift = back
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time

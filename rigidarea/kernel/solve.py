@@ -15,7 +15,7 @@ from .broad import search, somebody_left
 from .constants import MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
-from .place import seen_from
+from .place import place, seen_from
 from .pool import Pool
 from .row import make_row, push, settle, visit
 from .stiffness import carry
@@ -36,19 +36,11 @@ from .tables import (
     Law,
     Tables,
 )
+from .verdict import allowed
 from .work import Work
 
 #: What a kernel may ask for before it can go on.
 GROW_PAIRS = 3
-
-
-@kernel(forceinline=True)
-def place(body: Any) -> None:
-    """What follows from a body's centre and angle."""
-    body.c = math.cos(body.angle)
-    body.s = math.sin(body.angle)
-    body.ox = body.x - (body.c * body.cog_x - body.s * body.cog_y)
-    body.oy = body.y - (body.s * body.cog_x + body.c * body.cog_y)
 
 
 @kernel
@@ -236,26 +228,6 @@ def _farthest(pool: Pool, shape: Any, body: Any) -> float:
 
 
 @kernel
-def allowed(tables: Tables, pair: Any, frame: int) -> bool:
-    """Whether the pair may collide in this frame: the user's verdict, where there is somebody to ask.
-
-    A pair that Chipmunk has not reported in this frame has come to touch within it. Where a callback of the user's
-    would be asked, it waits for that.
-    """
-    if pair.stamp == frame:
-        return bool(pair.verdict)
-    sa = tables.shapes[pair.a]
-    sb = tables.shapes[pair.b]
-    if (sa.heard | sb.heard) & 1 or sa.heard & sb.heard & 2:  # as they were set in the frame before
-        return bool(pair.verdict) and pair.stamp == frame - 1
-    pair.friction = sa.friction * sb.friction
-    pair.elasticity = sa.elasticity * sb.elasticity
-    pair.surface_x = sb.surface_x - sa.surface_x
-    pair.surface_y = sb.surface_y - sa.surface_y
-    return True
-
-
-@kernel
 def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     """Rows for the regions of pair p, up to region `until` (-1: for all); False: no room for them."""
     counters = tables.counters
@@ -277,7 +249,6 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     return True
 
 
-@kernel
 def gather(
     pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
 ) -> tuple[int, int]:

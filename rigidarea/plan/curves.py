@@ -84,9 +84,8 @@ def facet_angle(outline: Outline) -> float:
 
 def facets_of(seen: Survey, time: float) -> list[Facet]:
     found = []
-    for k, shape in enumerate(seen.shapes):
-        outline = getattr(shape, "outline", None)
-        if seen.radius[k] == 0.0 or not isinstance(outline, Outline) or outline.arcs:
+    for k, outline in enumerate(seen.outlines):
+        if seen.radius[k] == 0.0 or outline is None or outline.arcs:
             continue
         near = seen.owner[seen.pairs[(seen.pairs == k).any(axis=1)]].ravel()
         extent = float(seen.extent[near].min(initial=math.inf))

@@ -89,12 +89,32 @@ def curve_loss(speed: Number, radius: Number, h: float, time: float, phase2: Num
     In each substep the path turns by v h/rho, and the contact has to take off the velocity v² h/rho that now points
     into it, (v h/rho)²/2 of its energy. A contact that is soft for the step stores it and gives it back: it takes the
     share r = (w h)²/(1 + (w h)²) of it at once (backward Euler), and of what it has stored the same share is damped
-    before it has come back. So r² of it is lost a substep, in T/h of them. (Discs in bowls at penetrations from 1e-2 to
-    1e-6: that to half of it; where friction rolls them, half as much again.)
+    before it has come back. So r² of it is lost a substep, in T/h of them. So it is where the solve sees no curvature
+    (`turning_gap`): measured twice as much.
     """
     turned = speed / radius
     stiff = phase2 / (1.0 + phase2)
     return 0.5 * turned * turned * h * time * stiff * stiff
+
+
+def turning_gap(rate: Number, radius: Number, h: float, depth: Number) -> Number:
+    """How far a curve turns away in a substep over the depth of the contact (dimensionless): (v h)²/2 rho d.
+
+    `rate`: (v/rho)². The solve asks for the speed that leaves no such gap (`kernel.turning`), by the curvature that
+    it sees of the region. Where the gap is deeper than the region, a sampled curve shows it a facet or two and no
+    curvature.
+    """
+    return 0.5 * rate * radius * h * h / depth
+
+
+def lens_depth(p: Number, extent: float, clearance: float) -> Number:
+    """How deep an arc sinks into one that it nearly fills, over their clearance (dimensionless): (1.06 p s/c)^(2/3).
+
+    The lens that they share at depth d has the area 4/3 sqrt(2 R) d^(3/2), 1/R = 1/R1 - 1/R2, R about s²/4c, and needs
+    p s² for the weight.
+    """
+    found: Number = (1.06 * p * extent / clearance) ** (2.0 / 3.0)
+    return found
 
 
 def bounce_error(gravity: Number, h: float, speed: Number) -> Number:
@@ -236,13 +256,17 @@ def sweeps_wanted(layers: Number, ratio: Number) -> Number:
     return CARRY * layers * np.sqrt(np.maximum(ratio, 1.0))
 
 
-def sweeps_ours(wanted: float, shared: bool) -> float:
-    """Sweeps of ours in which a load has gone through a pile (dimensionless).
+def sweeps_ours(layers: float, shared: bool, struck: float = 1.0) -> float:
+    """Sweeps of ours in which a load has gone through a pile (dimensionless): CARRY n sqrt(struck).
 
     Every `SEARCH_SWEEPS` there is a step for all contacts at once (`kernel.conjugate`): one is exact on towers and
-    chains, whatever their masses. Where supports are shared it is a step of conjugate gradients among others.
+    chains, whatever their masses. Where supports are shared it is a step of conjugate gradients among others. struck:
+    the mass of what falls on the pile over that of what it falls on, 1 where nothing does: what lies on it already
+    has been carried before.
     """
-    return wanted if shared else min(wanted, SEARCH_SWEEPS)
+    if shared or struck > 1.0:
+        return CARRY * layers * math.sqrt(max(struck, 1.0))
+    return min(CARRY * layers, SEARCH_SWEEPS)
 
 
 def pile_sag(gravity: Number, h: float, extent: Number, wanted: Number, sweeps: float) -> Number:

@@ -33,6 +33,7 @@ class Facts:
     tower: int  # layers of the highest pile
     wanted: float  # sweeps of Chipmunk's with which its loads are found
     shared: bool  # whether a body of it lies on two
+    struck: float  # mass of what falls on another over that of the other, the largest; 1 at least
     flat: (
         Worst | None
     )  # how many times its depth a flush body sinks: what it carries, how near its base's edge it stands
@@ -49,7 +50,7 @@ class Facts:
     largest: float  # largest extent of what moves (length)
     slowest: Worst | None  # 1/v of what moves already and is pressed (time/length)
     toppling: float  # rate at which what stands on a corner falls (1/time)
-    curves: Array  # (curves, 6): see `_curves`
+    curves: Array  # (curves, 7): see `_curves`
     gap: tuple[float, int]  # least time between two touches in a row, body
     teeth: tuple[float, int]  # way of a tooth in a frame over its chord, shape
     driven: tuple[float, int]  # fastest spin of teeth or slots times their lever (1/time), shape
@@ -134,6 +135,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         tower=tower,
         wanted=float(est.sweeps_wanted(float(tower), max(heavier, 1.0))),
         shared=shared,
+        struck=falls_on,
         flat=_worst(carried, free & polygon & ~corners & (g > 0.0)),
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
         corner=_worst(1.0 / extent, corners & upright & ~held),
@@ -198,7 +200,7 @@ def _flush_with(seen: Survey, turned: NDArray[np.bool_]) -> NDArray[np.bool_]:
         if k not in edges:
             edges[k] = np.zeros(0)
             shape = seen.shapes[k]
-            if isinstance(shape, pymunk.Poly) and not hasattr(shape, "outline"):
+            if isinstance(shape, pymunk.Poly) and seen.outlines[k] is None:
                 body = seen.bodies[seen.owner[k]]
                 ring = np.array(shape.get_vertices())
                 along = np.roll(ring, -1, axis=0) - ring
@@ -248,13 +250,14 @@ def _drops(seen: Survey) -> tuple[Array, NDArray[np.bool_], float]:
         found = below[np.arange(len(k)), under]
         drops[seen.owner[k[found]]] = (low[k] - high[under])[found]
         above, base = seen.owner[k[found]], seen.owner[under[found]]
-        lands[above] = seen.moves[base]
-        heavier = max(heavier, float((seen.mass[above] / seen.mass[base])[seen.moves[base]].max(initial=1.0)))
+        lands[above] = seen.mobile[base]
+        weight = seen.inertia[above] / seen.inertia[base]
+        heavier = max(heavier, float(weight[seen.mobile[base]].max(initial=1.0)))
     return drops, lands, heavier
 
 
 def _curves(seen: Survey, time: float) -> Array:
-    """Bodies that follow a curve which does not give way: (v/rho)², extent, rho, body, time on it, whether it bounces.
+    """Bodies that follow a curve which does not give way: (v/rho)², extent, rho, body, time on it, bounces, sampled.
 
     On a hump a body is for about a radian, then it has left it. Of equal kinds the worst.
     """
@@ -264,7 +267,7 @@ def _curves(seen: Survey, time: float) -> Array:
     both = (seen.radius[i] != 0.0) & (seen.radius[j] != 0.0) & (seen.moves[a] != seen.moves[b])
     both &= rho > 1e-9 * np.maximum(np.abs(seen.radius[i]), np.abs(seen.radius[j]))
     if seen.g == 0.0 or not both.any():
-        return np.zeros((0, 6))
+        return np.zeros((0, 7))
     i, j, rho = i[both], j[both], rho[both]
     first = seen.moves[seen.owner[i]]
     mover, ground = np.where(first, i, j), np.where(first, j, i)
@@ -273,15 +276,21 @@ def _curves(seen: Survey, time: float) -> Array:
         fall = seen.boxes[mover, axis] - seen.boxes[ground, axis]
     else:
         fall = seen.boxes[ground, axis + 2] - seen.boxes[mover, axis + 2]
-    fall = np.where(seen.radius[mover] < 0.0, rho, fall)  # a ring hangs: it starts no higher than its middle
+    middle = 0.5 * (seen.boxes[:, axis] + seen.boxes[:, axis + 2])
+    hung = (middle[mover] - middle[ground]) * (1.0 if seen.gravity[axis] < 0.0 else -1.0) + rho
+    fall = np.where(
+        seen.radius[mover] < 0.0, hung, fall
+    )  # a ring hangs: over the lowest that its middle may come
     drop = np.clip(np.minimum(fall, min(2.0 * float(rho.max()), 0.5 * seen.g * time**2)), 0.0, 2.0 * rho)
     speed = seen.speed[seen.owner[mover]] + seen.speed[seen.owner[ground]]
     rate = (speed**2 + seen.g * drop) / rho**2  # the mean of v² on the way down
     hump = (seen.radius[mover] > 0.0) & (seen.radius[ground] > 0.0)
     lasts = np.where(hump, np.minimum(time, 1.0 / np.sqrt(np.maximum(rate, 1e-300))), time)
+    sampled = np.array([outline is not None and not outline.arcs for outline in seen.outlines], bool)
+    faceted = sampled[mover] | sampled[ground]
     bounces = (seen.elasticity[mover] * seen.elasticity[ground] > 0.0) & ~hump
     rows = np.column_stack(
-        (rate, seen.extent[seen.owner[mover]], rho, seen.owner[mover], lasts, bounces)
+        (rate, seen.extent[seen.owner[mover]], rho, seen.owner[mover], lasts, bounces, faceted)
     ).astype(np.float64)
     kind = np.column_stack((np.round(np.log2(np.maximum(rows[:, :3], 1e-300)), 0), bounces))
     _, kinds = np.unique(kind, axis=0, return_index=True)
@@ -291,7 +300,7 @@ def _curves(seen: Survey, time: float) -> Array:
 
 def _gap(seen: Survey) -> tuple[float, int]:
     """Where a body waits close behind another that is about to be struck: gap over speed (time), and who."""
-    fastest = float(seen.speed[seen.moves].max(initial=0.0))
+    fastest = seen.fastest
     if fastest == 0.0 or not len(seen.pairs):
         return math.inf, -1
     a, b = seen.owner[seen.pairs].T
@@ -372,9 +381,8 @@ def _overlapped(seen: Survey) -> tuple[float, int]:
     if not len(seen.pairs):
         return 0.0, -1
     i, j = seen.pairs.T
-    circles = np.array(
-        [isinstance(shape, pymunk.Circle) and not hasattr(shape, "outline") for shape in seen.shapes]
-    )
+    plain = [outline is None for outline in seen.outlines]
+    circles = np.array([isinstance(shape, pymunk.Circle) for shape in seen.shapes]) & plain
     flush = (seen.radius == 0.0) & ~seen.corners & ~seen.concave
     segments = np.array([isinstance(shape, pymunk.Segment) for shape in seen.shapes])
     depth = np.where((flush & ~segments)[i] & (flush & ~segments)[j], -seen.gaps, 0.0)

@@ -29,30 +29,32 @@ class Part(NamedTuple):
 
 
 def parts_of(seen: Survey, space: pymunk.Space, frame: float, time: float) -> list[Part]:
-    """The parts of a space, one a kind; a single one where there is but one kind."""
-    static = np.array([body.body_type == pymunk.Body.STATIC for body in seen.bodies])
-    labels, several = _islands(seen, space, static)
+    """The parts of a space, one a kind; none where all is of one kind."""
+    static = seen.static
+    labels, several = _islands(seen, space)
     kind = several.astype(np.int64)  # of each island
     toothed = np.zeros(len(several), bool)
     toothed[labels[seen.owner[seen.concave]]] = True
     kind[toothed & several] = 2
     of = np.where(static, -1, kind[labels])
+    kinds = np.unique(of[seen.moves])
+    if len(kinds) < 2:
+        return []
     found = []
-    for k in np.unique(of[seen.moves]):
+    for k in kinds:
         mine = of == k
-        part = facts(alone(seen, mine, static), frame, time)
+        part = facts(alone(seen, mine), frame, time)
         found.append(Part(KINDS[k], [body for body, own in zip(seen.bodies, mine) if own], part))
     return found
 
 
-def _islands(
-    seen: Survey, space: pymunk.Space, static: NDArray[np.bool_]
-) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+def _islands(seen: Survey, space: pymunk.Space) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
     """(bodies,) number of its island, and (islands,) whether it has several bodies; what is static is none's."""
     index = {body: i for i, body in enumerate(seen.bodies)}
     joints = [(index.get(joint.a, -1), index.get(joint.b, -1)) for joint in space.constraints]
     links = np.concatenate((seen.owner[seen.pairs], np.array(joints, np.int64).reshape(-1, 2)))
     links = links[(links >= 0).all(axis=1)]
+    static = seen.static
     links = links[~static[links].any(axis=1)]
     labels = np.arange(len(seen.bodies))
     while True:  # the least number of an island goes along its links, and along what it has come to already
@@ -66,14 +68,14 @@ def _islands(
     return labels, np.bincount(labels[~static], minlength=len(labels)) > 1
 
 
-def alone(seen: Survey, mine: NDArray[np.bool_], static: NDArray[np.bool_]) -> Survey:
+def alone(seen: Survey, mine: NDArray[np.bool_]) -> Survey:
     """The survey as if only these bodies moved, and nobody else were there but what is static."""
     free = mine & seen.moves
     own = mine[seen.owner]
     pairs = own[seen.pairs].any(axis=1)
     used = own.copy()
     used[seen.pairs[pairs].ravel()] = True
-    there = mine | static
+    there = mine | seen.static
     way = seen.velocity[free]
     return seen._replace(
         mass=np.where(free, seen.mass, math.inf),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pymunk
@@ -22,6 +22,7 @@ from .facts import AHEAD, Facts, facts
 from .parts import Part, parts_of
 from .predict import Cause, Setting, causes, total
 from .survey import survey
+from .table import Line, lines_of, text_of
 
 if TYPE_CHECKING:
     from .watch import Watch
@@ -40,17 +41,6 @@ SLOP = 0.1
 SECONDS = 10.0
 """Time that is planned for, unless it is said."""
 SETTINGS = ("level", "steps", "sweeps", "penetration", "stiffness", "sampling")
-
-
-class Line(NamedTuple):
-    """One line of a plan's table."""
-
-    what: str
-    choice: str
-    decided_by: str
-    error: float
-    cost_s: float  # a frame
-    target: Any  # what `Plan.override` takes for it; None: the whole space
 
 
 class Plan:
@@ -84,6 +74,7 @@ class Plan:
         self.finer: dict[pymunk.Body, int] = {}
         self._parts: list[tuple[Part, int]] = []
         self._asked: set[pymunk.Body] = set()
+        self._sampled: dict[pymunk.Shape, float] = {}
         self.reachable = False
         self.error = self.cost_s_per_s = math.inf
         self.causes: list[Cause] = []
@@ -129,7 +120,9 @@ class Plan:
             self.reachable = self.error <= MARGIN * self.tolerance
         self._parts = []
         if chosen.level == "rigid" and "steps" not in given:
-            apart = self._apart(given, cost if best or keep else math.inf, chosen if keep else None)
+            apart = self._apart(
+                given, cost if best or keep else math.inf, Setting(self.level, *before) if keep else None
+            )
             if apart is not None:
                 chosen, cost, self._parts = apart
                 self.reachable = True
@@ -172,6 +165,8 @@ class Plan:
                 enough = max(1.1 * min(errors), 0.6 * self.tolerance)
                 depth = next(p for p, error in zip(depths, errors) if error <= enough)
                 out += [Setting("rigid", n, m, depth) for m in sweeps]
+                if total(found, Setting("rigid", n, sweeps[0], depth)) <= MARGIN * self.tolerance:
+                    break  # more substeps are dearer, whatever the sweeps
         native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
         if native:
             slop = given.get("penetration", SLOP * self.tolerance / found.tower)
@@ -187,7 +182,7 @@ class Plan:
         Sweeps and penetration are the space's: the most, and the least, that a part wants. least: no coarser than that.
         """
         parts = parts_of(self._survey, self.space, self.frame, self.seconds)
-        if len(parts) < 2:
+        if not parts:
             return None
         best = []
         for part in parts:
@@ -214,7 +209,8 @@ class Plan:
             steps = [(_moving(part.facts), _touching(part.facts), n) for part, n in told]
             cost = costs.turns_frame(steps, sweeps)
             if cost < whole and (found is None or cost < found[1]):
-                found = Setting("rigid", min(n for _, n in told), sweeps, depth), cost, told
+                base = max(min(n for _, n in told), least.steps if least else 1)
+                found = Setting("rigid", base, sweeps, depth), cost, told
         return found
 
     def _within(self, part: Part, setting: Setting) -> bool:
@@ -284,6 +280,9 @@ class Plan:
         current = attached(space)
         space.iterations = self.sweeps
         for shape, sagitta in self.sampling.items():
+            if self._sampled.get(shape) == sagitta:
+                continue  # as it is: to be read again would cost it its contacts
+            self._sampled[shape] = sagitta
             shape.outline = shape.outline.sample(sagitta)  # type: ignore[attr-defined]
             if current is not None:
                 current.refresh(shape)
@@ -329,93 +328,11 @@ class Plan:
 
     @property
     def lines(self) -> list[Line]:
-        """The table: the space first, then what decides, shapes that are sampled anew, elastic bodies."""
-        mine = self.overrides.get(None, {})
-        head = f"{self.level}, {self.steps} x {self.sweeps} sweeps"
-        if self.level == "pymunk":
-            head += f", slop {self.penetration:.0e}"
-        elif self.stiffness is not None:
-            head += f", k {self.stiffness:.3g}"
-        else:
-            head += f", penetration {self.penetration:.0e}"
-        if mine:
-            head += f" (yours: {', '.join(sorted(mine))})"
-        worst = (
-            self.causes[0]
-            if self.causes
-            else Cause("nothing", 0.0, None, "nothing moves, or nothing touches")
-        )
-        out = [Line("space", head, f"{worst.name}: {worst.number}", self.error, self._frame_cost, None)]
-        seen = self._survey
-        share = self._frame_cost / max(1, int(seen.moves.sum()))
-        for cause in self.causes:
-            out.append(
-                Line(
-                    self._name(cause.who),
-                    "as the space",
-                    f"{cause.name}: {cause.number}",
-                    cause.error,
-                    share,
-                    cause.who,
-                )
-            )
-        for part, steps in self._parts:
-            worst = max(
-                causes(part.facts, self._setting(steps)), key=lambda cause: cause.error, default=worst
-            )
-            first = part.bodies[0]
-            out.append(
-                Line(
-                    f"{len(part.bodies)} {part.kind}",
-                    f"{steps} substeps",
-                    f"{worst.name}: {worst.number}",
-                    worst.error,
-                    self._cost_of(part, self._setting(steps)),
-                    first,
-                )
-            )
-        for target, settings in self.overrides.items():
-            if isinstance(target, pymunk.Body) and "steps" in settings:
-                text = f"{settings['steps']} substeps for its island (yours)"
-                out.append(Line(self._name(target), text, "", float("nan"), 0.0, target))
-        for shape, sagitta in self.sampling.items():
-            yours = " (yours)" if "sampling" in self.overrides.get(shape, {}) else ""
-            turn = est.facet_turn(abs(float(seen.radius[seen.shapes.index(shape)])) or 1.0, sagitta)
-            out.append(
-                Line(
-                    self._name(shape),
-                    f"sampled to {sagitta:.1e}{yours}",
-                    f"facets turn by {turn:.1e} rad",
-                    float("nan"),
-                    0.0,
-                    shape,
-                )
-            )
-        for choice in self.elastic:
-            yours = " (yours)" if choice.overridden else ""
-            out.append(
-                Line(
-                    self._name(choice.body),
-                    f"{choice.level}{yours}",
-                    choice.reason,
-                    choice.error,
-                    0.0,
-                    choice.body,
-                )
-            )
-        asleep = self.may_sleep
-        if asleep:
-            out.append(
-                Line(
-                    f"{len(asleep)} bodies",
-                    "may sleep",
-                    f"rest on something, slower than {self.idle_speed:.1e}",
-                    0.0,
-                    0.0,
-                    None,
-                )
-            )
-        return out
+        """The table: the space first, then what decides, parts, shapes that are sampled anew, elastic bodies."""
+        return lines_of(self)
+
+    def __str__(self) -> str:
+        return text_of(self)
 
     def _setting(self, steps: int) -> Setting:
         return Setting(self.level, steps, self.sweeps, self.penetration)
@@ -439,39 +356,6 @@ class Plan:
         rolls[seen.owner[seen.corners | (seen.radius != 0.0)]] = True
         return [seen.bodies[i] for i in np.flatnonzero(lies & still & seen.moves & ~rolls)]
 
-    def _name(self, who: Any) -> str:
-        if who is None:
-            return "space"
-        if isinstance(who, pymunk.Shape):
-            body = who.body
-            return f"{type(who).__name__} of {self._name(body)}" if body is not None else type(who).__name__
-        if who is self.space.static_body:
-            return "static_body"
-        for i, body in enumerate(self.space.bodies):
-            if body is who:
-                return f"bodies[{i}]"
-        return "a body that is gone"
-
-    def __str__(self) -> str:
-        rows = [("", "choice", "decided by", "error", "ms a frame")]
-        for line in self.lines:
-            error = "" if math.isnan(line.error) else f"{line.error:.1e}"
-            rows.append(
-                (
-                    line.what,
-                    line.choice,
-                    line.decided_by,
-                    error,
-                    f"{1e3 * line.cost_s:.3g}" if line.cost_s else "",
-                )
-            )
-        widths = [max(len(row[i]) for row in rows) for i in range(5)]
-        table = "\n".join(
-            "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows
-        )
-        verdict = "predicted" if self.reachable else "no setting is predicted to reach it: the least is"
-        return f"plan for {self.tolerance:g} over {self.seconds:g} s: {verdict} {self.error:.1e}\n{table}"
-
 
 def _moving(found: Facts) -> int:
     """How many bodies move."""
@@ -491,7 +375,7 @@ def _cost(setting: Setting, bodies: int, pairs: int) -> float:
 
 def _native_will_do(found: Facts, stiffness: float | None) -> bool:
     """Whether Chipmunk sees the same outlines: none of its shapes stands in for another."""
-    return stiffness is None and not any(hasattr(shape, "outline") for shape in found.seen.shapes)
+    return stiffness is None and all(outline is None for outline in found.seen.outlines)
 
 
 def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]) -> None:

@@ -31,9 +31,14 @@ class Survey(NamedTuple):
 
     bodies: list[pymunk.Body]
     shapes: list[pymunk.Shape]
+    outlines: list[Outline | None]  # those that shapes stand in for
     gravity: tuple[float, float]
     mass: Array  # (bodies,), infinite where nothing moves it
     moment: Array
+    fastest: float  # of all that moves, whatever part of it is looked at (length/time)
+    mobile: NDArray[np.bool_]  # (bodies,) which move on their own, likewise
+    static: NDArray[np.bool_]  # (bodies,)
+    inertia: Array  # (bodies,) mass, likewise
     velocity: Array  # (bodies, 2)
     speed: Array
     spin: Array
@@ -133,6 +138,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     spin = np.array([body.angular_velocity for body in every])
     index = {body: i for i, body in enumerate(every)}
     shapes: list[pymunk.Shape] = []
+    outlines: list[Outline | None] = []
     rows: list[tuple[float, ...]] = []
     for shape in space.shapes:
         body = shape.body
@@ -141,7 +147,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
         i = index[body]
         box = shape.bb
         width, height = box.right - box.left, box.top - box.bottom
-        outline = getattr(shape, "outline", None)
+        outline = vars(shape).get("outline")  # (getattr on a shape without one costs ten times as much)
         radius, corner, hollow = 0.0, False, False
         if isinstance(outline, Outline):
             thick = outline.smallest_extent if free[i] else min(width, height)
@@ -159,6 +165,7 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
             thick = _thickness(area, width, height, gyration2)
             corner = abs(width * height - area) > FLUSH * area
         shapes.append(shape)
+        outlines.append(outline if isinstance(outline, Outline) else None)
         rows.append(
             (
                 *(i, box.left, box.bottom, box.right, box.top, thick, radius, corner, hollow),
@@ -186,13 +193,18 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     gaps = np.maximum(
         np.maximum(a[:, 0] - b[:, 2], b[:, 0] - a[:, 2]), np.maximum(a[:, 1] - b[:, 3], b[:, 1] - a[:, 3])
     )
-    radii = _inner_radii(table[:, 6], boxes, pairs, shapes)
+    radii = _inner_radii(table[:, 6], boxes, pairs, outlines)
     return Survey(
         bodies=every,
         shapes=shapes,
+        outlines=outlines,
         gravity=gravity,
         mass=mass,
         moment=moment,
+        fastest=float(speed[free].max(initial=0.0)),
+        mobile=free,
+        static=np.array([kind == pymunk.Body.STATIC for kind in kinds]),
+        inertia=mass,
         velocity=velocity,
         speed=speed,
         spin=np.abs(spin),
@@ -213,14 +225,16 @@ def survey(space: pymunk.Space, ahead: float = 0.0, frame: float = 0.0) -> Surve
     )
 
 
-def _inner_radii(radius: Array, boxes: Array, pairs: Ints, shapes: list[pymunk.Shape]) -> Array:
+def _inner_radii(radius: Array, boxes: Array, pairs: Ints, outlines: list[Outline | None]) -> Array:
     """Radii of curvature, of outlines with holes that of the hole which something lies in (negative: hollow)."""
     found = radius.copy()
-    for pair in pairs:
+    holed = np.array([outline is not None and len(outline.rings) > 1 for outline in outlines], bool)
+    for pair in pairs[holed[pairs].any(axis=1)]:
         for k, other in (pair, pair[::-1]):
-            outline = getattr(shapes[k], "outline", None)
-            if not isinstance(outline, Outline) or len(outline.rings) < 2:
+            outline = outlines[k]
+            if not holed[k]:
                 continue
+            assert outline is not None
             inside = (boxes[k, :2] < boxes[other, :2]).all() and (boxes[other, 2:] < boxes[k, 2:]).all()
             if inside:
                 hole = max(outline.rings[1:], key=len)
@@ -256,20 +270,11 @@ def _near(
         & (free[i] | free[j])
     )
     i, j = i[near], j[near]
-    alone = [k for k in range(len(i)) if _apart(shapes[i[k]], shapes[j[k]])] if len(i) else []
-    found = np.column_stack((i, j)).astype(np.int64)
-    return np.delete(found, alone, axis=0)
-
-
-_ALL = pymunk.ShapeFilter.ALL_CATEGORIES()
-
-
-def _apart(a: pymunk.Shape, b: pymunk.Shape) -> bool:
-    """Whether their filters say that the two never collide (asked only where the user has set one)."""
-    one, other = a.filter, b.filter
-    if one.group and one.group == other.group:
-        return True
-    return not (one.categories & other.mask and other.categories & one.mask)
+    filters = np.array([shape.filter for shape in shapes], np.int64)
+    group, categories, mask = filters.T
+    apart = (group[i] != 0) & (group[i] == group[j])  # as Chipmunk says that two never collide
+    apart |= (categories[i] & mask[j] == 0) | (categories[j] & mask[i] == 0)
+    return np.column_stack((i, j)).astype(np.int64)[~apart]
 
 
 def _held(space: pymunk.Space, index: dict[pymunk.Body, int], free: NDArray[np.bool_]) -> NDArray[np.bool_]:

@@ -14,7 +14,6 @@ import math
 import statistics
 import time as clock
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -32,11 +31,9 @@ from ..study.records import Progress, Row, append_rows, read_rows
 from ..study.scene import (
     ANGLE,
     Array,
-    Body,
     Circle,
     Curve,
     Polygon,
-    Rings,
     Scene,
     Segment,
     Trace,
@@ -48,11 +45,10 @@ from ..study.scene import (
 from ..study.sweep import key
 from ..study.timing import one_core, timed
 from .plan import Plan, plan
+from .variations import variations
 
 TOLERANCES = (0.1, 0.01, 0.001)
 VARIATIONS = 100
-LONGEST = 2.0
-"""Simulated time of a variation, at most (s): further on, contacts that come and go part any two runs."""
 BUDGET_S = 0.3
 """Processor time (s) beyond which finer settings of a grid are not tried: they would not be the cheapest of
 anything."""
@@ -60,8 +56,8 @@ TIMED = 4
 """So many of the settings that are within a tolerance, the cheapest by a first timing, are timed again beside the
 plan."""
 ROUNDS, PATIENCE_S = 3, 0.3
-CACHE = 1 << 25
-"""More than the caches of a core hold (bytes)."""
+CACHE = 1 << 22
+"""More than the caches that a core has to itself hold (bytes)."""
 #: The grid. Sweeps other than ten only where there is a pile; sampling only where a curve is sampled.
 STEPS = (1, 2, 3, 4, 6, 8, 12, 16, 24, 32, 64)
 DEPTHS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-8)
@@ -222,113 +218,87 @@ def _cold(run: Planned, frames: int) -> float:
     return timed(run, frames)
 
 
-# --- variations ------------------------------------------------------------------------------------------------
-
-
-def vary(scene: Scene, seed: int) -> Scene:
-    """The scene with mass, size, friction, elasticity and speed each multiplied by 0.3 to 3, evenly in the
-    logarithm."""
-    rng = np.random.default_rng(seed)
-    mass, size, friction, elasticity, speed = np.exp(rng.uniform(math.log(0.3), math.log(3.0), 5))
-
-    def shape_of(shape: Any) -> Any:
-        if isinstance(shape, Circle):
-            return Circle(shape.radius * size, (shape.center[0] * size, shape.center[1] * size))
-        if isinstance(shape, Polygon):
-            return Polygon(tuple((x * size, y * size) for x, y in shape.points), shape.radius * size)
-        if isinstance(shape, Segment):
-            a, b = ((x * size, y * size) for x, y in (shape.a, shape.b))
-            return Segment(a, b, shape.radius * size)
-
-        def rings(tolerance: float, known: Callable[[float], Rings] = shape.rings) -> Rings:
-            outer, holes = known(tolerance / size)
-            return outer * size, tuple(hole * size for hole in holes)
-
-        return Curve(rings, shape.convex)
-
-    def body_of(body: Body) -> Body:
-        return replace(
-            body,
-            shapes=tuple(shape_of(shape) for shape in body.shapes),
-            position=(body.position[0] * size, body.position[1] * size),
-            velocity=(body.velocity[0] * speed, body.velocity[1] * speed),
-            angular_velocity=body.angular_velocity * speed,
-            mass=body.mass * mass,
-            moment=body.moment * mass * size * size,
-            surface_speed=body.surface_speed * speed,
-        )
-
-    return replace(
-        scene,
-        name=f"{scene.name}-{seed}",
-        bodies=tuple(body_of(body) for body in scene.bodies),
-        friction=scene.friction * friction,
-        elasticity=min(1.0, scene.elasticity * elasticity),
-        pivots=tuple(replace(pivot, brake=pivot.brake * mass * size * size) for pivot in scene.pivots),
-        hinges=tuple(replace(hinge, point=(hinge.point[0] * size, hinge.point[1] * size)) for hinge in scene.hinges),
-        size=scene.size * size,
-        duration=min(scene.duration, LONGEST),
-    )  # fmt: skip
-
-
-def variations(count: int, names: Sequence[str] = ()) -> list[Scene]:
-    """Seeded variations, the scenes in turn."""
-    known = [scene for name, scene in scenes().items() if not scene.deforms and (not names or name in names)]
-    return [vary(known[seed % len(known)], seed) for seed in range(count)]
-
-
 # --- the study -----------------------------------------------------------------------------------------------------
 
 
 def study(
     scene: Scene, tolerances: Sequence[float], varied: bool, store: Path | None, known: dict[str, Row]
 ) -> list[Row]:
-    """One scene: the sweep (kept in `store`, so that the same command goes on), then a plan and its run a tolerance."""
-    reference = None
-    if varied:
-        reference, doubt = _reference(scene)
+    """One scene: the sweep, then a plan and its run a tolerance.
+
+    All is kept in `store`, so that the same command goes on; a plan that has changed is judged anew.
+    """
+
+    def kept(task: Row, work: Callable[[], Row]) -> Row:
+        row = known.get(key(task))
+        if row is None:
+            row = {"task": task, **work()}
+            if store is not None:
+                append_rows(store, [row])
+        return row
+
+    name = {"scene": scene.name, "varied": varied}
+    reference = cache(partial(_reference, scene)) if varied else _none
+    doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"] if varied else 0.0
+    judged = [tolerance for tolerance in tolerances if doubt is not None and doubt <= tolerance / 3.0]
+    rows: list[Row] = [
+        {**name, "tolerance": tolerance, "verdict": "no reference"}
+        for tolerance in tolerances
+        if tolerance not in judged
+    ]
+    if not judged:
+        return rows
     swept = []
     done: set[tuple[Any, ...]] = set()  # finer steps of these are the cheapest of nothing
     for settings in grid(scene):
         branch = tuple(value for name, value in settings.items() if name != "steps")
         if branch in done:
             continue
-        task = {"scene": scene.name, "varied": varied, **settings}
-        row = known.get(key(task))
-        if row is None:
-            build = partial(Planned, scene, settings)
-            begin = clock.thread_time()
-            error = errors(scene, build, reference)
-            rough = clock.thread_time() - begin
-            row = {"task": task, "error": error if math.isfinite(error) else None, "rough_s": rough}
-            if store is not None:
-                append_rows(store, [row])
+        run = partial(_swept, scene, settings, reference)
+        row = kept({**name, **settings}, run)
         if row["rough_s"] > BUDGET_S or (row["error"] is not None and row["error"] <= min(tolerances)):
             done.add(branch)
         swept.append({**settings, "error": row["error"], "rough_s": row["rough_s"]})
-    rows = []
-    for tolerance in tolerances:
-        if varied and doubt > tolerance / 3.0:
-            rows.append(
-                {"scene": scene.name, "varied": True, "tolerance": tolerance, "verdict": "no reference"}
-            )
-            continue
-        rows.append(judge(scene, tolerance, swept, varied, reference))
+    for tolerance in judged:
+        chosen = plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
+        task = {**name, "tolerance": tolerance, "plan": str(chosen)}
+        look = partial(judge, scene, tolerance, swept, varied, reference)
+        rows.append({k: v for k, v in kept(task, look).items() if k != "task"})
     return rows
 
 
+def _swept(scene: Scene, settings: Row, reference: Callable[[], tuple[Trace | None, float]]) -> Row:
+    """One setting of the grid: its error (None: it failed) and, roughly, its processor time (s)."""
+    compared = reference()[0]
+    begin = clock.thread_time()
+    error = errors(scene, partial(Planned, scene, settings), compared)
+    return {"error": error if math.isfinite(error) else None, "rough_s": clock.thread_time() - begin}
+
+
+def _none() -> tuple[None, float]:
+    """The reference of a scene that has an exact answer."""
+    return None, 0.0
+
+
 def _reference(scene: Scene) -> tuple[Trace, float]:
+    """The finest setting's run, and how far the next to finest is from it."""
     fine, coarse = ({**s, "sampling": 1e-6} for s in (FINEST, NEXT_TO_FINEST))
     trace = record(Planned(scene, fine), scene)
     return trace, departure(record(Planned(scene, coarse), scene), trace, scene.size)
 
 
-def judge(scene: Scene, tolerance: float, swept: Sequence[Row], varied: bool, reference: Trace | None) -> Row:
+def judge(
+    scene: Scene,
+    tolerance: float,
+    swept: Sequence[Row],
+    varied: bool,
+    reference: Callable[[], tuple[Trace | None, float]],
+) -> Row:
     """A plan for one tolerance: its own run, and the cheapest settings of the sweep that are within the tolerance."""
     chosen = partial(plan, tolerance=tolerance, seconds=scene.duration, frame=scene.frame)
     build = partial(Planned, scene, {}, chosen)
     run = build()
-    error = errors(scene, build, reference)
+    error = errors(scene, build, reference()[0])
     good = sorted(
         (row for row in swept if row["error"] is not None and row["error"] <= tolerance), key=_likely_cost
     )

@@ -91,6 +91,47 @@ def test_gears_among_boxes_have_the_figures_of_the_case(level, drive):
     )  # steps of the first order beside the second
 
 
+@pytest.mark.slow
+def test_a_geneva_drive_has_the_figures_of_the_case():
+    """The case's drive as parts: the crank a kinematic body, the wheel on a pivot with a damper; one engagement."""
+    from types import SimpleNamespace
+
+    from rigidarea.cases import geneva as gv
+
+    duration = 0.75
+    sim, start = gv.simulation("compliant")
+    case = gv.measure(sim.run(duration, gv.STEP), start, 6)
+    drive = shapes.geneva(6, gv.CENTRES, gv.PIN, gv.CLEARANCE, bore=0.004, tolerance=2e-8)
+    space = pymunk.Space()
+    crank = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    crank.angle, crank.angular_velocity = start, gv.SPEED
+    wheel = drive.wheel.body(density=gv.STEEL.density * gv.THICKNESS)
+    wheel.position, wheel.angle = (gv.CENTRES, 0), drive.wheel_angle(-drive.entry_angle)
+    pin, slots = drive.pin.add_to(crank, elasticity=1.0), drive.wheel.add_to(wheel, elasticity=1.0)
+    ground = space.static_body
+    space.add(crank, wheel, pin, slots, pymunk.PivotJoint(ground, wheel, (gv.CENTRES, 0)))
+    space.add(pymunk.DampedRotarySpring(ground, wheel, 0, 0, gv.DAMPER))
+    assembly = Assembly(k=gv.K)
+    assembly.part(pin, gv.STEEL, mesh=1e-3, refine=gv.REFINE)
+    assembly.part(slots, gv.STEEL, mesh=1e-3, refine=gv.REFINE, hub=1)
+    ra.attach(space, flexible=assembly)
+    rows = []
+    for i in range(round(duration / gv.STEP)):
+        space.step(gv.STEP)
+        force = assembly.forces().get((0, 1), (0.0, 0.0))
+        rows.append(((i + 1) * gv.STEP, crank.angle, wheel.angle, *force))
+    t, *angles, fx, fy = np.array(rows).T
+    record = SimpleNamespace(
+        t=t, hub=np.column_stack(angles), force=np.column_stack([fx, fy]), iterations=np.ones(len(t))
+    )
+    ours = gv.measure(record, start, 6)
+    for name in ("rms_percent", "rms_mean_norm_percent", "contact_delay_ms", "force_max_n"):
+        print(f"{name}: {ours[name]:.4g} in a space, {case[name]:.4g} the case")
+    assert ours["rms_percent"] == pytest.approx(case["rms_percent"], rel=0.05)  # steps of the first order
+    assert ours["contact_delay_ms"] == pytest.approx(case["contact_delay_ms"], abs=1e3 * gv.STEP)
+    assert ours["force_max_n"] == pytest.approx(case["force_max_n"], rel=0.1)
+
+
 def test_boxes_go_on_as_they_are():
     """Boxes that touch no part end where they do without parts; the same joints, so that the solve sweeps alike."""
     ends = []
@@ -338,7 +379,7 @@ def test_refusals():
         Assembly(k=-1.0)
     with pytest.raises(ValueError, match="mesh, the spacing"):
         Assembly(k=1.0).part(shape, RUBBER)
-    with pytest.raises(ValueError, match="no hub"):
+    with pytest.raises(ValueError, match="neither clamp nor hub"):
         Assembly(k=1.0).part(shape, RUBBER, level="rigid", hub=1)
     with pytest.raises(ValueError, match="static"):
         Assembly(k=1.0).part(pymunk.Circle(space.static_body, 1.0), RUBBER, level="rigid")

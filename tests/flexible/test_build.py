@@ -4,9 +4,11 @@ import re
 
 import numpy as np
 import pytest
+from numba import config
 
 from rigidarea import Outline
 from rigidarea.flexible import Material, Mechanism, build
+from rigidarea.flexible.run import run_steps
 from rigidarea.shapes import box, circle
 
 STEEL = Material(207e9, 0.29, 7800.0, 0.02)
@@ -71,6 +73,20 @@ def test_clamp_on_part_of_a_boundary():
     middle = 0.5 * height + radius - r.x[len(r.t) // 2 :, 1, 1].mean()
     assert middle == pytest.approx(sag + depth, rel=0.03)  # shear, ES-FEM, the ball's rolling on the slope
     assert r.force[-100:, 1].mean() == pytest.approx(weight, rel=0.05)
+
+
+@pytest.mark.skipif(config.DISABLE_JIT, reason="nothing is compiled")
+def test_no_compilation_for_another_number_of_bodies():
+    """One version of the stepper serves two bodies, three, and three with a joint."""
+    for bodies, joint in ((2, False), (3, False), (3, True)):
+        m = Mechanism(1e6, rho=0.8)
+        for i in range(bodies):
+            m.body(box(0.1, 0.1), STEEL, level="rigid", at=(0.2 * i, 0.0))
+        m.contact(0, 1)
+        if joint:
+            m.revolute(2, (0.3, 0.0), 1)
+        m.run(1e-3, 1e-4)
+    assert len(run_steps.signatures) == 1
 
 
 def test_bad_parts():

@@ -41,7 +41,19 @@ def test_against_brute_force():
     out = np.zeros(5)
     none = np.zeros((0, 5, 5))
     moment = inertia_forces(
-        body.inertia, body.stretch, body.coupling, none, 0.0, 0.0, q, dq, ddq, omega, alpha, out
+        body.inertia,
+        body.stretch,
+        body.coupling,
+        none,
+        0.0,
+        0.0,
+        q,
+        dq,
+        ddq,
+        omega,
+        alpha,
+        out,
+        np.zeros((4, 5)),
     )
     assert exact[:2] == pytest.approx(body.mass * acceleration[:2], rel=1e-10)
     assert moment == pytest.approx(exact[2], rel=1e-10)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from rigidarea.flexible.mesh import resample, triangulate
+from rigidarea.flexible.mesh import keep_area, resample, triangulate
 
 
 def circle(radius, n, clockwise=False):
@@ -57,3 +57,14 @@ def test_size_larger_than_a_feature():
     # a hole nearer to the rim than the boundary's spacing
     with pytest.raises(ValueError, match="larger than a feature"):
         triangulate([circle(1.0, 12), circle(0.96, 400, True)])
+
+
+def test_a_profile_keeps_the_area_of_its_curve():
+    """A circle's polygon of n points: its area is off by 6.6 n⁻² as sampled, by 41 n⁻⁴ as moved; corners stay."""
+    for n in (20, 40):
+        ring = circle(1.0, n)
+        x, y = keep_area(ring).T
+        area = 0.5 * np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))
+        assert area == pytest.approx(np.pi, rel=50 / n**4)
+    corners = np.array([[0, 0], [0.5, 0], [1, 0], [1, 1], [0, 1]], float)
+    assert np.array_equal(keep_area(corners), corners)

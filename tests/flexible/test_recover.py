@@ -81,8 +81,10 @@ def pressed_block(level):
 @pytest.mark.parametrize("level", ["compliant", "modal"])
 def test_interface_rows_are_those_of_the_stepper(level):
     """All nodes' displacements, at the contact nodes, are what the stepper moved them by."""
-    sim, r, _, mesh = pressed_block(level)
-    state = recover(sim, r, len(r.t) - 1, 0)
+    sim, _, _, mesh = pressed_block(level)
+    sim._buffers.pace[:] = 0.0  # Newton's method is to look at its correction again
+    r = sim.run(1e-3, 1e-3, shapes=True)
+    state = recover(sim, r, 0, 0)
     # the stepper's last evaluation had the loads before the last correction: alike to its tolerance
     w = sim.works[0]
     seen = np.flatnonzero(w.displacement_stamp == w.displacement_stamp.max())

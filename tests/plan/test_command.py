@@ -7,7 +7,7 @@ import sys
 import pytest
 
 from rigidarea.__main__ import main
-from rigidarea.plan import validate
+from rigidarea.plan import validate, variations
 
 PROGRAM = """
 import pymunk
@@ -73,10 +73,10 @@ def test_variations_are_seeded_and_differ():
     from rigidarea.study.scene import get_scene
 
     scene = get_scene("bounce")
-    one, again, other = validate.vary(scene, 1), validate.vary(scene, 1), validate.vary(scene, 2)
+    one, again, other = variations.vary(scene, 1), variations.vary(scene, 1), variations.vary(scene, 2)
     assert one.bodies == again.bodies and one.bodies != other.bodies
     for seed in range(20):
-        varied = validate.vary(scene, seed)
+        varied = variations.vary(scene, seed)
         (ball,) = (body for body in varied.bodies if body.kind == "dynamic")
         assert 0.3 * 0.999 <= ball.mass <= 3.0 * 1.001 and 0.0 <= varied.elasticity <= 1.0
 

@@ -59,7 +59,8 @@ def test_layers_and_loads():
     seen = survey(space)
     from rigidarea.plan.survey import support
 
-    layers, load, heavier = support(seen)
+    layers, load, heavier, shared = support(seen)
+    assert not shared
     assert layers[:6].tolist() == [1, 2, 3, 4, 5, 6]
     assert load[:6] == pytest.approx([45, 44, 43, 42, 41, 40])
     assert heavier == 40
@@ -74,7 +75,8 @@ def test_a_load_is_shared():
     box(space, (0, 1.5), (2.5, 1.0), mass=10.0)
     from rigidarea.plan.survey import support
 
-    _, load, _ = support(survey(space))
+    _, load, _, shared = support(survey(space))
+    assert shared
     assert load[:3] == pytest.approx([6, 6, 10])
 
 
@@ -133,7 +135,8 @@ def test_two_hits_in_a_row_want_a_substep_each():
         disc.elasticity = 1.0
         space.add(body, disc)
     made = ra.plan(space, 0.01, 0.5).override(level="rigid")
-    assert made.steps >= math.ceil(1 / 60 / (gap / speed)) and made.reachable
+    finest = max(made.finer.values(), default=made.steps)
+    assert finest >= math.ceil(1 / 60 / (gap / speed)) and made.reachable
 
 
 def test_what_is_out_of_reach_is_said_beforehand():
@@ -228,7 +231,7 @@ def test_a_shape_sampled_as_asked():
         (None, {"level": "modal"}, "rigid, pymunk, got 'modal'"),
         (None, {"colour": 3}, "got 'colour'"),
         (None, {"penetration": -1.0}, "penetration"),
-        ("body", {"level": "rigid"}, "a body with a material"),
+        ("body", {"level": "rigid"}, "one of steps to override"),
     ],
 )
 def test_bad_overrides_change_nothing(target, settings, message):
@@ -359,3 +362,58 @@ def test_numbers_are_plain():
     made = ra.plan(space, 0.01, 2.0)
     for value in (made.error, made.cost_s_per_s, made.penetration):
         assert isinstance(value, float) and np.isfinite(value)
+
+
+def parts_space() -> pymunk.Space:
+    """A tower, a gear that drives another, a ball: three that nothing connects."""
+    space = pymunk.Space()
+    space.gravity = 0, -9.81
+    ground = pymunk.Segment(space.static_body, (-50, 0), (50, 0), 0)
+    ground.friction = ground.elasticity = 0.8
+    space.add(ground)
+    for i in range(4):
+        body = pymunk.Body(1, 1 / 6)
+        body.position = 0, i + 0.5
+        box = pymunk.Poly.create_box(body, (1, 1))
+        box.friction = 0.6
+        space.add(body, box)
+    outline = ra.shapes.involute_gear(0.1, 20)
+    driver, driven = pymunk.Body(body_type=pymunk.Body.KINEMATIC), pymunk.Body(5, 2)
+    driver.position, driver.angular_velocity = (20, 10), 20.0
+    driven.position, driven.angle, driven.angular_velocity = (22, 10), math.pi + math.pi / 20, -20.0
+    space.add(driver, driven, outline.add_to(driver), outline.add_to(driven))
+    space.add(pymunk.PivotJoint(space.static_body, driven, driven.position))
+    ball = pymunk.Body(1, 1 / 8)
+    ball.position = -20, 3
+    disc = pymunk.Circle(ball, 0.5)
+    disc.elasticity = 0.8
+    space.add(ball, disc)
+    return space
+
+
+def test_what_is_delicate_takes_substeps_of_its_own():
+    space = parts_space()
+    made = ra.plan(space, 0.01, 2.0)
+    bodies = list(space.bodies)
+    gears = bodies[4:6]
+    assert made.reachable and set(gears) <= made.finer.keys()
+    assert made.finer[gears[0]] == made.finer[gears[1]] > made.steps
+    assert bodies[6] not in made.finer  # the ball
+    whole = ra.plan(space, 0.01, 2.0).override(steps=made.finer[gears[0]])
+    assert made.cost_s_per_s < whole.cost_s_per_s and not whole.finer
+    contact = made.apply()
+    assert contact.step(1 / 60, steps=made.steps) == made.finer[gears[0]]
+    assert "teeth or slots" in str(made)
+
+
+def test_a_body_may_be_given_more_substeps():
+    space = parts_space()
+    ball = list(space.bodies)[6]
+    made = ra.plan(space, 0.01, 2.0).override(ball, steps=24)
+    assert made.finer[ball] == 24 and "24 substeps for its island (yours)" in str(made)
+    contact = made.apply()
+    assert contact.step(1 / 60, steps=made.steps) == 24
+    made.override(ball, steps=None).apply()
+    assert contact.step(1 / 60, steps=made.steps) == max(made.finer.values())
+    with pytest.raises(ValueError, match="whole number >= 1, got 0"):
+        made.override(ball, steps=0)

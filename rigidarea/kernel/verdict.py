@@ -1,0 +1,88 @@
+"""The user's verdict on a pair, and how what is too fast waits for it.
+
+Chipmunk asks a callback of the user's about pairs that it finds overlapping where a frame begins. What would come to
+touch and pass within a frame is put where it touches, its velocity kept: so it is asked about in the next frame.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .jit import kernel
+from .meet import DONE, GROW_WORK, earlier, jumped, overlap_before
+from .overlap import OVERFLOW
+from .place import place
+from .pool import Pool
+from .sides import shown_sides
+from .tables import DRIFTS, NEAR, Tables
+from .work import Work
+
+
+@kernel(forceinline=True)
+def _heard(tables: Tables, pair: Any) -> bool:
+    """Whether the user has a callback to be asked about the pair."""
+    a = tables.shapes[pair.a].heard
+    b = tables.shapes[pair.b].heard
+    return bool((a | b) & 1 or a & b & 2)
+
+
+@kernel
+def allowed(tables: Tables, pair: Any, frame: int) -> bool:
+    """Whether the pair may collide in this frame: the user's verdict, where there is somebody to ask.
+
+    A pair that Chipmunk has not reported in this frame has come to touch within it. Where a callback of the user's
+    would be asked, it waits for that.
+    """
+    if pair.stamp == frame:
+        return bool(pair.verdict)
+    if _heard(tables, pair):
+        return bool(pair.verdict) and pair.stamp == frame - 1  # friction and elasticity as they were set then
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    pair.friction = sa.friction * sb.friction
+    pair.elasticity = sa.elasticity * sb.elasticity
+    pair.surface_x = sb.surface_x - sa.surface_x
+    pair.surface_y = sb.surface_y - sa.surface_y
+    return True
+
+
+@kernel
+def _put_back(body: Any, back: float) -> None:
+    """A body where it was `back` ago, its velocity kept."""
+    if body.kind == DRIFTS:
+        body.x -= back * body.vx
+        body.y -= back * body.vy
+        body.angle -= back * body.w
+        place(body)
+
+
+@kernel
+def wait_for_verdicts(
+    pool: Pool, tables: Tables, work: Work, frame: int, dt: float, start: int
+) -> tuple[int, int]:
+    """After a frame of dt: what has passed a shape that the user is to be asked about goes back to where they touch.
+
+    Near pairs from tables.near[start] on: (DONE or GROW_WORK, where it stopped).
+    """
+    for i in range(start, tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        if pair.stamp == frame or not _heard(tables, pair):
+            continue
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        looks = jumped(tables, pair, a, b, dt)
+        if looks == 1 or (a.kind != DRIFTS and b.kind != DRIFTS):
+            continue
+        ia = sa.outline
+        ib = sb.outline
+        if sa.mirror >= 0 or sb.mirror >= 0:
+            ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
+        n, back = overlap_before(pool, work, ia, ib, a, b, dt, looks)
+        if n == OVERFLOW:
+            return GROW_WORK, i
+        if n > 0:
+            _put_back(a, back)
+            _put_back(b, back)
+    return DONE, tables.counters[NEAR]
