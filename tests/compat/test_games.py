@@ -139,7 +139,7 @@ def test_the_impulse_of_a_blow_that_parts_within_its_frame_is_told():
         0, 0, post_solve=lambda arbiter, space, data: heard.append(arbiter.total_impulse.length)
     )
     ra.attach(space)
-    for _ in range(10):
+    for _ in range(20):
         space.step(DT)
     given = (ball.velocity - pymunk.Vec2d(1500, 0)).length
     assert given > 1500 and ball.velocity.length == pytest.approx(1500, rel=1e-6)
