@@ -28,8 +28,7 @@ TANGENT_STIFFNESS = 2.0 / 7.0
 #: First touch slower than what the load gives in so many substeps (or natural times, where they are longer) is rest.
 REST_KICKS = 2.0
 #: Deeper (at first touch, or than before) than so many substeps' motion: put there, not come there. No impact then.
-#: Three: what waits for the user's verdict comes as deep as in the whole frame of two, and half a substep.
-MOST_ARRIVED = 3.0
+MOST_ARRIVED = 2.0
 #: Restitution below this is taken as this: the exact law's damping grows as 1/e.
 LEAST_RESTITUTION = 0.01
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.

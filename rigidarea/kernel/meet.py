@@ -479,7 +479,6 @@ def _enter(
         region.first_speed = 0.0
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
-        region.placed = SPENT
 
 
 @kernel

@@ -249,6 +249,7 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     return True
 
 
+@kernel
 def gather(
     pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
 ) -> tuple[int, int]:
