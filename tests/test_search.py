@@ -37,7 +37,7 @@ def scattered(rng: np.random.Generator, n: int, room: float) -> Store:
 
 
 def searched(store: Store, time: float) -> set[tuple[int, int]]:
-    while broad.search(store.pool, store.tables, time) == broad.GROW_PAIRS:
+    while broad.search(store.pool, store.tables, time, -1) == broad.GROW_PAIRS:
         store.grow_pairs()
     t = store.tables
     near = t.pairs[t.near[: t.counters[tables.NEAR]]]

@@ -35,8 +35,9 @@ REASONS: dict[str, str] = {
     "UnitTestArbiter.testImpulse": "two discs put 14 deep into each other: each solver lets them out at its own speed",
     "UnitTestArbiter.testTotalKE": "the same",
     "UnitTestConstraint.testImpulse": "a step of 1 s is two substeps, of which the second finds the body swung",
-    "UnitTestDampedRotarySpring.testTorqueFunc": "its function is asked in each substep, where the angle is another",
-    "UnitTestDampedSpring.testForceFunc": "its function is asked in each substep, where the distance is another",
+    "UnitTestDampedRotarySpring.testTorqueFunc": "its own function is asked once a frame, as natively; then Chipmunk's "
+    "own, in a step of 1 s, in each of two substeps, of which the second finds another angle",
+    "UnitTestDampedSpring.testForceFunc": "the same, with a distance",
 }
 
 

@@ -29,6 +29,7 @@ from ..kernel.tables import (
     FREE_PAIRS,
     LED,
     NEAR,
+    SEARCH,
     SHAPES,
     TURN,
     Tables,
@@ -224,8 +225,9 @@ def rouse(space: int, dt: float) -> None:
         if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
             return
     tables.counters[TURN] = 0  # everybody
+    ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
     g = floats(space + s.space_gravity, 2)
-    while find_near(load_pool(s), load_tables(s), s.frame, dt, dt, g[0], g[1]) != DONE:
+    while find_near(load_pool(s), load_tables(s), s.frame, ahead, ahead, g[0], g[1]) != DONE:
         if not ask(s, MORE_PAIRS):
             return
     tables = load_tables(s)
@@ -233,18 +235,18 @@ def rouse(space: int, dt: float) -> None:
         pair = tables.pairs[tables.near[i]]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
-        if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -dt):
+        if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -ahead):
             continue
         sleeper = a if a.kind == FIXED else b
         comer = b if a.kind == FIXED else a
         way = dt * (abs(comer.vx) + abs(comer.vy) + abs(comer.w) * sleeper.extent)
         if not sleeper.mobile or way <= WAKING * sleeper.extent:
             continue
-        met = meets_within(load_pool(s), tables, load_work(s), pair, dt)
+        met = meets_within(load_pool(s), tables, load_work(s), pair, ahead)
         while met < 0:
             if not ask(s, MORE_WORK):
                 return
-            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, dt)
+            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, ahead)
         if met > 0:
             activate(sleeper.address)
 
@@ -391,8 +393,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
                 return
             tables = load_tables(s)
         p = new_pair(tables, a, b)
-        tables.counters[ANEW] = 1
     pair = tables.pairs[p]
+    if pair.near != tables.counters[SEARCH]:  # new, or parted in the last frame
+        tables.counters[ANEW] = 1
     pair.stamp = now
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1

@@ -100,10 +100,11 @@ def _widen(pool: Pool, tables: Tables, time: float) -> None:
 
 
 @kernel
-def search(pool: Pool, tables: Tables, time: float) -> int:
+def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
     """Find all pairs whose boxes meet, the boxes made for `time` of motion: how many; GROW_PAIRS: no room.
 
-    tables.near has them then, in no order. Pairs that are near no more and have no region are forgotten.
+    tables.near has them then, in no order. Pairs that are near no more are forgotten, but for those of
+    which Chipmunk has told in this frame: a blow may have parted them, and its impulse is yet to be reported.
     """
     _widen(pool, tables, time)
     counters = tables.counters
@@ -157,7 +158,7 @@ def search(pool: Pool, tables: Tables, time: float) -> int:
             if pair.near == mark:
                 tables.near[k] = p
                 k += 1
-            else:
+            elif pair.stamp != frame:
                 end_pair(tables, p)
     rehash(tables)
     counters[NEAR] = k

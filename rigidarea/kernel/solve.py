@@ -76,7 +76,7 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx:
     left = somebody_left(pool, tables, frame, h)
     if not (left or tables.counters[ANEW]):
         return DONE
-    if search(pool, tables, max(time, 2.0 * h)) < 0:
+    if search(pool, tables, max(time, 2.0 * h), frame) < 0:
         return GROW_PAIRS
     tables.counters[ANEW] = 0
     arrange(tables, gx, gy)

@@ -59,8 +59,9 @@ def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None
     length = np.hypot(*ahead.T)
     heading = np.arctan2(ahead[:, 1], ahead[:, 0])
     turn = (heading - np.roll(heading, 1) + math.pi) % (2 * math.pi) - math.pi  # left positive
-    cut = radius * np.abs(np.tan(turn / 2))  # of both edges, from the corner to the tangent point
-    spare = length - cut - np.roll(cut, -1)
+    with np.errstate(over="ignore"):  # a radius near the largest float leaves no edge either
+        cut = radius * np.abs(np.tan(turn / 2))  # of both edges, from the corner to the tangent point
+        spare = length - cut - np.roll(cut, -1)
     noise = 1e-12 * length.max()
     if spare.min() < -noise:
         i = int(np.argmin(spare))
