@@ -168,6 +168,8 @@ def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
     for i in range(buf.counts[0]):
         r = buf.regions[i]
         p = int(r[0])
+        if sy.ratio[p] > 0.0:  # its dashpot has answered to the force as it was
+            continue
         change = 0.0
         if st.spread and not st.sts:
             for n in range(s.load.made[0]):
@@ -181,6 +183,7 @@ def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
                 ]
                 moved = r[2] * buf.rhs[j] + r[3] * buf.rhs[j + 1] + turn * buf.rhs[j + 2]
                 change += st.k * r[6] * (moved if side == 0 else -moved)
+        change = max(change, -r[1])
         r[1] += change
         fx, fy = change * r[2], change * r[3]
         buf.force[p, 0] += fx

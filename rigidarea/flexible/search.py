@@ -18,7 +18,8 @@ Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 TURN = 3.0  # turn between two searches, in margins over the body's size
-NEAR = 0.1  # of the search's margin: how much farther than the deformation leaves are looked at
+NEAR = 0.5  # of the search's margin: how much farther than the deformation leaves are looked at, and how far bodies
+# move before they are searched anew. The rest is for what deforms them more from one evaluation to the next.
 
 
 @kernel(forceinline=True)
@@ -133,12 +134,17 @@ def keep(a, pa, b, pb, margin, size, bend, s, found, p):  # type: ignore[no-unty
     dc, ds = c - was[0], sn - was[1]
     dx, dy = x - was[2] + dc * at[0] - ds * at[1], y - was[3] + ds * at[0] + dc * at[1]
     moved = np.sqrt(dx * dx + dy * dy) + abs(bend - found.bend[p])
-    if found.found[p] < 0 or moved > found.margin[p] or np.sqrt(dc * dc + ds * ds) > found.turn[p]:
+    if found.found[p] < 0 or moved > NEAR * found.margin[p] or np.sqrt(dc * dc + ds * ds) > found.turn[p]:
         at[0], at[1] = found.pole[p, 0], found.pole[p, 1]
         was[0], was[1], was[2], was[3] = c, sn, x, y
         found.bend[p] = bend
         found.margin[p], found.turn[p] = margin, TURN * margin / size
         found.found[p] = look(a, pa, b, pb, margin + bend, found.turn[p], at, s)
+        while (
+            found.found[p] < 0 and found.turn[p] > 1e-3 * TURN * margin / size
+        ):  # more than there is room for
+            found.turn[p] *= 0.25
+            found.found[p] = look(a, pa, b, pb, margin + bend, found.turn[p], at, s)
         while found.found[p] == 0 and 0.0 < found.margin[p] < size:
             if look(a, pa, b, pb, 2.0 * found.margin[p] + bend, 2.0 * found.turn[p], at, s) != 0:
                 break
