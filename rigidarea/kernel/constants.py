@@ -13,7 +13,8 @@ MOST_SUBSTEPS = 1024
 FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time): the row's S. More, and what the sweeps have
 #: left unsolved outweighs it: a contact opens under its load, and piles never come to rest; less, and what the sweeps
-#: have not learnt of yet is handed back.
+#: have not learnt of yet is handed back. (From a depth d no faster than in sqrt(d / g), so that weight stops it again;
+#: where there is no weight, in a second.)
 RELEASE_STEPS = 15.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.

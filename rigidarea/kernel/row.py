@@ -264,7 +264,10 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         phase2 = firm * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(firm / inverse)
-        c += theta * (1.0 + RELEASE_STEPS) * h * firm
+        release = 1.0 / RELEASE_SPEED
+        if law.gravity > 0.0:  # no faster than what pushes can stop again
+            release = max(RELEASE_STEPS * h, min(release, math.sqrt(r.depth / law.gravity)))
+        c += theta * (h + release) * firm
         least = least_extent(a, b)
         if r.placed == PLACED and law.stiffness == 0.0:
             elastic = min(elastic, PLACED_LOADS * max(pair.least, pair.load))
