@@ -47,8 +47,8 @@ class Memory(NamedTuple):
     joints: list[np.ndarray]
     """Impulses."""
     bodies: np.ndarray
-    """(n, 4): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, and for how
-    long it has moved by itself."""
+    """(n, 4): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, and for
+    how long it has moved by itself."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
