@@ -318,26 +318,28 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
 
     They go on while the last sweep has moved much, or contacts have added energy, which they never do.
     """
+    if _join(s, h, True) < 0:  # before the warm start: what that adds is no speed at which anybody comes
+        return False
     tables = load_tables(s)
+    if tables.counters[ROWS] == 0 and not jointed:
+        return True  # nothing that could change a velocity
     energy = kinetic(tables)
     small = pace(tables, load_law(s), energy, h)
     warm_start(tables)
     searches = s.sweeps // SEARCH_SWEEPS
     sweeps = s.sweeps if jointed else s.sweeps - 2 * searches
     for more in range(1 + MORE_SWEEPS):
-        look = 0
+        look = 1 if more == 0 else 0
         wait = 1
         moved = 0.0
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h, k == 0 and more == 0)
+                joined = _join(s, h, False)
                 if joined < 0:
                     return False
                 wait = 1 if joined > 0 else 2 * wait
                 look += wait
                 tables = load_tables(s)
-                if tables.counters[ROWS] == 0 and not jointed:
-                    return True  # nothing that could change a velocity
             moved = sweep(tables, k % 2 == 0)
             if jointed:
                 _joints(s, tables, APPLY, h)
