@@ -7,7 +7,7 @@ tower, a chain, a heavy crate on light ones exactly (Featherstone's articulated 
 doi:10.1177/027836498300200102; an elimination whose fill is dropped, Saad, Iterative Methods for Sparse Linear
 Systems, 10.3).
 In a pile, where supports are shared, it is the preconditioner of conjugate gradients (Hestenes & Stiefel, J Res NBS 49
-(1952), doi:10.6028/jres.049.044): two steps leave what a hundred sweeps leave.
+(1952), doi:10.6028/jres.049.044).
 
 The system is that of the rows that bear: a face on both ends, a point that presses, friction that grips. An end that
 the step would pull on is let go, and the search begins anew; what ought to press again is found by the sweeps before
