@@ -18,14 +18,24 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, SEARCH_SWEEPS, SUBSTEPS
+from ..kernel.constants import (
+    GAINED,
+    MORE_SWEEPS,
+    MOST_SUBSTEPS,
+    RELAX_SWEEPS,
+    SEARCH_SWEEPS,
+    SETTLED,
+    SUBSTEPS,
+)
 from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note, number, part, share_kicks
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
 from ..kernel.place import place
+from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     adapt_stiffness,
+    common,
     drift,
     find_near,
     finish,
@@ -323,11 +333,12 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
     tables = load_tables(s)
     if tables.counters[ROWS] == 0 and not jointed:
         return True  # nothing that could change a velocity
-    energy = kinetic(tables)
-    small = pace(tables, load_law(s), energy, h)
+    mass, x, y = common(tables)
+    energy = kinetic(tables, x, y)
+    small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
     searches = s.sweeps // SEARCH_SWEEPS
-    sweeps = s.sweeps if jointed else s.sweeps - 2 * searches
+    sweeps = s.sweeps if jointed else max(1, s.sweeps - 2 * searches - _relaxing(s))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -337,17 +348,37 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
                 joined = _join(s, h, False)
                 if joined < 0:
                     return False
-                wait = 1 if joined > 0 else 2 * wait
+                wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
                 tables = load_tables(s)
             moved = sweep(tables, k % 2 == 0)
             if jointed:
                 _joints(s, tables, APPLY, h)
-            if k == sweeps // 3:
+            elif k > 0 and moved <= SETTLED * small:
+                return True
+            if k == 0:
                 search_together(tables, searches)
-        if moved <= small and (jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)):
+        if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
             break
     return True
+
+
+@kernel(forceinline=True)
+def _relaxing(s: Any) -> int:
+    """How many sweeps of a substep come after positions are settled."""
+    return (s.sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
+
+
+@kernel
+def _relax(s: Any, tables: Tables, h: float, jointed: bool) -> None:
+    """Bodies are moved by what takes overlaps apart, and go on without that speed."""
+    if not begin_to_relax(tables):
+        return
+    for k in range(_relaxing(s)):
+        sweep(tables, k % 2 == 0)
+        if jointed:
+            _joints(s, tables, APPLY, h)
+    end_relaxing(tables, h)
 
 
 @kernel
@@ -368,6 +399,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         if not _solve(s, h, joints > 0):
             return False
         tables = load_tables(s)
+        _relax(s, tables, h, joints > 0)
         if joints > 0:
             for joint in joints_of(s):
                 if joint.mine:
@@ -492,7 +524,14 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     s.contacts = 0
     if not _start(s, space, load_tables(s)):
         return False
-    n = demand(load_pool(s), load_tables(s), dt, s.substeps, s.steps_given == 0)
+    tables = load_tables(s)
+    for joint in joints_of(
+        s
+    ):  # what hangs in joints is never calm: they hold it the better the shorter the step
+        for i in (joint.a, joint.b):
+            if joint.taken and i >= 0:
+                tables.bodies[i].calm = 0
+    n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     if s.tolerance > 0.0:
         _everybody(s, space)
         if not _keep(s) or not _substeps(s, space, dt, n):

@@ -47,13 +47,13 @@ class Memory(NamedTuple):
     joints: list[np.ndarray]
     """Impulses."""
     bodies: np.ndarray
-    """(n, 4): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, and for
-    how long it has moved by itself."""
+    """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
+    calm, and for how long it has moved by itself."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
 #: What a body keeps.
-_BODY = ("asked", "taken", "pushed", "since")
+_BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.
 _SHAPE = (
     *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .constants import HIT, LOOK, MOST_ARRIVED, MOST_LOOKS, REST_KICKS
+from .constants import HIT, LOOK, MOST_ARRIVED, MOST_LOOKS, PUT, PUT_FOLLOWED, REST_KICKS
 from .direction import chord_direction, nodal_direction
 from .extent import extent
 from .jit import kernel
@@ -428,10 +428,18 @@ def _arrives(r: Any, a: Any, b: Any, h: float) -> bool:
 
 
 @kernel
-def _jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
-    """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
+def _jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far.
+
+    By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
+    """
     speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
-    return bool(r.depth - before > MOST_ARRIVED * h * speed + 0.01 * min(_size(a), _size(b)))
+    inside = r.depth - before - MOST_ARRIVED * h * speed
+    least = min(_size(a), _size(b))
+    if inside <= PUT_FOLLOWED * least:
+        return False
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
+    return bool(phase2 <= law.followed or inside > PUT * least)
 
 
 @kernel
@@ -458,7 +466,7 @@ def _enter(
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
     unseen = _unseen(pair, h)
-    placed = law.followed != math.inf and back == 0.0 and _jumped_in(region, 0.0, a, b, unseen)
+    placed = law.followed != math.inf and back == 0.0 and _jumped_in(law, region, 0.0, a, b, unseen)
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
@@ -662,7 +670,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
-                if _jumped_in(region, before, a, b, h):
+                if _jumped_in(law, region, before, a, b, h):
                     region.placed = PLACED
         if back > 0.0:
             ax, ay = _centre(a, pose_a)
