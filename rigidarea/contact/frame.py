@@ -323,8 +323,8 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
-def _solve(s: Any, h: float, jointed: bool) -> bool:
-    """The sweeps and searches of a substep, and the rows that join them. Whether there was memory for those.
+def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
+    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was memory for it.
 
     They go on while the last sweep has moved much, or contacts have added energy, which they never do.
     """
@@ -337,8 +337,8 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
-    searches = s.sweeps // SEARCH_SWEEPS
-    sweeps = s.sweeps if jointed else max(1, s.sweeps - 2 * searches - _relaxing(s))
+    searches = whole // SEARCH_SWEEPS
+    sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -364,20 +364,22 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
 
 
 @kernel(forceinline=True)
-def _relaxing(s: Any) -> int:
+def _relaxing(sweeps: int) -> int:
     """How many sweeps of a substep come after positions are settled."""
-    return (s.sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
+    return (sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
 
 
 @kernel
-def _relax(s: Any, tables: Tables, h: float, jointed: bool) -> None:
+def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
     """Bodies are moved by what takes overlaps apart, and go on without that speed."""
     if not begin_to_relax(tables):
         return
-    for k in range(_relaxing(s)):
-        sweep(tables, k % 2 == 0)
+    for k in range(_relaxing(whole)):
+        moved = sweep(tables, k % 2 == 0)
         if jointed:
             _joints(s, tables, APPLY, h)
+        elif moved <= SETTLED * pace(load_law(s), 1.0, 0.0, h):
+            break
     end_relaxing(tables, h)
 
 
@@ -385,6 +387,9 @@ def _relax(s: Any, tables: Tables, h: float, jointed: bool) -> None:
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
     h = dt / n
+    sweeps = (
+        s.sweeps if s.steps_given else s.sweeps * max(1, s.substeps // n)
+    )  # of a calm frame, those of both substeps
     tables = load_tables(s)
     joints = _own_joints(s, tables)
     share_kicks(tables, n)
@@ -396,10 +401,10 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
         tables = load_tables(s)
         if joints > 0:
             _start_joints(s, tables, h, i == 0)
-        if not _solve(s, h, joints > 0):
+        if not _solve(s, h, sweeps, joints > 0):
             return False
         tables = load_tables(s)
-        _relax(s, tables, h, joints > 0)
+        _relax(s, tables, h, sweeps, joints > 0)
         if joints > 0:
             for joint in joints_of(s):
                 if joint.mine:

@@ -12,8 +12,7 @@ MOST_SUBSTEPS = 1024
 #: is stable up to 4; its restitution is then within 0.002.
 FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time): the row's S. It does so without giving speed
-#: (`relax`), so that little depends on it: piles come to rest with 4, 8 and 15. (From a depth d no faster than in sqrt(d / g), so that weight stops it again;
-#: where there is no weight, in a second.)
+#: (`relax`), so that little depends on it: piles come to rest with 4, 8 and 15.
 RELEASE_STEPS = 8.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.
@@ -73,10 +72,10 @@ GAINED = 1.005
 #: part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
 MOVED = 0.01
-#: It has, where a sweep has changed nothing by more than this part of that: the next substep's would not either.
-SETTLED = 1e-4
-#: Nobody faster, in two frames on end, than this part of what pushes gives in a frame: such a frame is one substep. At
-#: rest the law is the same whatever the step, and in two frames what only turns round has gone faster.
+#: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
+SETTLED = 1e-3
+#: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
+#: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.01
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

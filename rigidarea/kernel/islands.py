@@ -27,7 +27,8 @@ FINEST = 1 << 30
 def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) -> int:
     """How many substeps each body wants in a frame of dt; the most that any does.
 
-    n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago; and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
+    n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
+    and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
     (`meet`); teeth, slots and hooks move under a contact that is there already, by no more than a FEATURE of the chord
     on which such an outline lies.
     """
@@ -36,7 +37,9 @@ def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) 
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         before = body.calm
-        body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= slow
+        body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
+            3.0 * slow if before else slow
+        )
         body.wants = 1 if free and before and body.calm else n
         if body.kind != FIXED:
             body.wants = max(body.wants, body.asked)
