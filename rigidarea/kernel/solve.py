@@ -338,7 +338,7 @@ def sweep(tables: Tables, up: bool) -> float:
 
 @kernel
 def common(tables: Tables) -> tuple[float, float, float]:
-    """Mass of all that contacts may move, and the velocity of its centre: what is the same for all is nobody's speed."""
+    """Mass of all that contacts may move, and its centre's velocity: what is the same for all is nobody's speed."""
     mass = 0.0
     x = 0.0
     y = 0.0
