@@ -158,13 +158,13 @@ def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
 
 def grid(scene: Scene) -> Iterator[Row]:
     """The settings of the brute-force sweep, by growing number of substeps."""
-    own = [shape for body in scene.bodies for shape in body.shapes if isinstance(shape, Curve)]
-    curved = any(shape.exact is None for shape in own)
+    outlines = [shape for body in scene.bodies for shape in body.shapes if isinstance(shape, Curve)]
+    curved = any(shape.exact is None for shape in outlines)
     pile = sum(body.kind == "dynamic" for body in scene.bodies) > 1
     sweeps = SWEEPS_PILE if pile and scene.gravity != (0.0, 0.0) else SWEEPS
     depths = DEPTHS if scene.gravity != (0.0, 0.0) else DEPTHS[2:3]
     samplings = SAMPLINGS if curved else (None,)
-    if not own:  # Chipmunk sees no outline, only what stands in for it
+    if not outlines:  # Chipmunk sees no outline, only what stands in for it
         for n in NATIVE_STEPS:
             for m in sweeps:
                 for slop in SLOPS:
