@@ -84,7 +84,7 @@ def _outline(curve: Curve, tolerance: float) -> Outline:
 
 
 def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A scene as a user would build it: discs are discs, curves are sampled to a thousandth of its size."""
+    """A scene as a user would build it: arcs are arcs, other curves are sampled to a thousandth of its size."""
     space = pymunk.Space()
     space.gravity = scene.gravity
     made: dict[str, pymunk.Body] = {}
@@ -98,6 +98,8 @@ def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
                 shapes.append(pymunk.Poly(here, shape.points, radius=shape.radius))
             elif isinstance(shape, Segment):
                 shapes.append(pymunk.Segment(here, shape.a, shape.b, shape.radius))
+            elif shape.exact is not None:
+                shapes.append(shape.exact().add_to(here))
             else:
                 shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
         for made_shape in shapes:
@@ -146,7 +148,7 @@ def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
     if settings.get("sampling"):
         for shape in space.shapes:
             outline = getattr(shape, "outline", None)
-            if outline is not None:
+            if outline is not None and not outline.arcs:
                 shape.outline = outline.sample(settings["sampling"] * size)  # type: ignore[attr-defined]
     if settings["level"] == "pymunk":
         space.collision_slop = settings["penetration"] * size
@@ -156,12 +158,13 @@ def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
 
 def grid(scene: Scene) -> Iterator[Row]:
     """The settings of the brute-force sweep, by growing number of substeps."""
-    curved = any(isinstance(shape, Curve) for body in scene.bodies for shape in body.shapes)
+    outlines = [shape for body in scene.bodies for shape in body.shapes if isinstance(shape, Curve)]
+    curved = any(shape.exact is None for shape in outlines)
     pile = sum(body.kind == "dynamic" for body in scene.bodies) > 1
     sweeps = SWEEPS_PILE if pile and scene.gravity != (0.0, 0.0) else SWEEPS
     depths = DEPTHS if scene.gravity != (0.0, 0.0) else DEPTHS[2:3]
     samplings = SAMPLINGS if curved else (None,)
-    if not curved:
+    if not outlines:  # Chipmunk sees no outline, only what stands in for it
         for n in NATIVE_STEPS:
             for m in sweeps:
                 for slop in SLOPS:
