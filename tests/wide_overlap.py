@@ -189,7 +189,9 @@ def overlap(a: Any, b: Any, x: Any, y: Any, angle: Any) -> Overlap:
         last = np.append(index[1:] != index[:-1], True)
         after = np.where(last, W(1), np.append(share[1:], W(1)))
         heads = np.flatnonzero(np.append(True, last[:-1]))
-        following = np.where(last, heads[_following(a if offset == 0 else b)[index]], np.arange(1, len(index) + 1))
+        following = np.where(
+            last, heads[_following(a if offset == 0 else b)[index]], np.arange(1, len(index) + 1)
+        )
         inside = _winding(other, mine.at(index, (share + after) / 2)) > 0
         swept = (after - share) * mine.sweep[index]
         pieces = (node, node[following], place, place[following], mine.r[index], swept)
