@@ -143,6 +143,9 @@ def line_arc(
     wy = cy - ay
     length2 = ux * ux + uy * uy
     turn = ux * wy - uy * wx
+    far = abs(r) + 2.0 * noise + SAME_CIRCLE * abs(r)
+    if turn * turn > far * far * length2:  # beyond all rounding: neither the arc nor an end of it is there
+        return 0, 0.0, 0.0, 0.0, 0.0
     missed = turn * turn >= r * r * length2
     p_side = side(ax, ay, bx, by, px, py, arc_of_b)
     q_side = side(ax, ay, bx, by, qx, qy, arc_of_b)
@@ -230,6 +233,9 @@ def arc_arc(
     dx = gx - cx
     dy = gy - cy
     d2 = dx * dx + dy * dy
+    far = (a + b) * (1.0 + SAME_CIRCLE) + 4.0 * noise
+    if d2 > far * far:  # beyond all rounding
+        return 0, 0.0, 0.0, 0.0, 0.0
     apart = d2 >= (a + b) * (a + b) or d2 <= (a - b) * (a - b)
     p_deep = inside(px, py, gx, gy, b)
     q_deep = inside(qx, qy, gx, gy, b)

@@ -1,8 +1,9 @@
 """Overlap of two small convex outlines with arcs (capsules, rounded boxes) whose boundaries cross twice.
 
-Nearly all pairs of them do. The crossings are found as in `curved.py`, by the same signs; with two of them nothing has
-to be sorted, and the one region is A's boundary from where it enters B to where it leaves, then B's. No crossing and
-boxes that leave no room for one inside the other: apart. Whatever else there is goes the general way.
+Nearly all pairs of them do. The crossings are found as in `curved.py`, by the same signs, among the edges of each that
+reach into the box of the other; with two of them nothing has to be sorted, and the one region is A's boundary from
+where it enters B to where it leaves, then B's. No crossing and boxes that leave no room for one inside the other:
+apart. Whatever else there is goes the general way.
 """
 
 from __future__ import annotations
@@ -20,15 +21,41 @@ OTHERWISE = -3
 
 @kernel
 def convex_pair(
-    qa: np.ndarray, arcs_a: np.ndarray, boxes: np.ndarray, a0: int, na: int, root: int,
-    qb: np.ndarray, arcs_b: np.ndarray, b0: int, nb: int, rel: Relative,
+    qa: np.ndarray, arcs_a: np.ndarray, boxes_a: np.ndarray, a0: int, na: int, root_a: int,
+    qb: np.ndarray, arcs_b: np.ndarray, boxes_b: np.ndarray, b0: int, nb: int, root_b: int, rel: Relative,
     p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
 ) -> int:  # fmt: skip
-    """The region of A's edges a0.., na of them, in the box boxes[root], with B's, placed; or OTHERWISE, or TANGLED."""
-    left = boxes[root, 0] - boxes[root, 2] - noise
-    right = boxes[root, 0] + boxes[root, 2] + noise
-    bottom = boxes[root, 1] - boxes[root, 3] - noise
-    top = boxes[root, 1] + boxes[root, 3] + noise
+    """The region of A's edges a0.., na of them, in the box boxes_a[root_a], with B's, placed; or OTHERWISE, or TANGLED.
+
+    na is at most 256: the label's room for B's edges holds the numbers of A's that come near B, until the loop is made.
+    """
+    left = boxes_a[root_a, 0] - boxes_a[root_a, 2] - noise
+    right = boxes_a[root_a, 0] + boxes_a[root_a, 2] + noise
+    bottom = boxes_a[root_a, 1] - boxes_a[root_a, 3] - noise
+    top = boxes_a[root_a, 1] + boxes_a[root_a, 3] + noise
+    mx, my = placed(boxes_b, root_b, rel)
+    half_x = abs(rel.c) * boxes_b[root_b, 2] + abs(rel.s) * boxes_b[root_b, 3] + noise
+    half_y = abs(rel.s) * boxes_b[root_b, 2] + abs(rel.c) * boxes_b[root_b, 3] + noise
+    if mx + half_x < left or mx - half_x > right or my + half_y < bottom or my - half_y > top:
+        return 0
+    close = 0  # edges of A that come near B's box
+    bx = qa[a0, 0]
+    by = qa[a0, 1]
+    for i in range(na):
+        k = a0 + i + 1 if i + 1 < na else a0
+        ax = bx
+        ay = by
+        bx = qa[k, 0]
+        by = qa[k, 1]
+        bow = arcs_a[a0 + i, 3]
+        if (
+            max(ax, bx) + bow >= mx - half_x
+            and min(ax, bx) - bow <= mx + half_x
+            and max(ay, by) + bow >= my - half_y
+            and min(ay, by) - bow <= my + half_y
+        ):
+            label[close] = i
+            close += 1
     n = 0
     # where A enters B, and where it leaves: edge of A, edge of B, point
     in_a = in_b = out_a = out_b = -1
@@ -60,12 +87,11 @@ def convex_pair(
         gx = gy = 0.0
         if u != 0.0:
             gx, gy = placed(arcs_b, j, rel)
-        bx = qa[a0, 0]
-        by = qa[a0, 1]
-        for i in range(a0, a0 + na):
+        for near in range(close):
+            i = a0 + label[near]
             k = i + 1 if i + 1 < a0 + na else a0
-            ax = bx
-            ay = by
+            ax = qa[i, 0]
+            ay = qa[i, 1]
             bx = qa[k, 0]
             by = qa[k, 1]
             bow = arcs_a[i, 3]

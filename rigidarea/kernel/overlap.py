@@ -106,8 +106,9 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
             )  # fmt: skip
         if ha.arcs + hb.arcs > 0 and ha.count * hb.count <= WALKED_PAIRS:
             n = convex_pair(
-                pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + 1, pb.points, pb.arcs, hb.point, hb.count,
-                rel, work.polygon, work.label, work.bows, work.loops, noise,
+                pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + 1,
+                pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + 1, rel,
+                work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
             if n != OTHERWISE:
                 return n

@@ -12,6 +12,9 @@ from .jit import entry, kernel
 from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
 
+#: A tangle is tried again with B shifted by (i, i^2) times 1e-13 of the size.
+SHIFTS = (1, 2, 3, 4, 5, 6, 7, 8, 16, 32, 64, 128)
+
 
 class Pose(NamedTuple):
     """Where a body's origin is, and cosine and sine of its angle."""
@@ -44,14 +47,15 @@ def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
 def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
     """(number of regions, in `work`; B relative to A) of two placed outlines.
 
-    A tangle is undone by shifts of 1e-13 of the size and more: a tangle is rounding. If none of eight does, there is no
-    contact this time.
+    A tangle is rounding, and undone by shifts, of 1e-13 of the size at first. Two flat arcs that are one to rounding
+    are one within 1e-14 of their radius, which may be any number of sizes: SHIFTS go as far as
+    1.6e-9 of the size, enough for radii of 8e4. If none of them helps, there is no contact this time.
     """
     rel = seen_from(pool.heads[ia], a, pool.heads[ib], b)
     n = overlap_kernel(pool, ia, pool, ib, rel, work)
     if n == TANGLED:
         size = 1e-13 * (pool.heads[ia].radius + pool.heads[ib].radius)
-        for i in range(1, 9):
+        for i in SHIFTS:
             shifted = Relative(rel.c, rel.s, rel.tx + i * size, rel.ty + i * i * size)
             n = overlap_kernel(pool, ia, pool, ib, shifted, work)
             if n != TANGLED:

@@ -72,33 +72,34 @@ BODY = record(
     ]
 )
 
+#: What is asked of every near pair in every sweep comes first, here and in PAIR: in one line of the cache or two.
 SHAPE = record(
     [
-        ("address", "u8"),  # of Chipmunk's shape; 0: none
-        ("ident", "i8"),  # Chipmunk's number for it
         ("outline", "i4"),  # number in the pool
         ("mirror", "i4"),  # the outline's other side, for a segment without thickness; -1: none
         ("body", "i4"),  # row of its body
         ("sensor", "i4"),
+        ("extent", "f8"),  # its smallest extent (length)
+        ("half_x", "f8"),  # half of its outline's bounding box, body axes (length)
+        ("half_y", "f8"),
+        ("left", "f8"),  # its box now (length)
+        ("bottom", "f8"),
+        ("right", "f8"),
+        ("top", "f8"),
+        ("friction", "f8"),
+        ("elasticity", "f8"),
+        ("address", "u8"),  # of Chipmunk's shape; 0: none
+        ("ident", "i8"),  # Chipmunk's number for it
         (
             "heard",
             "i4",
         ),  # callbacks of the user's: 1 for its type with any other, 2 for its type with one other
-        ("extent", "f8"),  # its smallest extent (length)
-        ("half_x", "f8"),  # half of its outline's bounding box, body axes (length)
-        ("half_y", "f8"),
-        ("friction", "f8"),
-        ("elasticity", "f8"),
         ("surface_x", "f8"),  # surface velocity (length/time)
         ("surface_y", "f8"),
         ("type", "u8"),  # collision type
         ("group", "u8"),  # its filter
         ("categories", "u4"),
         ("mask", "u4"),
-        ("left", "f8"),  # its box now (length)
-        ("bottom", "f8"),
-        ("right", "f8"),
-        ("top", "f8"),
         ("low_x", "f8"),  # box within which it stays until pairs are searched again (length)
         ("low_y", "f8"),
         ("high_x", "f8"),
@@ -112,20 +113,24 @@ PAIR = record(
         ("b", "i4"),
         ("head", "i4"),  # first region; -1: none
         ("next", "i4"),  # in the free list
+        ("axis_x", "f8"),  # what parted them last, A's frame, A to B (`apart`); (0, 0): nothing known
+        ("axis_y", "f8"),
+        ("gap", "f8"),  # how far apart along it, and in which substep (length)
+        ("parted", "i8"),
+        ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        ("verdict", "i4"),  # 1: the user lets it collide, 0: not
+        ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("side_b", "i4"),
         ("near", "i8"),  # search that last found it near
-        ("stamp", "i8"),  # frame in which Chipmunk last reported it
         (
             "waiting",
             "i8",
         ),  # frame in which it last waited for that, since a callback of the user's will hear of it
         ("waited", "f8"),  # how long, in that frame (time)
-        ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("swapped", "i4"),  # 1: the arbiter's A is our B
-        ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
         ("points", "i4"),  # how many contact points it had
-        ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
+        ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
         ("friction", "f8"),
         ("elasticity", "f8"),
         ("surface_x", "f8"),  # surface velocity, B's minus A's
@@ -148,10 +153,6 @@ PAIR = record(
             "f8",
         ),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
-        ("axis_x", "f8"),  # what parted them last, A's frame, A to B (`apart`); (0, 0): nothing known
-        ("axis_y", "f8"),
-        ("gap", "f8"),  # how far apart along it, and in which substep (length)
-        ("parted", "i8"),
     ],
 )
 

@@ -1,0 +1,217 @@
+"""What a region that is new is: rest, an impact that steps follow, a bounce shorter than the step, or yet to come."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
+from .jit import kernel
+from .motion import centre_of, earlier, since_of, unseen_for
+from .patch import patch_of
+from .place import overlap_of_outlines
+from .pool import Pool
+from .region import closing, fill, inverse_mass, region_stiffness
+from .stiffness import depth_for
+from .tables import IMPACT, NEARING, PLACED, REST, STRUCK, Law
+from .work import Work
+
+
+@kernel
+def touch(
+    pool: Pool,
+    work: Work,
+    law: Law,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
+    unseen: float,
+) -> bool:
+    """Put a new region where the two have touched first; False: it has not come there by moving.
+
+    Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
+    u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
+    there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms are:
+    what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
+    well (`back` negative).
+    """
+    come = back > 0.0
+    region.back = back
+    for _ in range(3):
+        d = region.depth
+        u = closing(region, a, b, 0.5)
+        gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+        u -= gain * back
+        root = u * u - 2.0 * gain * d
+        if u <= 0.0 or root < 0.0:
+            return come
+        tau = 2.0 * d / (u + math.sqrt(root))
+        if tau + back > min(MOST_ARRIVED * unseen, since_of(a, b)):
+            return come
+        come = True
+        best = -1
+        then = back
+        for share in (0.999, 0.9, 0.5):
+            then = back + share * tau
+            pose = earlier(a, then)
+            other = earlier(b, then)
+            n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
+            least = np.inf
+            for k in range(n):
+                patch = patch_of(pool, work, law, k, ia, ib, pose)
+                far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+                if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
+                    least = far
+                    best = k
+            if best >= 0:
+                break
+        if best < 0:
+            return come
+        patch = patch_of(pool, work, law, best, ia, ib, pose)
+        ax, ay = centre_of(a, pose)
+        bx, by = centre_of(b, other)
+        fill(region, patch, ax, ay, bx, by)
+        region.back = then
+        back = then
+        if patch.depth < 0.01 * d:
+            return come
+    return come
+
+
+@kernel(forceinline=True)
+def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
+    """First touch slower than this is rest (length/time): what pushes gives that much in a few steps."""
+    if law.rest_speed >= 0.0:
+        return law.rest_speed
+    return REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(rate2))
+
+
+@kernel(forceinline=True)
+def size_of(body: Any) -> float:
+    """The smallest extent of a body that moves (length)."""
+    return body.extent if body.mobile else np.inf
+
+
+@kernel
+def hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now."""
+    u = closing(r, a, b, 1.0)
+    if law.followed == math.inf or u * h <= max(r.depth, HIT * min(size_of(a), size_of(b))):
+        return False
+    pushed = max(
+        law.gravity, abs(closing(r, a, b, 0.0) - u) / h
+    )  # in a stack both fall alike: gravity counts
+    return bool(u > REST_KICKS * pushed * h)
+
+
+@kernel(forceinline=True)
+def arrives(r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""
+    return bool(closing(r, a, b, 1.0) * h > 2.0 * max(r.depth, r.rest_depth))
+
+
+@kernel
+def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far.
+
+    By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
+    """
+    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
+    inside = r.depth - before - MOST_ARRIVED * h * speed
+    least = min(size_of(a), size_of(b))
+    if inside <= PUT_FOLLOWED * least:
+        return False
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
+    return bool(phase2 <= law.followed or inside > PUT * least)
+
+
+@kernel
+def enter(
+    pool: Pool,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    face: float,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
+) -> None:
+    """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
+    k = pair.stiffness
+    region.stiffness = k
+    stiffness = region_stiffness(law, k, max(region.chord, face))
+    inverse = inverse_mass(region, a, b)
+    phase2 = stiffness * inverse * h * h
+    push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
+    region.rest_depth = depth_for(law, region, k, push)
+    unseen = unseen_for(pair, h)
+    placed = law.followed != math.inf and back == 0.0 and jumped_in(law, region, 0.0, a, b, unseen)
+    if phase2 <= law.followed and back == 0.0:
+        region.mode = REST if placed else IMPACT
+    else:
+        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen)
+        region.mode = STRUCK if touched else REST
+    region.placed = PLACED if placed and region.mode == REST else 0
+    u = closing(region, a, b, 0.5)
+    gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+    u -= gain * region.back
+    slow = _slow(law, gain, stiffness * inverse, h)
+    if region.mode == REST and not placed and phase2 > law.followed and min(1.0, pair.elasticity) * u > slow:
+        region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
+    region.first_speed = max(u, 0.0)
+    region.opened = 0
+    if u <= slow:
+        if region.mode == IMPACT:
+            region.mode = REST
+        region.first_speed = 0.0
+    elif region.mode == STRUCK and pair.elasticity == 0.0:
+        region.first_speed = 0.0
+
+
+@kernel
+def expect(
+    pool: Pool,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    face: float,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    ahead: float,
+    h: float,
+) -> bool:
+    """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither."""
+    region.stiffness = pair.stiffness
+    stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
+    inverse = inverse_mass(region, a, b)
+    if stiffness * inverse * h * h <= law.followed:
+        return False  # the steps follow it
+    u = closing(region, a, b, 0.0)
+    gain = max(0.0, u - closing(region, a, b, 1.0)) / h
+    if min(1.0, pair.elasticity) * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
+        region.mode = STRUCK
+        region.rest_depth = 0.0
+        region.first_speed = u
+        # positions are those of the middle of the substep: the drift yet to come is the half of it
+        return touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h) and region.back >= -0.5 * h
+    region.mode = NEARING
+    region.first_speed = 0.0
+    # in a stack both fall alike, and it will carry something all the same
+    lying = law.gravity / (inverse * region_stiffness(law, pair.stiffness, face))
+    rest = max(lying, depth_for(law, region, pair.stiffness, gain / inverse))
+    region.rest_depth = min(region.depth, rest)
+    region.back = ahead
+    return True

@@ -1,0 +1,128 @@
+"""Where bodies were and will be, and whether two outlines overlap somewhere on the way."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .constants import LOOK, MOST_LOOKS
+from .jit import kernel
+from .patch import deepest_of
+from .place import Pose, overlap_of_outlines
+from .pool import Pool
+from .sides import shown_sides
+from .tables import DRIFTS, Tables
+from .work import Work
+
+
+@kernel(forceinline=True)
+def pose_of(body: Any) -> Pose:
+    """Where a body's outlines are."""
+    return Pose(body.ox, body.oy, body.c, body.s)
+
+
+@kernel
+def earlier(body: Any, time: float) -> Pose:
+    """Where they were `time` ago, at the velocity at which it has come; negative: will be, at its present velocity.
+
+    What the user has put there, or sent off from there, has been there before.
+    """
+    if body.kind != DRIFTS:
+        return pose_of(body)
+    time = min(time, body.since)
+    came = 1.0 if time > 0.0 else 0.0
+    angle = time * (body.w - came * body.kick_w)
+    cd = math.cos(angle)
+    sd = math.sin(angle)
+    c = body.c * cd + body.s * sd
+    s = body.s * cd - body.c * sd
+    x = body.x - time * (body.vx - came * body.kick_x)
+    y = body.y - time * (body.vy - came * body.kick_y)
+    return Pose(x - (c * body.cog_x - s * body.cog_y), y - (s * body.cog_x + c * body.cog_y), c, s)
+
+
+@kernel(forceinline=True)
+def centre_of(body: Any, pose: Pose) -> tuple[float, float]:
+    """A body's centre of gravity, its outlines at `pose`."""
+    return (
+        pose.x + pose.c * body.cog_x - pose.s * body.cog_y,
+        pose.y + pose.s * body.cog_x + pose.c * body.cog_y,
+    )
+
+
+@kernel
+def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
+    """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
+    dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
+    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    least = LOOK * min(sa.extent, sb.extent)
+    if h * (abs(dx) + abs(dy) + turn) <= least:
+        return 1
+    n = h * (math.sqrt(dx * dx + dy * dy) + turn) / least
+    if n <= 1.0:
+        return 1
+    return int(min(n, MOST_LOOKS)) + 1
+
+
+@kernel(forceinline=True)
+def since_of(a: Any, b: Any) -> float:
+    """How long one of the two has moved by itself (time)."""
+    return max(a.since if a.kind == DRIFTS else 0.0, b.since if b.kind == DRIFTS else 0.0)
+
+
+@kernel(forceinline=True)
+def unseen_for(pair: Any, h: float) -> float:
+    """For how long nobody has looked at a pair without a region: a substep, and what it waited for Chipmunk (time)."""
+    return h + (pair.waited if pair.waiting == pair.stamp - 1 else 0.0)
+
+
+@kernel
+def overlap_before(
+    pool: Pool, work: Work, ia: int, ib: int, a: Any, b: Any, h: float, looks: int
+) -> tuple[int, float]:
+    """(regions, how long ago) at the first of `looks` places on the way of the last h where the two overlap.
+
+    As they are now if they did so already where the user has put them.
+    """
+    way = min(h, since_of(a, b))
+    if way < h:
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, way), ib, earlier(b, way), work)
+        if n != 0:
+            n, _ = overlap_of_outlines(pool, ia, pose_of(a), ib, pose_of(b), work)
+            return n, 0.0
+    for i in range(looks):
+        back = way * (looks - 1 - i) / looks
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, back), ib, earlier(b, back), work)
+        if n != 0:
+            return n, back
+    return 0, 0.0
+
+
+@kernel
+def overlap_ahead(
+    pool: Pool, work: Work, ia: int, ib: int, a: Any, b: Any, h: float, looks: int, deepest: float
+) -> tuple[int, float]:
+    """(regions, or OVERFLOW; how far ahead) at the first of `looks` places on the way of the next h, at the present
+    velocities, where the two overlap, by more than `deepest` where that is not 0; at the last place if nowhere.
+    """
+    n = 0
+    ahead = h
+    for i in range(looks):
+        ahead = h * (i + 1) / looks
+        n, _ = overlap_of_outlines(pool, ia, earlier(a, -ahead), ib, earlier(b, -ahead), work)
+        if n < 0 or (n > 0 and (deepest == 0.0 or deepest_of(work, n) > deepest)):
+            break
+    return n, ahead
+
+
+@kernel
+def meets_within(pool: Pool, tables: Tables, work: Work, pair: Any, h: float) -> int:
+    """Whether the two overlap somewhere on the way of the next h, at their present velocities: regions, 0, OVERFLOW."""
+    a = tables.bodies[tables.shapes[pair.a].body]
+    b = tables.bodies[tables.shapes[pair.b].body]
+    ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
+    n, _ = overlap_ahead(pool, work, ia, ib, a, b, h, jumped(tables, pair, a, b, h), 0.0)
+    return n

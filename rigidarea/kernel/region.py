@@ -1,0 +1,59 @@
+"""A region and its two bodies: arms, closing speed, inverse mass, stiffness."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .jit import kernel
+from .patch import Patch
+from .tables import LAW_AREA, Law
+
+
+@kernel
+def fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) -> None:
+    """The region's place and arms: about the centres (ax, ay) and (bx, by)."""
+    region.area = patch.area
+    region.x = patch.x
+    region.y = patch.y
+    region.nx = patch.nx
+    region.ny = patch.ny
+    region.chord = patch.chord
+    region.middle = patch.middle
+    region.straight = patch.straight
+    region.curve_a = patch.curve_a
+    region.curve_b = patch.curve_b
+    region.depth = patch.depth
+    region.arm_a = (patch.x - ax) * patch.ny - (patch.y - ay) * patch.nx
+    region.arm_b = (patch.x - bx) * patch.ny - (patch.y - by) * patch.nx
+    region.lean_a = (patch.x - ax) * patch.nx + (patch.y - ay) * patch.ny
+    region.lean_b = (patch.x - bx) * patch.nx + (patch.y - by) * patch.ny
+
+
+@kernel(forceinline=True)
+def closing(r: Any, a: Any, b: Any, full: float) -> float:
+    """Closing speed at the region (length/time), with the part `full` of the substep's kick taken off."""
+    return (
+        (a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.nx
+        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.ny
+        + (a.w - full * a.kick_w) * r.arm_a
+        - (b.w - full * b.kick_w) * r.arm_b
+    )
+
+
+@kernel(forceinline=True)
+def inverse_mass(r: Any, a: Any, b: Any) -> float:
+    """1/m_eff of the two bodies along the region's direction (design 2.3)."""
+    return (
+        a.inverse_mass
+        + b.inverse_mass
+        + r.arm_a * r.arm_a * a.inverse_moment
+        + r.arm_b * r.arm_b * b.inverse_moment
+    )
+
+
+@kernel(forceinline=True)
+def region_stiffness(law: Law, k: float, chord: float) -> float:
+    """dF/ddelta of a region (design 2.3)."""
+    if law.law == LAW_AREA:
+        return k * chord
+    return k * chord * chord / law.length
