@@ -31,6 +31,7 @@ from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
+from ..kernel.passed import return_what_passed
 from ..kernel.place import place
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
@@ -559,6 +560,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             return False
     if n == 0 or not _wait_for_verdicts(s, dt):
         return False
+    return_what_passed(load_pool(s), load_tables(s), s.frame)
     if s.stiffness_given == 0:
         adapt_stiffness(load_tables(s), dt)
     s.taken = n

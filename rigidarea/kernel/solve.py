@@ -404,7 +404,10 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
                 turned = abs(body.w - body.came_w) * body.extent
                 if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
                     turn = body.shift_x * vy - body.shift_y * vx
-                    body.w -= turn * body.inverse_moment / body.inverse_mass
+                    most = abs(
+                        body.w - body.came_w
+                    )  # blow upon blow within a substep is no place for second orders
+                    body.w -= min(most, max(-most, turn * body.inverse_moment / body.inverse_mass))
                 place(body)
             body.shift_x = 0.0
             body.shift_y = 0.0
