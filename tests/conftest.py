@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import importlib
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
@@ -140,6 +140,19 @@ class Kernel:
             for p in (pose_a, pose_b)
         ]
         return self.many([a, b], np.array([0]), np.array([1]), *poses, work=work)
+
+    def counter(self, a: Any, b: Any) -> Callable[[float, float, float], int]:
+        """How many regions b at (x, y, angle) has with a at the origin: asked again and again, packed once."""
+        pool, work = self.pool.pack([a, b]), self.work([a, b])
+        first, second, home = np.array([0]), np.array([1]), np.array([[0.0, 0.0, 1.0, 0.0]])
+        where, out = np.zeros(64, np.int64), np.zeros((64, 6))
+
+        def count(x: float, y: float, angle: float) -> int:
+            pose, counts = np.array([[x, y, np.cos(angle), np.sin(angle)]]), np.full(1, -1, np.int64)
+            done, _ = self._run(pool, first, second, home, pose, work, 0, 0, counts, where, out)
+            return int(counts[0] if done else self.one(a, (0, 0, 0), b, (x, y, angle)).count[0])
+
+        return count
 
     def polygons(
         self, a: Any, pose_a: Sequence[float], b: Any, pose_b: Sequence[float]

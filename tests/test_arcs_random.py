@@ -157,10 +157,10 @@ def first_touch(kernel: Any) -> Callable[..., np.ndarray]:
     def touch(a: ra.Outline, b: ra.Outline, middle: np.ndarray, away: np.ndarray, turn: float) -> np.ndarray:
         far = about(a)[1] + about(b)[1]
         low, high = 0.0, far
+        count = kernel.counter(a, b)
         for _ in range(50):
             d = (low + high) / 2
-            found = kernel.one(a, (0, 0, 0), b, (*(middle + d * away), turn))
-            low, high = (d, high) if found.count[0] else (low, d)
+            low, high = (d, high) if count(*(middle + d * away), turn) else (low, d)
         return middle + high * away
 
     return touch

@@ -27,7 +27,8 @@ def convex_pair(
 ) -> int:  # fmt: skip
     """The region of A's edges a0.., na of them, in the box boxes_a[root_a], with B's, placed; or OTHERWISE, or TANGLED.
 
-    na is at most 256: the label's room for B's edges holds the numbers of A's that come near B, until the loop is made.
+    na is at most 256: the label holds the numbers of the edges that come near the other, until the loop is made. (They
+    are found without branches: which edges those are no processor can guess.)
     """
     left = boxes_a[root_a, 0] - boxes_a[root_a, 2] - noise
     right = boxes_a[root_a, 0] + boxes_a[root_a, 2] + noise
@@ -48,47 +49,46 @@ def convex_pair(
         bx = qa[k, 0]
         by = qa[k, 1]
         bow = arcs_a[a0 + i, 3]
-        if (
-            max(ax, bx) + bow >= mx - half_x
-            and min(ax, bx) - bow <= mx + half_x
-            and max(ay, by) + bow >= my - half_y
-            and min(ay, by) - bow <= my + half_y
-        ):
-            label[close] = i
-            close += 1
+        label[close] = i
+        close += int(
+            (max(ax, bx) + bow >= mx - half_x)
+            & (min(ax, bx) - bow <= mx + half_x)
+            & (max(ay, by) + bow >= my - half_y)
+            & (min(ay, by) - bow <= my + half_y)
+        )
+    reaching = close  # and of B, behind them, that come near A's
+    dx, dy = placed(qb, b0, rel)
+    for j in range(nb):
+        cx = dx
+        cy = dy
+        dx, dy = placed(qb, b0 + j + 1 if j + 1 < nb else b0, rel)
+        bow = arcs_b[b0 + j, 3]
+        label[reaching] = j
+        reaching += int(
+            (max(cx, dx) + bow >= left)
+            & (min(cx, dx) - bow <= right)
+            & (max(cy, dy) + bow >= bottom)
+            & (min(cy, dy) - bow <= top)
+        )
     n = 0
     # where A enters B, and where it leaves: edge of A, edge of B, point
     in_a = in_b = out_a = out_b = -1
     in_x = in_y = out_x = out_y = 0.0
-    # a box that holds B, and one that B's points fill: whatever holds B holds that
-    b_left = b_bottom = least_x = least_y = np.inf
-    b_right = b_top = most_x = most_y = -np.inf
-    dx, dy = placed(qb, b0, rel)
-    for j in range(b0, b0 + nb):
-        cx = dx
-        cy = dy
+    for far in range(close, reaching):
+        j = b0 + int(label[far])
+        cx, cy = placed(qb, j, rel)
         dx, dy = placed(qb, j + 1 if j + 1 < b0 + nb else b0, rel)
         bow = arcs_b[j, 3]
         low_x = min(cx, dx) - bow
         high_x = max(cx, dx) + bow
         low_y = min(cy, dy) - bow
         high_y = max(cy, dy) + bow
-        least_x = min(least_x, dx)
-        most_x = max(most_x, dx)
-        least_y = min(least_y, dy)
-        most_y = max(most_y, dy)
-        b_left = min(b_left, low_x)
-        b_right = max(b_right, high_x)
-        b_bottom = min(b_bottom, low_y)
-        b_top = max(b_top, high_y)
-        if high_x < left or low_x > right or high_y < bottom or low_y > top:
-            continue
         u = arcs_b[j, 2]
         gx = gy = 0.0
         if u != 0.0:
             gx, gy = placed(arcs_b, j, rel)
         for near in range(close):
-            i = a0 + label[near]
+            i = a0 + int(label[near])
             k = i + 1 if i + 1 < a0 + na else a0
             ax = qa[i, 0]
             ay = qa[i, 1]
@@ -96,10 +96,10 @@ def convex_pair(
             by = qa[k, 1]
             bow = arcs_a[i, 3]
             if (
-                max(ax, bx) + bow < low_x
-                or min(ax, bx) - bow > high_x
-                or max(ay, by) + bow < low_y
-                or min(ay, by) - bow > high_y
+                (max(ax, bx) + bow < low_x)
+                | (min(ax, bx) - bow > high_x)
+                | (max(ay, by) + bow < low_y)
+                | (min(ay, by) - bow > high_y)
             ):
                 continue
             r = arcs_a[i, 2]
@@ -149,6 +149,23 @@ def convex_pair(
                     in_x = x2
                     in_y = y2
     if n == 0:
+        # a box that holds B, and one that B's points fill: whatever holds B holds that
+        b_left = b_bottom = least_x = least_y = np.inf
+        b_right = b_top = most_x = most_y = -np.inf
+        dx, dy = placed(qb, b0, rel)
+        for j in range(b0, b0 + nb):
+            cx = dx
+            cy = dy
+            dx, dy = placed(qb, j + 1 if j + 1 < b0 + nb else b0, rel)
+            bow = arcs_b[j, 3]
+            least_x = min(least_x, dx)
+            most_x = max(most_x, dx)
+            least_y = min(least_y, dy)
+            most_y = max(most_y, dy)
+            b_left = min(b_left, cx - bow, dx - bow)
+            b_right = max(b_right, cx + bow, dx + bow)
+            b_bottom = min(b_bottom, cy - bow, dy - bow)
+            b_top = max(b_top, cy + bow, dy + bow)
         a_holds_b = least_x >= left and most_x <= right and least_y >= bottom and most_y <= top
         b_holds_a = b_left <= left and b_right >= right and b_bottom <= bottom and b_top >= top
         return OTHERWISE if a_holds_b or b_holds_a else 0
