@@ -5,7 +5,8 @@ A plan is given a space, never a scene. Of each scene all settings of a grid are
 where its own run's error is within the tolerance (or where it has said that none will be, and none is), and its
 cost is compared with that of the cheapest setting of the grid that is within it. Errors are those of the study.
 Variations have no exact answer: the finest setting is their reference, and those whose finest two differ by more
-than a third of the tolerance have none.
+than a third of the tolerance have none; nor have those of a scene on which the finest setting itself is further than
+that from the exact answer.
 """
 
 from __future__ import annotations
@@ -235,14 +236,19 @@ def study(
     def kept(task: Row, work: Callable[[], Row]) -> Row:
         row = known.get(key(task))
         if row is None:
-            row = {"task": task, **work()}
+            row = known[key(task)] = {"task": task, **work()}
             if store is not None:
                 append_rows(store, [row])
         return row
 
     name = {"scene": scene.name, "varied": varied}
     reference = cache(partial(_reference, scene)) if varied else _none
-    doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"] if varied else 0.0
+    doubt: float | None = 0.0
+    if varied:
+        doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"]
+        origin = scene.name.rpartition("-")[0]
+        far = kept({"scene": origin, "finest": True}, partial(_finest, origin))["error"]
+        doubt = None if doubt is None or far is None else max(doubt, far)
     judged = [tolerance for tolerance in tolerances if doubt is not None and doubt <= tolerance / 3.0]
     rows: list[Row] = [
         {**name, "tolerance": tolerance, "verdict": "no reference"}
@@ -281,6 +287,12 @@ def _swept(scene: Scene, settings: Row, reference: Callable[[], tuple[Trace | No
 def _none() -> tuple[None, float]:
     """The reference of a scene that has an exact answer."""
     return None, 0.0
+
+
+def _finest(name: str) -> Row:
+    """The finest setting's error on a scene of the study (None: it failed)."""
+    error = errors(get_scene(name), partial(Planned, get_scene(name), {**FINEST, "sampling": 1e-6}), None)
+    return {"error": error if math.isfinite(error) else None}
 
 
 def _reference(scene: Scene) -> tuple[Trace, float]:

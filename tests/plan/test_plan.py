@@ -386,6 +386,31 @@ def test_levels_of_gears():
     assert modal.elastic[0].level == "compliant" and "compliant (yours)" in str(modal)
 
 
+@pytest.mark.slow
+def test_what_bends_is_applied():
+    """Two rubber gears under a brake: compliant parts after `apply`, their ratio kept within the tolerance."""
+    from rigidarea.flexible import Material
+
+    rubber = Material(5e7, 0.45, 1200.0, 0.05)
+    space, bodies = gears(spin=3.0, load=10.0)
+    made = ra.plan(space, 0.01, 0.5, materials=dict.fromkeys(bodies, rubber))
+    assert [choice.level for choice in made.elastic] == ["compliant", "compliant"] and made.level == "rigid"
+    contact = made.apply()
+    assembly = contact._settings["flexible"]
+    assert assembly is not None and made.apply() is contact  # once
+    made.step(frames=10)  # through the backlash
+    start = [body.angle for body in bodies]
+    made.step(frames=15)
+    driver, driven = (body.angle - angle for body, angle in zip(bodies, start))
+    assert driver == pytest.approx(0.75)
+    assert driven == pytest.approx(-driver * 23 / 57, rel=0.01)  # as planned
+    assert assembly.state(0).stress.any()
+    # another level: without parts, from where everything is
+    made.override(bodies[0], level="rigid").override(bodies[1], level="rigid")
+    again = made.apply()
+    assert again._settings["flexible"] is None and again is not contact
+
+
 def test_shape_of_a_gear():
     shape = elastic.shape_of(ra.shapes.involute_gear(2e-3, 57, bore=15e-3))
     assert shape.teeth == 57
