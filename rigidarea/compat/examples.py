@@ -194,9 +194,8 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
     The facts; no exception, nothing new on standard error; nobody farther out than the native run's box by more than
     its diagonal; nobody faster than 1.5 times the fastest of the native run plus what a fall through a tenth of its
     box gives (a start at rest has a native speed of 0); joints no farther off than twice the native error and one
-    pixel; as many bodies at rest, up to a tenth and, where there are several, one (who is on the way as the run ends is
-    chance where bodies go on coming); callbacks as often, up to a factor of two (contacts of a chaotic crowd are not
-    the same ones) or 30 calls.
+    pixel; of the bodies that came two seconds before the end as many at rest, up to a tenth; callbacks as often, up to
+    a factor of two (contacts of a chaotic crowd are not the same ones) or 30 calls.
     """
     wrong = []
     if own["error"]:
@@ -220,8 +219,7 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
             wrong.append(f"fastest body {own['fastest']:.0f}, natively {native['fastest']:.0f}")
     if own["joint_error"] > 2 * native["joint_error"] + 1:
         wrong.append(f"joints off by {own['joint_error']:.1f}, natively {native['joint_error']:.1f}")
-    late = min(native["late_bodies"], own["late_bodies"])
-    if own["resting"] < native["resting"] - 0.1 - (1 / late if late >= 2 else 0):
+    if own["resting"] < native["resting"] - 0.1:
         wrong.append(f"{own['resting']:.0%} at rest, natively {native['resting']:.0%}")
     for phase, count in native["calls"].items():
         ours = own["calls"][phase]

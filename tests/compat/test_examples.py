@@ -68,7 +68,6 @@ def calm() -> dict:
         "box": [0, 0, 300, 400],
         "fastest": 400.0,
         "resting": 0.9,
-        "late_bodies": 100.0,
         "joint_error": 0.5,
         "calls": {"begin": 10, "pre_solve": 200, "post_solve": 0, "separate": 10},
     }
