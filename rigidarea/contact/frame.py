@@ -18,16 +18,20 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.conjugate import search_together
-from ..kernel.constants import (
-    GAINED,
-    MORE_SWEEPS,
-    MOST_SUBSTEPS,
-    RELAX_SWEEPS,
-    SEARCH_SWEEPS,
-    SETTLED,
-    SUBSTEPS,
+from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
+from ..kernel.islands import (
+    FINEST,
+    connect,
+    demand,
+    everybody,
+    next_turn,
+    note,
+    number,
+    part,
+    share_kicks,
+    spare,
+    spare_nobody_near,
 )
-from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note, number, part, share_kicks
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
@@ -146,7 +150,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
             s.broken = i if s.broken < 0 else s.broken
             continue
-        whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
+        function = words(address + s.body_velocity_func, 1)[0]
+        whole = (function != s.velocity_func and function != s.velocity_func_again) or s.explicit
         body.gain_x = 0.0
         body.gain_y = 0.0
         body.gain_w = 0.0
@@ -219,12 +224,12 @@ def _joints(s: Any, tables: Tables, which: int, x: float) -> None:
 
 
 @kernel(forceinline=True)
-def _substeps_of(tables: Tables, joint: Any, before: bool) -> int:
-    """The substeps in which a joint is solved, or (before) was in the last frame: those of what it moves."""
+def _substeps_of(tables: Tables, joint: Any) -> int:
+    """The substeps in which a joint is solved: those of what it moves."""
     n = 0
     for i in (joint.a, joint.b):
         if i >= 0:
-            n = max(n, tables.bodies[i].taken if before else tables.bodies[i].steps)
+            n = max(n, tables.bodies[i].steps)
     return int(n)
 
 
@@ -235,15 +240,18 @@ def _own_joints(s: Any, tables: Tables) -> int:
     count = 0
     for joint in joints_of(s):
         joint.mine = 0
-        if joint.taken and (turn == 0 or _substeps_of(tables, joint, False) == turn):
+        if joint.taken and (turn == 0 or _substeps_of(tables, joint) == turn):
             joint.mine = 1
             count += 1
     return count
 
 
 @kernel
-def _start_joints(s: Any, tables: Tables, h: float, first: bool) -> None:
-    """The joints as they are where the bodies are now, and what they did last: of the last frame's sum, a share."""
+def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
+    """The joints as they are where the bodies are now, and what they did last.
+
+    n: in the first of n substeps; 0: in another. What they did in the last frame is kept as its sum.
+    """
     for joint in joints_of(s):
         if joint.mine:
             if joint.a >= 0:
@@ -252,8 +260,8 @@ def _start_joints(s: Any, tables: Tables, h: float, first: bool) -> None:
                 write_place(s, tables.bodies[joint.b])
     for joint in joints_of(s):
         if joint.mine:
-            if first:
-                scale_impulse(joint, 1.0 / (_substeps_of(tables, joint, True) or SUBSTEPS))
+            if n > 0:
+                scale_impulse(joint, 1.0 / n)
             _joint(s, tables, joint, PRE_STEP, h)
     _joints(s, tables, APPLY_CACHED, 1.0)
 
@@ -401,7 +409,7 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         tables = load_tables(s)
         if joints > 0:
-            _start_joints(s, tables, h, i == 0)
+            _start_joints(s, tables, h, n if i == 0 else 0)
         if not _solve(s, h, sweeps, joints > 0):
             return False
         tables = load_tables(s)
@@ -479,16 +487,23 @@ def _turns(s: Any, space: int, dt: float) -> int:
     if not _find_near(s, space, dt, dt):
         return 0
     tables = load_tables(s)
+    if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
+        for joint in joints_of(s):
+            if joint.taken:
+                spare(tables, joint.a, s.substeps)
+                spare(tables, joint.b, s.substeps)
+        spare_nobody_near(tables, s.substeps)
     part(tables)
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables, g[0], g[1])
     turn = next_turn(tables, FINEST)
-    most = max(turn, s.substeps)
+    taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
-        return int(most) if _substeps(s, space, dt, most) else 0
+        return int(taken) if _substeps(s, space, dt, taken) else 0
+    most = max(turn, s.substeps)
     if not _keep(s):
         return 0
     last = load_tables(s).counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
@@ -504,7 +519,8 @@ def _turns(s: Any, space: int, dt: float) -> int:
         _everybody(s, space)
         if not _substeps(s, space, dt, most):
             return 0
-    return int(most)
+        taken = most
+    return int(taken)
 
 
 @kernel
@@ -552,7 +568,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 return False
             if _difference(s) <= s.tolerance:
                 break
-    elif n > s.substeps:
+    elif n > s.substeps or (s.joint_count > 0 and s.steps_given == 0):
         n = _turns(s, space, dt)
     else:
         _everybody(s, space)

@@ -86,6 +86,26 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
 
 
 @kernel
+def spare(tables: Tables, i: int, n: int) -> None:
+    """Have a jointed body (-1: none) want one substep instead of n, unless it was asked for more."""
+    if i >= 0:
+        body = tables.bodies[i]
+        if body.kind != FIXED and body.wants <= n:
+            body.wants = max(1, body.asked)
+
+
+@kernel
+def spare_nobody_near(tables: Tables, n: int) -> None:
+    """Who is near somebody wants n substeps again."""
+    for k in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[k]]
+        for i in (tables.shapes[pair.a].body, tables.shapes[pair.b].body):
+            body = tables.bodies[i]
+            if body.kind != FIXED:
+                body.wants = max(body.wants, n)
+
+
+@kernel
 def _root(tables: Tables, i: int) -> int:
     """The body that stands for the island of body i (union-find with halving: Tarjan & van Leeuwen 1984)."""
     bodies = tables.bodies
