@@ -396,11 +396,11 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
 def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
     h = dt / n
-    sweeps = (
-        s.sweeps if s.steps_given else s.sweeps * max(1, s.substeps // n)
-    )  # of a calm frame, those of both substeps
     tables = load_tables(s)
     joints = _own_joints(s, tables)
+    sweeps = s.sweeps
+    if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
+        sweeps *= max(1, s.substeps // n)
     share_kicks(tables, n)
     for i in range(n):
         drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
@@ -549,7 +549,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     tables = load_tables(s)
     for joint in joints_of(
         s
-    ):  # what hangs in joints is never calm: they hold it the better the shorter the step
+    ):  # what hangs in joints is never calm: the shorter the step, the better they hold it
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0:
                 tables.bodies[i].calm = 0
