@@ -110,11 +110,12 @@ def bodies(
     root: float = ROOT,
     refine: int = REFINE,
     modes: int = 40,
+    sides: int = 1,
     cache: Path | None = None,
 ) -> tuple[tuple[Body, Mesh], tuple[Body, Mesh]]:
     """Pinion and wheel, teeth centred in mesh at rest, and their meshes."""
     pinion, wheel = outlines(addendum, root=root)
-    keys: dict[str, Any] = {"hub": 1, "refine": refine, "modes": modes, "cache": cache}
+    keys: dict[str, Any] = {"hub": 1, "refine": refine, "modes": modes, "sides": sides, "cache": cache}
     size = 1e-3 * mesh_mm
     return (
         elastic_body(pinion.rings, size, STEEL, mode, anchor=(0.0, 0.0), drive=(0.0, SPEED, RAMP), **keys),

@@ -15,14 +15,14 @@ resultant against one for every few slave edges.
 
 from __future__ import annotations
 
-import time
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.cases import report
+from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Simulation
@@ -37,6 +37,21 @@ PAPER: dict[str, Any] = {
     "ratio": {"0.7": 0.535, "1.0": 0.488, "1.3": 0.543},
     "first_contact_s": 0.05,
 }
+STRETCHES = (
+    5520,
+    140,
+    24340,
+)  # steps of a compared run: to the first contact, through it, and the rest of 0.3 s
+REPEATS = 9  # of each run
+PARTS = {"run_s": "run_ratio", "contact_phase_s": "contact_phase_ratio", "eval_us": "eval_ratio"}
+
+
+class Course(NamedTuple):
+    """A run: times (n,), frames (n, 2, 3), force on the support (n, 2)."""
+
+    t: Array
+    x: Array
+    force: Array
 
 
 def circle(radius: float, clockwise: bool = False, n: int = 7200) -> Array:
@@ -167,39 +182,39 @@ def measure(t: Array, y: Array, force: Array, level: Array) -> dict[str, float]:
 
 
 def compare(mesh_mm: float, level: str, cache: Path | None) -> dict[str, Any]:
-    """Area and STS on one mesh: whole run of 0.3 s, one contact evaluation, and how far the force curves differ."""
+    """Area and STS on one mesh: a whole run of 0.3 s, one contact, one contact evaluation; how far the forces differ.
+
+    Processor time of REPEATS runs of each in turn, and the median of their ratios: whoever else works on the machine
+    slows both alike.
+    """
     row: dict[str, Any] = {"mesh_mm": mesh_mm}
-    curves = {}
-    for contact in ("area", "sts"):
-        sim = simulation(mesh_mm, level, contact, cache=cache)
-        sim.run(1e-4, STEP)  # compiles, or loads from the cache
-        whole = []
-        for _ in range(3):  # processor time and the best of three: others share the machine
+    curves: dict[str, Course] = {}
+    spent: dict[str, list[float]] = {f"{c}_{what}": [] for c in ("area", "sts") for what in PARTS}
+    for turn in range(REPEATS + 1):  # the first compiles, or loads from the cache
+        for contact in ("area", "sts") if turn % 2 else ("sts", "area"):
             sim = simulation(mesh_mm, level, contact, cache=cache)
-            start = time.process_time()
-            r = sim.run(0.3, STEP)
-            whole.append(time.process_time() - start)
-        row[f"{contact}_run_s"] = min(whole)
-        touching = np.flatnonzero(r.force[:, 1] != 0)
-        row[f"{contact}_eval_us"] = 1e6 * sim.contact_seconds(r.x[touching], 20)
-        phase = []
-        for _ in range(5):  # the contact alone, where the evaluation counts
-            sim = simulation(mesh_mm, level, contact, cache=cache)
-            sim.run(0.0552, STEP)
-            start = time.process_time()
-            sim.run(0.0014, STEP)
-            phase.append(time.process_time() - start)
-        row[f"{contact}_contact_phase_s"] = min(phase)
-        row[f"{contact}_iterations_mean"] = float(r.iterations.mean())
-        curves[contact] = r
+            made = [timed(lambda n=n, sim=sim: sim.run(n * STEP, STEP)) for n in STRETCHES]  # type: ignore[misc]
+            records, cpu = [r for r, _ in made], [s["run_cpu_s"] for _, s in made]
+            touching = records[1].x[records[1].force[:, 1] != 0]
+            if turn > 0:
+                spent[f"{contact}_run_s"].append(sum(cpu))
+                spent[f"{contact}_contact_phase_s"].append(cpu[1])
+                spent[f"{contact}_eval_us"].append(1e6 * sim.contact_seconds(touching, 5))
+            curves[contact] = Course(
+                *(np.concatenate(c) for c in zip(*[(r.t, r.x, r.force) for r in records], strict=True))
+            )
+            row[f"{contact}_iterations_mean"] = float(np.concatenate([r.iterations for r in records]).mean())
+            row[f"{contact}_evaluations"] = sum(r.evaluations for r in records)
+            row[f"{contact}_contact_evaluations"] = records[1].evaluations
     a, s = curves["area"], curves["sts"]
-    first = slice(5400, 5800)  # the first contact, at 0.055 s
+    first = slice(STRETCHES[0], STRETCHES[0] + STRETCHES[1])
     row["force_rms_percent"] = 100 * float(
         np.sqrt(np.mean((a.force[first, 1] - s.force[first, 1]) ** 2)) / np.abs(s.force[first, 1]).max()
     )
-    row["run_ratio"] = row["area_run_s"] / row["sts_run_s"]
-    row["contact_phase_ratio"] = row["area_contact_phase_s"] / row["sts_contact_phase_s"]
-    row["eval_ratio"] = row["area_eval_us"] / row["sts_eval_us"]
+    row |= {name: float(np.median(values)) for name, values in spent.items()}
+    for what, name in PARTS.items():
+        ratio = np.array(spent[f"area_{what}"]) / np.array(spent[f"sts_{what}"])
+        row[name], row[f"{name}_range"] = float(np.median(ratio)), [float(ratio.min()), float(ratio.max())]
     row["curves"] = curves
     return row
 

@@ -192,6 +192,7 @@ class Assembly:
         if self._memory is not None:
             self._tied.recall(self._memory[3])
             self._memory = None
+        self._compile(space)
 
     def leave(self, space: pymunk.Space) -> None:
         """Gives the bodies back to pymunk, if they are in this space."""
@@ -220,6 +221,18 @@ class Assembly:
             self._step, self._before, arrays, _ = self._memory
             for array, old in zip(self._kept(), arrays, strict=True):
                 array[:] = old
+
+    def _compile(self, space: pymunk.Space) -> None:
+        """Has what a frame calls compiled now, on no bodies and for no steps, and not in the first frame."""
+        sim, tied = self.simulation, self._tied
+        assert sim is not None
+        none = tied.members[:0]
+        gather(none, tied.offsets, *space.gravity, space.damping, 0.0)
+        advance(
+            sim._table, sim.system, sim.state, sim.pairs, sim.settings, sim.scratch, sim._searches, sim._buffers,
+            tied.members, tied.links, tied.offsets, 0.0, 0, space.iterations, 1.0,
+        )  # fmt: skip
+        give_back(none, none.copy(), tied.offsets, False)
 
     # --- a frame ---
 

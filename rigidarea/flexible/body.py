@@ -37,6 +37,7 @@ def elastic_body(
     modes: int = 40,
     refine: int = 1,
     growth: float = 0.2,
+    sides: int = 1,
     cache: Path | str | None = None,
     **keys: Any,
 ) -> tuple[Body, Mesh]:
@@ -46,7 +47,9 @@ def elastic_body(
     free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers; clamped may be a function that
     says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, finer than
     the mesh: their polygon has the rings' area (with 1 they are the mesh's nodes).
-    growth: of the size inside the body. keys: passed to ``Body``; ``position`` is where the origin of the rings'
+    growth: of the size inside the body. sides: of triangles between two of the boundary nodes: the mesh is finer than
+    what contacts load, which costs set-up and nothing in a run (2: as many unknowns as quadratic triangles). keys:
+    passed to ``Body``; ``position`` is where the origin of the rings'
     coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
     ``triangulate`` and ``reduce``, and for a size that asks for more nodes than fit into memory.
     """
@@ -54,8 +57,10 @@ def elastic_body(
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
     if refine < 1:
         raise ValueError(f"refine must be at least 1, got {refine}")
+    if not (isinstance(sides, int) and sides >= 1):
+        raise ValueError(f"sides must be a whole number of at least 1, got {sides!r}")
     _check_size(rings, size, contact_rings if level != "rigid" else ())
-    nodes = [resample(r, size) for r in rings]
+    nodes = [resample(r, size, sides) for r in rings]
 
     def build_mesh() -> dict[str, NDArray]:
         made = triangulate(nodes, growth)
@@ -71,8 +76,14 @@ def elastic_body(
         held = np.flatnonzero(np.asarray(clamped(mesh.points[:ends_at]), bool))
         mesh = Mesh(mesh.points, mesh.triangles, (*mesh.rings, held))
         clamped = len(mesh.rings) - 1
+    loaded = tuple(contact_rings)
+    if sides > 1:  # contacts load every so many of a ring's nodes: rings of their own
+        loaded = tuple(range(len(mesh.rings), len(mesh.rings) + len(contact_rings)))
+        mesh = Mesh(
+            mesh.points, mesh.triangles, (*mesh.rings, *(mesh.rings[k][::sides] for k in contact_rings))
+        )
     body = reduce(
-        mesh, material, contact_rings, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
+        mesh, material, loaded, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
     )
     profile, low, high, share, first = [], [], [], [], 0
     for k in contact_rings:
@@ -95,7 +106,7 @@ def elastic_body(
         boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
         fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])),
         young=material.young if level != "rigid" else 0.0, geometric=body.geometric, slowest=body.slowest,
-        shape=Shape(mesh, material, tuple(contact_rings), hub, clamped, body) if level != "rigid" else None, **keys,
+        shape=Shape(mesh, material, loaded, hub, clamped, body) if level != "rigid" else None, **keys,
     ), mesh  # fmt: skip
 
 

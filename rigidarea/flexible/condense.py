@@ -32,6 +32,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.dense import dot, eliminate
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
@@ -213,28 +214,31 @@ def couple_slabs(
 def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual: Array, n: int) -> None:
     """One body's part of C̃ and a: modes, static flexibility, and what the loads of the iteration before moved."""
     m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
+    free, give = buf.modes[0, :m], buf.modes[1, :m]
+    for c in range(m):
+        free[c] = w.mobility[c] * residual[c]
     for i in range(n):
         if s.side[i] != body:
             continue
         row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
-        shift = 0.0
+        along = buf.modal[i, :m]
         old = ex * w.displacement[s.node[i], 0] + ey * w.displacement[s.node[i], 1]
         for c in range(m):
-            value = ex * b.modes[row, c] + ey * b.modes[row + 1, c]
-            buf.modal[i, c] = value
-            shift -= value * w.mobility[c] * residual[c]
-            old -= value * q[c]
+            along[c] = ex * b.modes[row, c] + ey * b.modes[row + 1, c]
+        old -= dot(along, q)
         if static:
             for c in range(3):
                 old -= w.hub_load[c] * (ex * b.flexibility[row, h + c] + ey * b.flexibility[row + 1, h + c])
         if len(b.swell) > 0:
             old -= w.spin[0] * (ex * b.swell[row] + ey * b.swell[row + 1])
         buf.stale[i] = -old if static else 0.0
-        buf.shift[i] = shift
+        buf.shift[i] = -dot(along, free)
     for i in range(n):
         if s.side[i] != body:
             continue
         row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
+        for c in range(m):
+            give[c] = buf.modal[i, c] * w.mobility[c]
         for j in range(i + 1):
             if s.side[j] != body:
                 continue
@@ -246,61 +250,29 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
                 buf.stale[i] += moved * s.force[j]
                 if j != i:
                     buf.stale[j] += moved * s.force[i]
-            for k in range(m):
-                moved += buf.modal[i, k] * buf.modal[j, k] * w.mobility[k]
+            moved += dot(give, buf.modal[j, :m])
             buf.compliance[i, j] = buf.compliance[j, i] = moved
 
 
 @kernel
 def hub_moves(
-    b: Boundary, w: Work, node: int, ex: float, ey: float, pose: Array, modal: Array, out: Array
+    b: Boundary, w: Work, node: int, ex: float, ey: float, pose: Array, modal: Array, give: Array, out: Array
 ) -> None:
     """What a force and a moment on the hub (world x, y, moment) move an FE node along (ex, ey), body frame: out (3,).
 
-    By reciprocity also what a force there in that direction moves the hub.
+    By reciprocity also what a force there in that direction moves the hub. modal (m,): of the modes along it; ``give``
+    (m,) is scratch.
     """
     h, row = len(b.modes) - 3, 2 * node
+    for m in range(len(give)):
+        give[m] = modal[m] * w.mobility[m]
     for k in range(3):
         c = 0.0
         if b.flexibility.shape[0] > 0:
             c = ex * b.flexibility[row, h + k] + ey * b.flexibility[row + 1, h + k]
-        for m in range(b.modes.shape[1]):
-            c += modal[m] * w.mobility[m] * b.modes[h + k, m]
-        out[k] = c
+        out[k] = c + dot(give, b.modes[h + k])
     x, y = out[0], out[1]
     out[0], out[1] = pose[2] * x - pose[3] * y, pose[3] * x + pose[2] * y
-
-
-@kernel
-def _eliminate(a: Array, n: int, rhs: Array, columns: int) -> None:
-    """Gaussian elimination with partial pivoting of n equations, ``columns`` right-hand sides; rhs: the solutions."""
-    for i in range(n):
-        p = i
-        for r in range(i + 1, n):
-            if abs(a[r, i]) > abs(a[p, i]):
-                p = r
-        if p != i:
-            for c in range(i, n):
-                a[i, c], a[p, c] = a[p, c], a[i, c]
-            for c in range(columns):
-                rhs[i, c], rhs[p, c] = rhs[p, c], rhs[i, c]
-        pivot = 1.0 / a[i, i]
-        for r in range(i + 1, n):
-            f = a[r, i] * pivot
-            if f != 0.0:
-                for c in range(i + 1, n):
-                    a[r, c] -= f * a[i, c]
-                for c in range(columns):
-                    rhs[r, c] -= f * rhs[i, c]
-    for i in range(n - 1, -1, -1):
-        pivot = 1.0 / a[i, i]
-        for c in range(columns):
-            rhs[i, c] *= pivot
-        for r in range(i):
-            f = a[r, i]
-            if f != 0.0:
-                for c in range(columns):
-                    rhs[r, c] -= f * rhs[i, c]
 
 
 @kernel
@@ -344,17 +316,17 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
             moves[2] = (s.at[i, 0] - buf.pose[b, 0]) * ey - (s.at[i, 1] - buf.pose[b, 1]) * ex
             if held:
                 ex, ey = s.local[i, 0], s.local[i, 1]
-                hub_moves(bd, w, s.node[i], ex, ey, buf.pose[b], buf.modal[i], moves[3:])
+                hub_moves(
+                    bd, w, s.node[i], ex, ey, buf.pose[b], buf.modal[i], buf.modes[0, : hi - lo], moves[3:]
+                )
         columns += 6 if held else 3
     # (I + K C̃) y = −K (a + P δ)
     for i in range(n):
         row, k = buf.system[i], s.stiffness[i]
-        for j in range(n):
+        for j in range(n + columns + 1):
             row[j] = 0.0
         row[i] = 1.0
-        right = buf.right[i]
-        for c in range(columns + 1):
-            right[c] = 0.0
+        right = row[n:]
         for m in range(n):
             stiff = k[m]
             if stiff == 0.0:
@@ -364,7 +336,10 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
             right[0] -= stiff * (buf.stale[m] + buf.shift[m])
             for c in range(columns):
                 right[c + 1] -= stiff * buf.moves[m, c]
-    _eliminate(buf.system, n, buf.right, columns + 1)
+    eliminate(buf.system, n, columns + 1)
+    for i in range(n):
+        for c in range(columns + 1):
+            buf.right[i, c] = buf.system[i, n + c]
     off = 0.0
     for i in range(n):
         off += abs(buf.right[i, 0])

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.dense import dot
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -25,9 +26,7 @@ def prescribed(drive: Array, t: float) -> float:
 def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
     """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin."""
     n = b.modes.shape[0] - 3 + row
-    u = 0.0
-    for k in range(b.modes.shape[1]):
-        u += b.modes[n, k] * modal[k]
+    u = dot(b.modes[n], modal)
     if b.flexibility.shape[0] > 0:
         c = b.flexibility[n]
         for k in range(w.loaded[-1]):
@@ -43,10 +42,7 @@ def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
 @kernel
 def hub_rate(b: Boundary, dq: Array) -> float:
     """Angular velocity of the hub in the body frame."""
-    u = 0.0
-    for k in range(b.modes.shape[1]):
-        u += b.modes[b.modes.shape[0] - 1, k] * dq[k]
-    return u
+    return float(dot(b.modes[len(b.modes) - 1], dq))
 
 
 class Hub(NamedTuple):

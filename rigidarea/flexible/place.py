@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.dense import dot
 from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
@@ -27,10 +28,7 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
     u = w.displacement[first:end].reshape(2 * (end - first))
     u[:] = 0.0
     for i in range(len(u) if b.modes.shape[1] > 0 else 0):
-        row, moved = b.modes[2 * first + i], 0.0
-        for k in range(len(row)):
-            moved += row[k] * modal[k]
-        u[i] = moved
+        u[i] = dot(b.modes[2 * first + i], modal)
     if b.flexibility.shape[0] > 0:
         flexibility, load, loaded = b.flexibility, w.node_load, w.loaded
         for k in range(loaded[-1]):

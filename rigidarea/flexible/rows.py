@@ -1,4 +1,4 @@
-"""Rows of Newton's system in ``step``: residual and matrix of frames, modes, hubs' constraints; the linear solve."""
+"""Rows of Newton's system in ``step``: residual and matrix of frames, modes, hubs' constraints."""
 
 from __future__ import annotations
 
@@ -34,33 +34,6 @@ def scheme_of(rho: float, h: float) -> Scheme:
     beta = 0.25 * (gamma + 0.5) ** 2
     acc = (1.0 - am) / (h * h * beta * (1.0 - af))
     return Scheme(am, gamma, beta, h, acc, gamma / (h * beta), (1.0 - af) / (1.0 - am), beta * h * h)
-
-
-@kernel
-def solve(a: Array, b: Array, n: int) -> None:
-    """Gaussian elimination with partial pivoting, in place: b becomes the solution. n is at most a few dozen."""
-    for i in range(n):
-        p = i
-        for r in range(i + 1, n):
-            if abs(a[r, i]) > abs(a[p, i]):
-                p = r
-        if p != i:
-            for c in range(i, n):
-                a[i, c], a[p, c] = a[p, c], a[i, c]
-            b[i], b[p] = b[p], b[i]
-        if a[i, i] == 0.0:
-            continue
-        for r in range(i + 1, n):
-            f = a[r, i] / a[i, i]
-            if f != 0.0:
-                for c in range(i + 1, n):
-                    a[r, c] -= f * a[i, c]
-                b[r] -= f * b[i]
-    for i in range(n - 1, -1, -1):
-        s = b[i]
-        for c in range(i + 1, n):
-            s -= a[i, c] * b[c]
-        b[i] = s / a[i, i] if a[i, i] != 0.0 else 0.0
 
 
 @kernel

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
+from rigidarea.flexible.dense import dot
 from rigidarea.flexible.hub import hub_displacement, hub_rate
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
@@ -44,14 +45,13 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
     for b in range(count):
         lo, hi = sy.first[b], sy.first[b + 1]
         j, v, g, stiff = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b), geometric_at(bodies, b)
-        for i in range(lo, hi):
-            gq = 0.0
-            for k in range(lo, hi):
-                gq += g[i - lo, k - lo] * state.q[k]
-                if len(stiff) > 0:
-                    j -= state.q[i] * stiff[0, i - lo, k - lo] * state.q[k]
-            j += 2.0 * sy.stretch[i] * state.q[i] + state.q[i] ** 2
-            kinetic += 0.5 * state.dq[i] ** 2 + v * gq * state.dq[i]
+        q = state.q[lo:hi]
+        for i in range(hi - lo):
+            speed = state.dq[lo + i]
+            if len(stiff) > 0:
+                j -= q[i] * dot(stiff[0, i], q)
+            j += 2.0 * sy.stretch[lo + i] * q[i] + q[i] ** 2
+            kinetic += 0.5 * speed**2 + v * dot(g[i], q) * speed
         kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2) + 0.5 * j * v * v
         for i in range(3):
             row[at + i] = state.x[b, i]

@@ -19,12 +19,13 @@ from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, wo
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import correct_forces, evaluate, poses
+from rigidarea.flexible.dense import eliminate
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.hub import Hub, hub_of, hub_rate
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_nodes
-from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of, solve
+from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -37,7 +38,7 @@ HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn whe
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
-UNSEEN = 3e-6  # a residual this small a part of the largest force, by the pace of the step before, is not looked at
+UNSEEN = 3e-6  # of the largest force: what the step before says is less is not looked at again
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
 SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
@@ -107,14 +108,18 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
     mu[1] += part * d1
     mu[2] += part * d2
     x, y = c * d0 + s * d1, -s * d0 + c * d1
+    d, moved = buf.modes[0], buf.modes[1]
     for j in range(hi - lo):
         f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
-        for i in range(s_load.made[0]):
-            if s_load.side[i] == b:
-                f += buf.modal[i, j] * buf.answer[i]
-        buf.modes[0, j], buf.modes[1, j] = (f - buf.modal_residual[lo + j]) * w.mobility[j], 0.0
+        d[j], moved[j] = f - buf.modal_residual[lo + j], 0.0
+    for i in range(s_load.made[0] if hi > lo else 0):
+        if s_load.side[i] == b:
+            along, more = buf.modal[i], buf.answer[i]
+            for j in range(hi - lo):
+                d[j] += along[j] * more
+    for j in range(hi - lo):
+        d[j] *= w.mobility[j]
     # what these do to each other as the frame turns (G is antisymmetric), and by the damper on the hub
-    d, moved = buf.modes[0], buf.modes[1]
     turning = state.acc[b, 2] + 2.0 * state.v[b, 2] * scheme.vel
     if sy.damper[b] > 0.0:
         turned = 0.0 if sy.fixed[b] == 1 else rhs[k + 2]
@@ -260,7 +265,11 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         if sure and before == 0.0:
             buf.pace[3] += 1.0
         before = worst
-        solve(buf.matrix, buf.rhs, total)
+        for i in range(total):
+            buf.matrix[i, total] = buf.rhs[i]
+        eliminate(buf.matrix, total, 1)
+        for i in range(total):
+            buf.rhs[i] = buf.matrix[i, total]
         if st.spread and not st.sts:
             renew_loads(bodies, sy, buf, s.load, scheme.scale, part)
         change = 0.0

@@ -68,7 +68,7 @@ class Buffers(NamedTuple):
     """Scratch of the stepper: b bodies, p pairs, j joints, m modes, room for c loads."""
 
     pose: Array  # (b, 4)
-    matrix: Array
+    matrix: Array  # and a column for the right-hand side
     rhs: Array
     load: Array  # (b, 3) generalised contact forces
     tangent: Array  # (6 b, 6 b) of the contacts: frames, then hub loads (x, y, moment)
@@ -94,7 +94,7 @@ class Buffers(NamedTuple):
     shift: Array  # (c,) what the modes' residual moves
     compliance: Array  # (c, c)
     moves: Array  # (c, 6 b)
-    system: Array  # (c, c)
+    system: Array  # (c, c + 6 b + 1) and its right-hand sides
     right: Array  # (c, 6 b + 1)
     answer: Array  # (c,) change of each load
     # friction and damping, see ``resist``
@@ -113,12 +113,12 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
     """Scratch for so many bodies, pairs and joints, modes of each body, and ``room`` loads."""
     n, m, rows = bodies, sum(modes), 6 * bodies + 3 * joints
     return Buffers(
-        np.zeros((n, 4)), np.zeros((rows, rows)), np.zeros(rows + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
+        np.zeros((n, 4)), np.zeros((rows, rows + 1)), np.zeros(rows + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
         np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 5)),
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
-        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
-        np.zeros(room), np.zeros((n, 3)), np.zeros(2), np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64),
-        np.zeros(4), np.zeros((joints, 3)),
+        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room + 6 * n + 1)),
+        np.zeros((room, 6 * n + 1)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
+        np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros(4), np.zeros((joints, 3)),
         np.zeros((4, max(modes, default=0))), np.zeros(4), np.zeros((2, REGIONS)),
     )  # fmt: skip
