@@ -6,11 +6,14 @@ OUT ?= out
 .PHONY: run test test-all lint studies reference constraints clean
 .DEFAULT_GOAL := run
 
+# A dot a second while a command says nothing for long.
+ALIVE := sh -c 'while sleep 1; do printf .; done & trap "kill $$!" EXIT; "$$@"' alive
+
 # The build backend is pinned too: no build isolation, so pip fetches nothing that constraints.txt does not name.
 .venv/.installed: pyproject.toml constraints.txt
-	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
-	$(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,dev]'
+	$(ALIVE) $(PYTHON) -m venv .venv
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,dev]'
 	touch $@
 
 run: .venv/.installed

@@ -8,13 +8,14 @@ contact.step(1 / 60)
 from . import shapes
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
-from .overlap import OVERLAP, overlap
+from .overlap import OVERLAP, OVERLAPS, overlap, overlaps
 from .plan import Plan, plan
 
 __version__ = "0.1.0"
 
 __all__ = [
     "OVERLAP",
+    "OVERLAPS",
     "REGIONS",
     "AreaContact",
     "Outline",
@@ -23,6 +24,7 @@ __all__ = [
     "attach",
     "attached",
     "overlap",
+    "overlaps",
     "plan",
     "shapes",
 ]

@@ -140,6 +140,10 @@ def _body_and_shape() -> dict[str, int]:
         found[f"body_{name}"], found[name] = _changed(
             body._body, "body", name, lambda name=name: setattr(body, name, lambda *arguments: None)
         )
+    # Set back, they are not those addresses: what cffi gives for a function is a way into it.
+    body.position_func, body.velocity_func = pymunk.Body.update_position, pymunk.Body.update_velocity
+    for name in ("position_func", "velocity_func"):
+        found[f"{name}_again"] = _word(body._body, found[f"body_{name}"])
     memory = _bytes(shape._shape, "shape", np.float64)
     found["shape_surface_velocity"] = _find(memory, "surface velocity", [41.5, 42.5])
     found["shape_elasticity"] = _find(memory, "elasticity and friction", [0.375, 0.625])
@@ -238,6 +242,21 @@ def kinds_of_joints() -> tuple[int, ...]:
         places.append(at)
         counts.append(n)
     return *kinds, *places, *counts
+
+
+def centre_of(body: pymunk.Body) -> np.ndarray:
+    """Where a body's centre of gravity is in the world, in place: float64 (2,) of Chipmunk's memory (length)."""
+    at = layout()["body_position"]
+    return np.frombuffer(ffi.buffer(ffi.cast("char *", body._body) + at, 16))
+
+
+def put_centre(body: pymunk.Body, x: float, y: float) -> None:
+    """Put a body's centre of gravity there, its angle kept, without waking it."""
+    centre_of(body)[:] = x, y
+    transform = np.frombuffer(ffi.buffer(ffi.cast("char *", body._body) + layout()["body_transform"], 48))
+    c, s = math.cos(body.angle), math.sin(body.angle)
+    off = body.center_of_gravity
+    transform[:] = c, s, -s, c, x - (c * off.x - s * off.y), y - (s * off.x + c * off.y)
 
 
 def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:

@@ -9,11 +9,12 @@ from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .arcs import sampled
 from .kernel.direction import chord_direction
 from .kernel.overlap import Work, enlarged, fits, new_work
-from .kernel.place import Pose, overlap_of_outlines, push_out
+from .kernel.place import Pose, overlap_of_outlines, overlaps_of_outlines, push_out
 from .kernel.pool import Pool, pack
 from .outline import DEFAULT_TOLERANCE, Outline
 
@@ -27,6 +28,16 @@ OVERLAP = np.dtype(
         # RegionPolygon: an array (n, 2), made when it is looked at, of the counter-clockwise outer boundary of the
         # region, arcs sampled (length)
         ("polygon", "O"),
+    ]
+)
+#: One row a region, as `overlaps` returns them.
+OVERLAPS = np.dtype(
+    [
+        ("place", "i8"),  # which of the places
+        ("area", "f8"),  # (length^2)
+        ("centroid", "f8", 2),  # (length)
+        ("direction", "f8", 2),  # unit, from A to B
+        ("chord", "f8"),  # (length); 0 where the boundaries do not cross
     ]
 )
 
@@ -89,6 +100,26 @@ def _pose(place: Sequence[float], name: str) -> Pose:
     return Pose(x, y, math.cos(angle), math.sin(angle))
 
 
+def _check_outlines(outline_a: object, outline_b: object) -> None:
+    for name, outline in (("outline_a", outline_a), ("outline_b", outline_b)):
+        if not isinstance(outline, Outline):
+            raise ValueError(f"{name} must be an Outline, got {type(outline).__name__}")
+
+
+def _scratch_for(pool: Pool) -> Work:
+    """This thread's scratch memory, made if need be."""
+    points, rings = len(pool.points), len(pool.rings)
+    work: Work | None = getattr(_scratch, "work", None)
+    if work is None or not fits(work, points, rings):
+        work = _scratch.work = new_work(max(points, 256), 64, max(rings, 16))
+    return work
+
+
+def _enlarge(pool: Pool, work: Work) -> Work:
+    _scratch.work = enlarged(work, max(len(pool.points), 256), max(len(pool.rings), 16))
+    return _scratch.work
+
+
 def overlap(
     outline_a: Outline, place_a: Sequence[float], outline_b: Outline, place_b: Sequence[float]
 ) -> np.ndarray:
@@ -100,18 +131,13 @@ def overlap(
 
     Raises ValueError for arguments that are no outlines, or no finite (x, y, angle).
     """
-    for name, outline in (("outline_a", outline_a), ("outline_b", outline_b)):
-        if not isinstance(outline, Outline):
-            raise ValueError(f"{name} must be an Outline, got {type(outline).__name__}")
+    _check_outlines(outline_a, outline_b)
     a, b = _pose(place_a, "place_a"), _pose(place_b, "place_b")
     pool = _packed(outline_a, outline_b)
-    points, rings = len(pool.points), len(pool.rings)
-    work: Work | None = getattr(_scratch, "work", None)
-    if work is None or not fits(work, points, rings):
-        work = _scratch.work = new_work(max(points, 256), 64, max(rings, 16))
+    work = _scratch_for(pool)
     n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
     while n < 0:
-        work = _scratch.work = enlarged(work, max(points, 256), max(rings, 16))
+        work = _enlarge(pool, work)
         n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
     out = np.zeros(n, OVERLAP)
     if n == 0:
@@ -137,3 +163,52 @@ def overlap(
             RegionPolygon(corners, bows, a, (at_x, at_y), DEFAULT_TOLERANCE * math.sqrt(area)),
         )
     return out
+
+
+def overlaps(outline_a: Outline, places_a: ArrayLike, outline_b: Outline, places_b: ArrayLike) -> np.ndarray:
+    """Contact regions of two outlines at many places at once: what `overlap` says of each, without the polygons.
+
+    places_a, places_b: arrays (n, 3) of x, y, angle (length, length, radians), row by row; (3,) is one place for all.
+    Returns a structured array, one OVERLAPS row a connected region, in the order of the places.
+    Raises ValueError for arguments that are no outlines, for places that are not finite or not of that shape.
+    """
+    _check_outlines(outline_a, outline_b)
+    a, b = _places(places_a, "places_a"), _places(places_b, "places_b")
+    counts = {len(place) for place in (a, b) if place.ndim == 2}
+    if len(counts) > 1:
+        raise ValueError(f"places_a and places_b must be as many, got {len(a)} and {len(b)}")
+    n = counts.pop() if counts else 1
+    poses = [_rows(place, n) for place in (a, b)]
+    pool = _packed(outline_a, outline_b)
+    work = _scratch_for(pool)
+    which, room = np.zeros(max(n, 16), np.int64), np.zeros((max(n, 16), 6))
+    found, start = [], 0
+    while True:
+        start, m = overlaps_of_outlines(pool, *poses, work, start, which, room)
+        out = np.zeros(m, OVERLAPS)
+        out["place"], out["area"], out["chord"] = which[:m], room[:m, 0], room[:m, 5]
+        out["centroid"], out["direction"] = room[:m, 1:3], room[:m, 3:5]
+        found.append(out)
+        if start == n:
+            return np.concatenate(found)
+        if m == 0:  # one place wants more than there is
+            work = _enlarge(pool, work)
+            which, room = np.zeros(2 * len(which), np.int64), np.zeros((2 * len(room), 6))
+
+
+def _places(places: ArrayLike, name: str) -> np.ndarray:
+    try:
+        given = np.asarray(places, float)
+    except (TypeError, ValueError):
+        given = np.empty(0)
+    if (given.shape != (3,) and (given.ndim != 2 or given.shape[1] != 3)) or not np.isfinite(given).all():
+        raise ValueError(f"{name} must be finite (n, 3) of x, y, angle, or one (3,), got {places!r:.80}")
+    return given
+
+
+def _rows(places: np.ndarray, n: int) -> np.ndarray:
+    """(n, 4) x, y, cosine, sine."""
+    given = np.broadcast_to(places, (n, 3))
+    return np.column_stack(
+        (given[:, :2], [[math.cos(t), math.sin(t)] for t in given[:, 2]] if n else given[:, :2])
+    )

@@ -62,7 +62,7 @@ OFFSETS = [
         "body_force",
     ),
     *("body_torque", "body_inverse_mass", "body_inverse_moment", "body_position_func", "body_velocity_func"),
-    *("position_func", "velocity_func", "body_shapes"),
+    *("position_func", "velocity_func", "position_func_again", "velocity_func_again", "body_shapes"),
     *(
         "shape_surface_velocity",
         "shape_elasticity",

@@ -26,6 +26,8 @@ from .screen import Input, drag, tap
 from .watch import Watch
 
 FRAMES = 300
+#: Seeds of the other native runs.
+SEEDS = (1, 2, 3, 4)
 #: Seconds after which a run is given up.
 TIME_LIMIT = 240.0
 
@@ -122,13 +124,13 @@ STEPPING = tuple(name for name, example in EXAMPLES.items() if example.facts is 
 """The examples that let time pass."""
 
 
-def record(name: str, engine: str, frames: int, file: str) -> None:
+def record(name: str, engine: str, frames: int, file: str, seed: int = 0) -> None:
     """Run an example in this process, which is its alone, and write what happened to `file` as JSON.
 
     The object: `error` (None, or what it raised), `facts` (name, holds, measured), and `Watch.measures`.
     """
     example = EXAMPLES[name]
-    seed_everything(0)
+    seed_everything(seed)
     host = Host(engine, frames, script=example.script)
     watch = Watch(host, example.probe)
     error: str | None = None
@@ -156,7 +158,7 @@ def record(name: str, engine: str, frames: int, file: str) -> None:
     Path(file).write_text(json.dumps(plain(told)))
 
 
-def run_example(name: str, engine: str, frames: int = FRAMES) -> dict[str, Any]:
+def run_example(name: str, engine: str, frames: int = FRAMES, seed: int = 0) -> dict[str, Any]:
     """`record` in a process and a folder of its own; adds `stderr`, and `error` where the process died.
 
     Raises ValueError for an unknown example.
@@ -166,7 +168,8 @@ def run_example(name: str, engine: str, frames: int = FRAMES) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="rigidarea-example-") as folder:
         file = os.path.join(folder, "told.json")
         program = (
-            f"from rigidarea.compat.examples import record; record({name!r}, {engine!r}, {frames}, {file!r})"
+            "from rigidarea.compat.examples import record; "
+            f"record({name!r}, {engine!r}, {frames}, {file!r}, {seed})"
         )
         home = str(Path(__file__).parents[2])
         paths = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
@@ -194,9 +197,8 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
     The facts; no exception, nothing new on standard error; nobody farther out than the native run's box by more than
     its diagonal; nobody faster than 1.5 times the fastest of the native run plus what a fall through a tenth of its
     box gives (a start at rest has a native speed of 0); joints no farther off than twice the native error and one
-    pixel; as many bodies at rest, up to a tenth and, where there are several, one (who is on the way as the run ends is
-    chance where bodies go on coming); callbacks as often, up to a factor of two (contacts of a chaotic crowd are not
-    the same ones) or 30 calls.
+    pixel; of the bodies that came two seconds before the end as many at rest, up to a tenth; callbacks as often, up to
+    a factor of two (contacts of a chaotic crowd are not the same ones) or 30 calls.
     """
     wrong = []
     if own["error"]:
@@ -220,8 +222,7 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
             wrong.append(f"fastest body {own['fastest']:.0f}, natively {native['fastest']:.0f}")
     if own["joint_error"] > 2 * native["joint_error"] + 1:
         wrong.append(f"joints off by {own['joint_error']:.1f}, natively {native['joint_error']:.1f}")
-    late = min(native["late_bodies"], own["late_bodies"])
-    if own["resting"] < native["resting"] - 0.1 - (1 / late if late >= 2 else 0):
+    if own["resting"] < native["resting"] - 0.1:
         wrong.append(f"{own['resting']:.0%} at rest, natively {native['resting']:.0%}")
     for phase, count in native["calls"].items():
         ours = own["calls"][phase]
@@ -230,9 +231,21 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
     return wrong
 
 
+def widened(native: dict[str, Any], others: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """A native run with the box and the fastest body of it and of others, of other random numbers."""
+    runs = [run for run in (native, *others) if run.get("box")]
+    if not native.get("box"):
+        return native
+    boxes = [run["box"] for run in runs]
+    low, high = ([pick(box[i] for box in boxes) for i in at] for pick, at in ((min, (0, 1)), (max, (2, 3))))
+    return {**native, "box": [*low, *high], "fastest": max(run["fastest"] for run in runs)}
+
+
 def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
     """One row of the table: an example natively and with area contact.
 
+    Where something is wrong, native runs with other random numbers are asked too how far bodies get and how fast:
+    natively the ball of `flipper` is lost with five of eight seeds, and stays on the table with seed 0.
     `native_wrong` lists facts that do not hold natively either: the fact is wrong then, not the contact.
     """
     native, own = (run_example(name, engine, frames) for engine in ("pymunk", "area"))
@@ -242,6 +255,9 @@ def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
         return own[key] / native[key] if steps and own.get(key) and native.get(key) else None
 
     wrong = judge(native, own)
+    if wrong and steps:  # a game of chance: what does pymunk do with other numbers?
+        others = [run_example(name, "pymunk", frames, seed) for seed in SEEDS]
+        wrong = judge(widened(native, others), own)
     return {
         "example": name,
         "steps_time": steps,

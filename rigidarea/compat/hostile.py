@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .. import Outline, attach, attached, overlap, shapes
+from .. import Outline, attach, attached, overlap, overlaps, shapes
 from ..bring import scene_from_text
 
 SLOW = 5.0
@@ -157,6 +157,9 @@ class Trial:
                 f'{{"rigidarea": 1, "{key}": {value}}}', self.draw.choice(["json", "toml", "xml"])
             )
 
+        def places() -> Any:
+            return self.draw.choice([[self.pose() for _ in range(3)], self.pose(), p(), n()])
+
         return [
             ("attach", attach_another),
             ("attach(not a space)", lambda: attach(n())),
@@ -184,6 +187,7 @@ class Trial:
             ("outline.add_to", added),
             ("outline.add_to(not a body)", lambda: self.outline.add_to(n())),
             ("overlap", lambda: overlap(self.outline, self.pose(), Outline.circle(0.5), self.pose())),
+            ("overlaps", lambda: overlaps(self.outline, places(), Outline.circle(0.5), places())),
             ("overlap(not an outline)", lambda: overlap(n(), (0, 0, 0), self.outline, (0, 0, 0))),
             ("shapes.box", lambda: measured(shapes.box(n(), n()))),
             ("shapes.circle", lambda: measured(shapes.circle(n()))),

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
+import threading
 import traceback
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -58,6 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     frames = arguments.frames or (None if arguments.window else FRAMES)
     host = Host(arguments.engine, frames, headless=not arguments.window)
     with contextlib.ExitStack() as stack:
+        if not arguments.window and sys.stderr.isatty():
+            stack.enter_context(alive(host, script))
         movie = None
         if arguments.film:
             from .filming import Filming
@@ -88,6 +92,28 @@ def run(arguments: argparse.Namespace) -> int:
     if not host.spaces:
         print(f"{script}: it stepped no pymunk space; there was nothing to attach to", file=sys.stderr)
     return 0
+
+
+@contextlib.contextmanager
+def alive(host: Host, script: Path, seconds: float = 1.0) -> Iterator[None]:
+    """Say on standard error what runs, and as often as that at which frame it is; nothing while code is compiled."""
+    print(f"rigidarea run: {script}, {host.engine}", file=sys.stderr, flush=True)
+    over = threading.Event()
+
+    def tell() -> None:
+        told = 0
+        while not over.wait(seconds):
+            if host.frame > told:
+                told = host.frame
+                print(f"rigidarea run: frame {told}", file=sys.stderr, flush=True)
+
+    teller = threading.Thread(target=tell, daemon=True)
+    teller.start()
+    try:
+        yield
+    finally:
+        over.set()
+        teller.join()
 
 
 def summary(host: Host) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import random
+from collections.abc import Callable
 from typing import Any
 
 import pymunk
@@ -19,8 +20,13 @@ def resident_bytes() -> int:
         return int(file.read().split()[1]) * 4096
 
 
-def soak(steps: int, seed: int = 0, samples: int = 10) -> list[dict[str, Any]]:
-    """So many steps of the fountain; after each of `samples` parts a row: `steps`, `resident_mb`, `bodies`."""
+def soak(
+    steps: int, seed: int = 0, samples: int = 10, tell: Callable[[dict[str, Any]], None] | None = None
+) -> list[dict[str, Any]]:
+    """So many steps of the fountain; after each of `samples` parts a row: `steps`, `resident_mb`, `bodies`.
+
+    tell: is shown each row as it comes.
+    """
     draw = random.Random(seed)
     space = pymunk.Space()
     space.gravity = 0, -900
@@ -56,4 +62,6 @@ def soak(steps: int, seed: int = 0, samples: int = 10) -> list[dict[str, Any]]:
             rows.append(
                 {"steps": step + 1, "resident_mb": resident_bytes() / 2**20, "bodies": len(space.bodies)}
             )
+            if tell is not None:
+                tell(rows[-1])
     return rows

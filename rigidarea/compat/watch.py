@@ -18,6 +18,8 @@ from .host import Host
 REST_SPEED = 10.0
 #: Frames at a run's end over which rest is judged.
 LAST = 30
+#: Frames for which a body must have been there before that: who has just come is still on the way.
+SETTLING = 120
 
 FIELDS = (
     pymunk.batch.BodyFields.BODY_ID
@@ -115,14 +117,18 @@ class Watch:
         return {int(n): row for n, row in zip(seen.numbers, seen.state) if int(n) in dynamic}
 
     def measures(self) -> dict[str, Any]:
-        """Numbers of the run that are compared with the other engine's, as JSON knows them."""
+        """Numbers of the run that are compared with the other engine's, as JSON knows them.
+
+        `resting`: of the bodies that came SETTLING frames before the LAST ones, the share that is slower than
+        REST_SPEED in those.
+        """
         dynamic = np.array(self.dynamic(), np.int64)
         kept = [frame.state[np.isin(frame.numbers, dynamic)] for frame in self.frames]
         states = np.concatenate(kept) if kept else np.zeros((0, 6))
         finite = bool(np.isfinite(states).all())
         states = states[np.isfinite(states).all(axis=1)]
         speeds = np.hypot(states[:, 3], states[:, 4])
-        late = np.concatenate(kept[-LAST:]) if kept else states
+        late = self._settled(dynamic)
         stepping = [seconds for seconds in self.host.frame_cpu if seconds > 0]
         resting = np.hypot(late[:, 3], late[:, 4]) < REST_SPEED
         return {
@@ -131,7 +137,6 @@ class Watch:
             "box": [*states[:, :2].min(axis=0), *states[:, :2].max(axis=0)] if len(states) else None,
             "fastest": float(speeds.max()) if len(speeds) else 0.0,
             "resting": float(resting.mean()) if len(resting) else 1.0,
-            "late_bodies": len(late) / max(1, len(kept[-LAST:])),
             "joint_error": max(self.joint_errors[-LAST:], default=0.0),
             "step_ms": 1e3 * float(np.median(stepping)) if stepping else 0.0,
             "frame_ms": 1e3 * float(np.median(self.whole_cpu)) if self.whole_cpu else 0.0,
@@ -139,6 +144,15 @@ class Watch:
             "steps": self.host.steps,
             "calls": dict(self.host.calls),
         }
+
+    def _settled(self, dynamic: NDArray[np.int64]) -> NDArray[np.float64]:
+        """(k, 6) states in the last frames of those dynamic bodies that had come well before."""
+        last = self.frames[-LAST:]
+        before = self.frames[: max(0, len(self.frames) - LAST - SETTLING + 1)][-1:]
+        there = np.intersect1d(before[0].numbers, dynamic) if before else dynamic
+        return np.concatenate(
+            [frame.state[np.isin(frame.numbers, there)] for frame in last] or [np.zeros((0, 6))]
+        )
 
 
 def joint_error(space: pymunk.Space) -> float:

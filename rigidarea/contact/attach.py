@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import time
 import weakref
 from collections.abc import Callable, Iterable
 from typing import Any
@@ -26,6 +27,10 @@ INTEGRATIONS = ("implicit", "explicit")
 #: Penetration that `attach` allows, as a fraction of a body's smallest extent, where it chooses the stiffness. A
 #: tower of about (0.65 / this)^(1/3) boxes stands: 14.
 PENETRATION = 2e-4
+
+
+#: Frames on end go through machine code for no longer than about this (s): then Python may be interrupted.
+ATTENTION = 0.1
 
 
 class SimulationError(RuntimeError):
@@ -59,6 +64,7 @@ class AreaContact:
         self._store = Store()
         self._shapes: dict[int, pymunk.Shape] = {}
         self._forms: dict[int, Any] = {}
+        self._added: dict[int, tuple[Outline, Any]] = {}
         self._state = state = self._store.state[0]
         settings = self._settings
         for name, offset in layout().items():
@@ -189,16 +195,18 @@ class AreaContact:
         store.forget(gone, store.known_bodies() - bodies.keys())
         for ident in gone:
             del self._shapes[ident], self._forms[ident]
-        hold, own = int(self._state["hold_at"]), int(self._state["position_func"])
+        hold = int(self._state["hold_at"])
+        own = int(self._state["position_func"]), int(self._state["position_func_again"])
         at = int(self._state["body_position_func"]) // 8
         for address, body in bodies.items():
             store.body(address)
             function = ffi.cast("uintptr_t *", body._body)
-            if int(function[at]) == own and not space._locked and not self._state["explicit"]:
+            if int(function[at]) in own and not space._locked and not self._state["explicit"]:
                 function[at] = hold
         for ident, shape in present.items():
             if ident not in self._shapes:
                 self._take(shape)
+        self._added.clear()
         self._hear()
         store.settle()
         state = self._state
@@ -210,8 +218,19 @@ class AreaContact:
                 default=1.0,
             )
 
+    def _came(self, shape: pymunk.Shape) -> None:
+        """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
+        if shape.body is not None and shape.body.body_type == pymunk.Body.STATIC:
+            try:
+                self._added[shape._hashid] = Outline.from_pymunk(shape), _form(shape)
+            except ValueError:  # said when the space is stepped
+                pass
+
     def _take(self, shape: pymunk.Shape) -> None:
-        outline = Outline.from_pymunk(shape)
+        if shape._hashid in self._added:
+            outline, form = self._added.pop(shape._hashid)
+        else:
+            outline, form = Outline.from_pymunk(shape), _form(shape)
         body = shape.body
         assert body is not None
         left, bottom, right, top = outline.bounds
@@ -226,11 +245,12 @@ class AreaContact:
             (0.5 * (right - left), 0.5 * (top - bottom)),
         )
         self._shapes[shape._hashid] = shape
-        self._forms[shape._hashid] = _form(shape)
+        self._forms[shape._hashid] = form
 
     def _reread(self, shapes: Iterable[pymunk.Shape]) -> None:
         """Of these shapes, those whose geometry has been changed."""
         for shape in shapes:
+            self._added.pop(shape._hashid, None)
             if shape._hashid in self._forms and self._forms[shape._hashid] != _form(shape):
                 self.refresh(shape)
 
@@ -306,6 +326,7 @@ class AreaContact:
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
             its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
 
+        Frames on end can be interrupted (Ctrl-C) between two of them.
         Returns the substeps of the last frame, of the island that took most.
         Raises ValueError for arguments out of range, SimulationError (naming body and frame) where a body's state
         stops being finite; all bodies are then as they were before that frame.
@@ -327,13 +348,15 @@ class AreaContact:
             if frames == 1:
                 space.step(dt)
                 return int(self._state["taken"])
-            done = 0
+            done, chunk = 0, 1
             while done < frames:
                 if self._step_alone():
                     space.step(dt)
                     done += 1
                 else:
-                    done += self._run(dt, frames - done)
+                    start = time.perf_counter()
+                    done += self._run(dt, min(chunk, frames - done))
+                    chunk = 2 * chunk if time.perf_counter() - start < ATTENTION else max(1, chunk // 2)
         finally:
             self._state["substeps"], self._state["steps_given"], self._state["tolerance"] = SUBSTEPS, 0, 0.0
         return int(self._state["taken"])
@@ -528,7 +551,11 @@ def _attached(plain: Any) -> type:
             plain.reindex_shapes_for_body(self, body)
             self.__dict__[_KEY]._reread(body.shapes)
 
-        own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        def _add_shape(self: Any, shape: pymunk.Shape) -> None:
+            plain._add_shape(self, shape)
+            self.__dict__[_KEY]._came(shape)
+
+        own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
         for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
             method.__doc__ = getattr(plain, method.__name__).__doc__
             own[method.__name__] = method

@@ -18,14 +18,29 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, SEARCH_SWEEPS, SUBSTEPS
-from ..kernel.islands import FINEST, connect, demand, everybody, next_turn, note, number, part, share_kicks
+from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
+from ..kernel.islands import (
+    FINEST,
+    connect,
+    demand,
+    everybody,
+    next_turn,
+    note,
+    number,
+    part,
+    share_kicks,
+    spare,
+    spare_nobody_near,
+)
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.memory import array_at
+from ..kernel.passed import return_what_passed
 from ..kernel.place import place
+from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     adapt_stiffness,
+    common,
     drift,
     find_near,
     finish,
@@ -135,7 +150,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
             s.broken = i if s.broken < 0 else s.broken
             continue
-        whole = words(address + s.body_velocity_func, 1)[0] != s.velocity_func or s.explicit
+        function = words(address + s.body_velocity_func, 1)[0]
+        whole = (function != s.velocity_func and function != s.velocity_func_again) or s.explicit
         body.gain_x = 0.0
         body.gain_y = 0.0
         body.gain_w = 0.0
@@ -208,12 +224,12 @@ def _joints(s: Any, tables: Tables, which: int, x: float) -> None:
 
 
 @kernel(forceinline=True)
-def _substeps_of(tables: Tables, joint: Any, before: bool) -> int:
-    """The substeps in which a joint is solved, or (before) was in the last frame: those of what it moves."""
+def _substeps_of(tables: Tables, joint: Any) -> int:
+    """The substeps in which a joint is solved: those of what it moves."""
     n = 0
     for i in (joint.a, joint.b):
         if i >= 0:
-            n = max(n, tables.bodies[i].taken if before else tables.bodies[i].steps)
+            n = max(n, tables.bodies[i].steps)
     return int(n)
 
 
@@ -224,15 +240,18 @@ def _own_joints(s: Any, tables: Tables) -> int:
     count = 0
     for joint in joints_of(s):
         joint.mine = 0
-        if joint.taken and (turn == 0 or _substeps_of(tables, joint, False) == turn):
+        if joint.taken and (turn == 0 or _substeps_of(tables, joint) == turn):
             joint.mine = 1
             count += 1
     return count
 
 
 @kernel
-def _start_joints(s: Any, tables: Tables, h: float, first: bool) -> None:
-    """The joints as they are where the bodies are now, and what they did last: of the last frame's sum, a share."""
+def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
+    """The joints as they are where the bodies are now, and what they did last.
+
+    n: in the first of n substeps; 0: in another. What they did in the last frame is kept as its sum.
+    """
     for joint in joints_of(s):
         if joint.mine:
             if joint.a >= 0:
@@ -241,8 +260,8 @@ def _start_joints(s: Any, tables: Tables, h: float, first: bool) -> None:
                 write_place(s, tables.bodies[joint.b])
     for joint in joints_of(s):
         if joint.mine:
-            if first:
-                scale_impulse(joint, 1.0 / (_substeps_of(tables, joint, True) or SUBSTEPS))
+            if n > 0:
+                scale_impulse(joint, 1.0 / n)
             _joint(s, tables, joint, PRE_STEP, h)
     _joints(s, tables, APPLY_CACHED, 1.0)
 
@@ -313,8 +332,8 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
-def _solve(s: Any, h: float, jointed: bool) -> bool:
-    """The sweeps and searches of a substep, and the rows that join them. Whether there was memory for those.
+def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
+    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was memory for it.
 
     They go on while the last sweep has moved much, or contacts have added energy, which they never do.
     """
@@ -323,11 +342,12 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
     tables = load_tables(s)
     if tables.counters[ROWS] == 0 and not jointed:
         return True  # nothing that could change a velocity
-    energy = kinetic(tables)
-    small = pace(tables, load_law(s), energy, h)
+    mass, x, y = common(tables)
+    energy = kinetic(tables, x, y)
+    small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
-    searches = s.sweeps // SEARCH_SWEEPS
-    sweeps = s.sweeps if jointed else s.sweeps - 2 * searches
+    searches = whole // SEARCH_SWEEPS
+    sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -337,17 +357,39 @@ def _solve(s: Any, h: float, jointed: bool) -> bool:
                 joined = _join(s, h, False)
                 if joined < 0:
                     return False
-                wait = 1 if joined > 0 else 2 * wait
+                wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
                 tables = load_tables(s)
             moved = sweep(tables, k % 2 == 0)
             if jointed:
                 _joints(s, tables, APPLY, h)
-            if k == sweeps // 3:
+            elif k > 0 and moved <= SETTLED * small:
+                return True
+            if k == 0:
                 search_together(tables, searches)
-        if moved <= small and (jointed or kinetic(tables) <= GAINED * energy + held_back(tables, h)):
+        if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
             break
     return True
+
+
+@kernel(forceinline=True)
+def _relaxing(sweeps: int) -> int:
+    """How many sweeps of a substep come after positions are settled."""
+    return (sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
+
+
+@kernel
+def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
+    """Bodies are moved by what takes overlaps apart, and go on without that speed."""
+    if not begin_to_relax(tables):
+        return
+    for k in range(_relaxing(whole)):
+        moved = sweep(tables, k % 2 == 0)
+        if jointed:
+            _joints(s, tables, APPLY, h)
+        elif moved <= SETTLED * pace(load_law(s), 1.0, 0.0, h):
+            break
+    end_relaxing(tables, h)
 
 
 @kernel
@@ -356,6 +398,9 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
     h = dt / n
     tables = load_tables(s)
     joints = _own_joints(s, tables)
+    sweeps = s.sweeps
+    if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
+        sweeps *= max(1, s.substeps // n)
     share_kicks(tables, n)
     for i in range(n):
         drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
@@ -364,10 +409,11 @@ def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         tables = load_tables(s)
         if joints > 0:
-            _start_joints(s, tables, h, i == 0)
-        if not _solve(s, h, joints > 0):
+            _start_joints(s, tables, h, n if i == 0 else 0)
+        if not _solve(s, h, sweeps, joints > 0):
             return False
         tables = load_tables(s)
+        _relax(s, tables, h, sweeps, joints > 0)
         if joints > 0:
             for joint in joints_of(s):
                 if joint.mine:
@@ -441,16 +487,23 @@ def _turns(s: Any, space: int, dt: float) -> int:
     if not _find_near(s, space, dt, dt):
         return 0
     tables = load_tables(s)
+    if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
+        for joint in joints_of(s):
+            if joint.taken:
+                spare(tables, joint.a, s.substeps)
+                spare(tables, joint.b, s.substeps)
+        spare_nobody_near(tables, s.substeps)
     part(tables)
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables, g[0], g[1])
     turn = next_turn(tables, FINEST)
-    most = max(turn, s.substeps)
+    taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
-        return int(most) if _substeps(s, space, dt, most) else 0
+        return int(taken) if _substeps(s, space, dt, taken) else 0
+    most = max(turn, s.substeps)
     if not _keep(s):
         return 0
     last = load_tables(s).counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
@@ -466,7 +519,8 @@ def _turns(s: Any, space: int, dt: float) -> int:
         _everybody(s, space)
         if not _substeps(s, space, dt, most):
             return 0
-    return int(most)
+        taken = most
+    return int(taken)
 
 
 @kernel
@@ -492,7 +546,14 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     s.contacts = 0
     if not _start(s, space, load_tables(s)):
         return False
-    n = demand(load_pool(s), load_tables(s), dt, s.substeps, s.steps_given == 0)
+    tables = load_tables(s)
+    for joint in joints_of(
+        s
+    ):  # what hangs in joints is never calm: the shorter the step, the better they hold it
+        for i in (joint.a, joint.b):
+            if joint.taken and i >= 0:
+                tables.bodies[i].calm = 0
+    n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     if s.tolerance > 0.0:
         _everybody(s, space)
         if not _keep(s) or not _substeps(s, space, dt, n):
@@ -507,7 +568,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 return False
             if _difference(s) <= s.tolerance:
                 break
-    elif n > s.substeps:
+    elif n > s.substeps or (s.joint_count > 0 and s.steps_given == 0):
         n = _turns(s, space, dt)
     else:
         _everybody(s, space)
@@ -515,6 +576,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             return False
     if n == 0 or not _wait_for_verdicts(s, dt):
         return False
+    return_what_passed(load_pool(s), load_tables(s), s.frame)
     if s.stiffness_given == 0:
         adapt_stiffness(load_tables(s), dt)
     s.taken = n

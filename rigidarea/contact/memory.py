@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 import pymunk
 
-from ..chipmunk import address_of, joint_impulse
+from ..chipmunk import address_of, centre_of, joint_impulse, put_centre
 from ..kernel.tables import (
     ANEW,
     APART,
@@ -47,13 +47,16 @@ class Memory(NamedTuple):
     joints: list[np.ndarray]
     """Impulses."""
     bodies: np.ndarray
-    """(n, 4): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, and for
-    how long it has moved by itself."""
+    """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
+    calm, and for how long it has moved by itself."""
+    centres: np.ndarray
+    """(n, 2) where each body's centre of gravity is: pymunk restores a body's place before its centre of gravity, and
+    leaves one elsewhere whose centre is not its origin."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
 #: What a body keeps.
-_BODY = ("asked", "taken", "pushed", "since")
+_BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.
 _SHAPE = (
     *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),
@@ -77,11 +80,16 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         np.array(
             [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
+        np.array([centre_of(b).copy() for b in space.bodies]),
     )
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     """Give a copy, just registered, what its original remembers."""
+    for body, centre in zip(space.bodies, memory.centres):
+        if not np.array_equal(centre_of(body), centre):
+            put_centre(body, *centre)
+            space.reindex_shapes_for_body(body)
     mine = np.array([store.slots[shape._hashid] for shape in space.shapes], np.int64)
     known = memory.rows >= 0
     row_of = np.full(len(memory.shapes) + 1, -1)  # its row here by its row there; the last for none

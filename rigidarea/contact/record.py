@@ -164,7 +164,7 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
-        if function[0] == s.position_func and s.explicit == 0:
+        if (function[0] == s.position_func or function[0] == s.position_func_again) and s.explicit == 0:
             # Chipmunk's own: a body that is new here. It will have been moved by a whole frame before the solve.
             body.kind = DRIFTS
             if s.held != s.frame:

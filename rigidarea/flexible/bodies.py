@@ -110,6 +110,8 @@ def work_at(bodies: Ints, i: int) -> Work:
         array_at(row[WORK + 13], (1,), np.float64),
         array_at(row[WORK + 14], (f,), np.int64),
         array_at(row[WORK + 15], (f,), np.int64),
+        array_at(row[WORK + 16], (f + 1,), np.int64),
+        array_at(row[WORK + 17], (f, 2), np.float64),
     )
 
 

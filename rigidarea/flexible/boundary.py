@@ -68,6 +68,8 @@ class Work(NamedTuple):
     spin: Array  # (1,) angular velocity of the frame, squared
     slot: Ints  # (f,) unknown of ``condense`` that is the load on a node, in the region
     slot_region: Ints  # (f,) that wrote it
+    given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
+    given_load: Array  # (f, 2) and by what, in their order
 
 
 def _box(p: Array) -> Array:
@@ -176,5 +178,5 @@ def workspace(b: Boundary) -> Work:
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
-        np.zeros(f, np.int64),
+        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)),
     )  # fmt: skip

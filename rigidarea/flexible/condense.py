@@ -382,11 +382,20 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
 
 
 @kernel
-def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None:
-    """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads."""
+def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float, part: float) -> None:
+    """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads.
+
+    Of these, ``part``: the rest is what the nodes were given in the iteration before.
+    """
     n, columns, count = s.made[0], buf.counts[2], 3 * len(sy.mass)
     for b in range(len(sy.mass)):
-        clear_nodes(work_at(bodies, b))
+        w = work_at(bodies, b)
+        clear_nodes(w)
+        if part != 1.0:
+            for j in range(w.given[-1]):
+                node, rest = w.given[j], 1.0 - part
+                x, y = w.given_load[j, 0], w.given_load[j, 1]
+                add_load(w.node_load, w.node_flag, w.loaded, node, rest * x, rest * y)
     for i in range(n):
         y = buf.right[i, 0]
         for c in range(columns):
@@ -398,5 +407,12 @@ def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None
         buf.answer[i] = y
         if s.node[i] >= 0:
             w = work_at(bodies, s.side[i])
-            f = s.force[i] + y
+            f = part * (s.force[i] + y)
             add_load(w.node_load, w.node_flag, w.loaded, s.node[i], f * s.local[i, 0], f * s.local[i, 1])
+    for b in range(len(sy.mass)):
+        w = work_at(bodies, b)
+        w.given[-1] = w.loaded[-1]
+        for j in range(w.loaded[-1]):
+            node = w.loaded[j]
+            w.given[j] = node
+            w.given_load[j, 0], w.given_load[j, 1] = w.node_load[node, 0], w.node_load[node, 1]

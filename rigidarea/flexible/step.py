@@ -22,6 +22,7 @@ from rigidarea.flexible.contacts import correct_forces, evaluate, poses
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.hub import Hub, hub_of, hub_rate
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
+from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_nodes
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of, solve
 from rigidarea.kernel.jit import kernel
@@ -36,10 +37,7 @@ HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn whe
 TOLERANCE = 1e-7  # residual force over the largest force of the step
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
-PACE = 2.0  # the first correction of a step is taken to leave this many times what it left in the step before (after E.
-# Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.8),
-UNSEEN = 3e-6  # and where that is so small a part of the largest force, it is not looked at again,
-LOOK = 8  # but for one step in so many
+UNSEEN = 3e-6  # a residual this small a part of the largest force, by the pace of the step before, is not looked at
 CLOSURE = 1e-10  # constraint violation over the size of the body (angles: radians)
 ROUNDING = 1e-14  # a correction this small, over the size of the body, ends the iteration too
 SETTLED = 1e-3  # and then loads and displacements disagree by no more than this part of the largest force
@@ -89,13 +87,13 @@ def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
-    """Newton's correction of one body, from the solution in ``buf.rhs``; returns the largest change over its size."""
+def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, b, part):  # type: ignore[no-untyped-def]
+    """``part`` of Newton's correction of one body, of the solution in ``buf.rhs``; the largest change over its size."""
     rhs, k, change = buf.rhs, 3 * b, 0.0
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s = buf.pose[b, 2], buf.pose[b, 3]
     for i in range(0 if sy.fixed[b] == 1 else 3):
-        d = rhs[k + i]
+        d = part * rhs[k + i]
         change = max(change, abs(d) / (sy.size[b] if i < 2 else 1.0))
         state.x[b, i] += d
         state.v[b, i] += scheme.vel * d
@@ -105,9 +103,9 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
     d1 = rhs[buf.column[k + 1]] / scheme.scale if buf.column[k + 1] >= 0 else 0.0
     d2 = rhs[buf.column[k + 2]] / scheme.scale if buf.column[k + 2] >= 0 else 0.0
     mu = state.mu[b]
-    mu[0] += d0
-    mu[1] += d1
-    mu[2] += d2
+    mu[0] += part * d0
+    mu[1] += part * d1
+    mu[2] += part * d2
     x, y = c * d0 + s * d1, -s * d0 + c * d1
     for j in range(hi - lo):
         f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
@@ -129,7 +127,7 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         for j in range(hi - lo):
             moved[j] += row[j] * x
     for j in range(hi - lo):
-        _move_mode(state, scheme, lo + j, d[j] + moved[j] * w.mobility[j])
+        _move_mode(state, scheme, lo + j, part * (d[j] + moved[j] * w.mobility[j]))
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
     w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
     rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
@@ -167,19 +165,6 @@ def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-un
 
 
 @kernel
-def _pace(buf, worst):  # type: ignore[no-untyped-def]
-    """The part of the residual that the first correction will leave, by what it left in steps before; 1: not known,
-    or nothing touches, and looking costs little.
-
-    ``buf.pace``: the slowest of the last step in which that was seen, its first residual, contact regions, and the
-    steps since.
-    """
-    if buf.counts[0] == 0 or buf.pace[1] == 0.0 or buf.pace[3] >= LOOK:
-        return 1.0
-    return PACE * buf.pace[0] * max(1.0, worst / buf.pace[1])
-
-
-@kernel
 def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-untyped-def]
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
     scheme = scheme_of(st.rho, h)
@@ -193,7 +178,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     end = _number(sy, buf)
     buf.clock[0], buf.clock[1] = h, scheme.vel
     change, before, regions = 1.0, 0.0, -1
+    part = 1.0  # of a correction that is taken
     first = slowest = 0.0
+    full = stamp = 0
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
@@ -253,7 +240,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             buf.pace[0], buf.pace[1], buf.pace[2], buf.pace[3] = slowest, first, regions, 0.0
         else:
             first = worst
-            rate = _pace(buf, worst)
+            rate = pace(buf, worst)
         rounded = change < ROUNDING and off <= SETTLED * reference
         done = (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE
         # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
@@ -265,14 +252,17 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             if before > 0.0
             else rate * worst <= UNSEEN * reference
         )
-        sure = rate < FAST and left and rate * open_most <= CLOSURE
+        # no more may have been looked at than this evaluation: else loads were let go between
+        full = full + 1 if part == 1.0 and buf.counts[0] == regions and buf.counts[1] == stamp + 1 else 0
+        stamp, part = buf.counts[1], part_of_next(buf, full)
+        sure = rate < FAST and left and part == 1.0 and rate * open_most <= CLOSURE
         sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
         if sure and before == 0.0:
             buf.pace[3] += 1.0
         before = worst
         solve(buf.matrix, buf.rhs, total)
         if st.spread and not st.sts:
-            renew_loads(bodies, sy, buf, s.load, scheme.scale)
+            renew_loads(bodies, sy, buf, s.load, scheme.scale, part)
         change = 0.0
         for b in range(count):
             change = max(
@@ -287,9 +277,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                     state,
                     scheme,
                     b,
+                    part,
                 ),
             )
-        correct_joints(sy, buf, state, end, scheme.scale)
+        correct_joints(sy, buf, state, end, scheme.scale / part)
         if sure:
             correct_forces(sy, buf, st, s, pairs)
             return iteration

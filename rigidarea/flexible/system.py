@@ -105,7 +105,8 @@ class Buffers(NamedTuple):
     moved: Array  # (4,) pose of a pair's second body, a little aside
     joint: Array  # (j, 3) force and moment of each joint on its body b
     modes: Array  # (4, most modes of a body) see ``frame.inertia_forces``
-    pace: Array  # (4,) of Newton's method, see ``step``
+    pace: Array  # (4,) of Newton's method, see ``pace``
+    sway: Array  # (2, REGIONS) the same
 
 
 def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -> Buffers:
@@ -119,5 +120,5 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room)), np.zeros((room, 6 * n + 1)),
         np.zeros(room), np.zeros((n, 3)), np.zeros(2), np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64),
         np.zeros(4), np.zeros((joints, 3)),
-        np.zeros((4, max(modes, default=0))), np.zeros(4),
+        np.zeros((4, max(modes, default=0))), np.zeros(4), np.zeros((2, REGIONS)),
     )  # fmt: skip

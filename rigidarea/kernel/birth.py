@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .constants import HIT, MOST_ARRIVED, REST_KICKS
+from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
 from .patch import patch_of
@@ -117,10 +117,18 @@ def arrives(r: Any, a: Any, b: Any, h: float) -> bool:
 
 
 @kernel
-def jumped_in(r: Any, before: float, a: Any, b: Any, h: float) -> bool:
-    """Whether an overlap has become deeper than its bodies' motion can have made it, by far."""
+def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far.
+
+    By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
+    """
     speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
-    return bool(r.depth - before > MOST_ARRIVED * h * speed + 0.01 * min(size_of(a), size_of(b)))
+    inside = r.depth - before - MOST_ARRIVED * h * speed
+    least = min(size_of(a), size_of(b))
+    if inside <= PUT_FOLLOWED * least:
+        return False
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
+    return bool(phase2 <= law.followed or inside > PUT * least)
 
 
 @kernel
@@ -147,7 +155,7 @@ def enter(
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
     unseen = unseen_for(pair, h)
-    placed = law.followed != math.inf and back == 0.0 and jumped_in(region, 0.0, a, b, unseen)
+    placed = law.followed != math.inf and back == 0.0 and jumped_in(law, region, 0.0, a, b, unseen)
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:

@@ -20,6 +20,9 @@ from numba.core.caching import IndexDataCacheFile
 FORMAT = b"1"
 """What the files below look like: another number, another folder."""
 
+USUALLY = "one to two minutes"
+"""What it takes: 60 to 105 s of one core of a Xeon (`bench start`)."""
+
 _DIGEST = hashlib.sha256().digest_size
 
 
@@ -128,7 +131,7 @@ class Notice(event.Listener):
             self._since = time.monotonic()
         again = "compiling" in self._said
         self._said.add("compiling")
-        words = "compiling more" if again else f"compiling once, about half a minute, kept in {self.folder}"
+        words = "compiling more" if again else f"compiling once, {USUALLY}, kept in {self.folder}"
         _write(f"rigidarea: {words} ")
         threading.Thread(target=self._tick, daemon=True).start()
 
@@ -138,11 +141,14 @@ class Notice(event.Listener):
             self._depth = max(self._depth - 1, 0)
 
     def _tick(self) -> None:
-        idle = 0
+        idle = seconds = 0
         while idle < 2:  # between two functions nothing compiles for a moment
             time.sleep(1.0)
+            seconds += 1
             idle = 0 if self._depth else idle + 1
-            if self._depth:
+            if seconds % 10 == 0:
+                _write(f" {seconds} s ")
+            elif self._depth:
                 _write(".")
         self.close()
 

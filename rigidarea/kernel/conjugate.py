@@ -65,6 +65,10 @@ MOBILITY = record(
         ("ux", "f8"),  # impulse of the search's direction
         ("uy", "f8"),
         ("uw", "f8"),
+        ("vx", "f8"),  # its velocity before contacts are relaxed
+        ("vy", "f8"),
+        ("vw", "f8"),
+        ("moved", "i8"),  # 1: by what relaxing has taken from it
     ]
 )
 

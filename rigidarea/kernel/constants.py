@@ -11,11 +11,9 @@ MOST_SUBSTEPS = 1024
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler
 #: is stable up to 4; its restitution is then within 0.002.
 FOLLOWED = 0.05
-#: A contact pressed too far opens again in so many substeps (1/e time): the row's S. More, and what the sweeps have
-#: left unsolved outweighs it: a contact opens under its load, and piles never come to rest; less, and what the sweeps
-#: have not learnt of yet is handed back. (From a depth d no faster than in sqrt(d / g), so that weight stops it again;
-#: where there is no weight, in a second.)
-RELEASE_STEPS = 15.0
+#: A contact pressed too far opens again in so many substeps (1/e time): the row's S. It does so without giving speed
+#: (`relax`), so that little depends on it: piles come to rest with 4, 8 and 15.
+RELEASE_STEPS = 8.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.
 RELEASE_SPEED = 1.0
@@ -30,6 +28,10 @@ TANGENT_STIFFNESS = 2.0 / 7.0
 REST_KICKS = 2.0
 #: Deeper (at first touch, or than before) than so many substeps' motion: put there, not come there. No impact then.
 MOST_ARRIVED = 2.0
+#: And by this fraction of the smaller one's smallest extent: less may be what a solve has left, and carries a load;
+#: but not where the step follows the contact, whose spring would throw the two.
+PUT = 0.1
+PUT_FOLLOWED = 0.01
 #: Restitution below this is taken as this: the exact law's damping grows as 1/e.
 LEAST_RESTITUTION = 0.01
 #: Largest fraction of the smaller one's least extent that a pair may move in a step between two looks at its overlap.
@@ -61,11 +63,19 @@ STRAIGHT_WAY = 0.1
 SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
+#: One sweep of so many, rounded up, is for the velocities that are left when positions are right (`relax`).
+RELAX_SWEEPS = 5
 #: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
 #: converged.
 GAINED = 1.005
-#: Nor is it, where the last sweep has still changed speeds by more than what pushes gives in a substep, and this part
-#: of the bodies' speed.
-MOVED = 0.1
+#: Nor is it, where the last sweep has still changed speeds by more than a part of what pushes gives in a substep, and a
+#: part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
+LEFT = 0.1
+MOVED = 0.01
+#: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
+SETTLED = 1e-3
+#: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
+#: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
+CALM = 0.01
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

@@ -13,32 +13,38 @@ from __future__ import annotations
 
 import math
 
-from .constants import FEATURE, MOST_SUBSTEPS
+from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .jit import kernel
 from .pool import Pool
 from .solve import arrange, bound, turn_of
-from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TURN, TURNED, Tables
+from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TURN, TURNED, Law, Tables
 
 #: More substeps than any turn has.
 FINEST = 1 << 30
 
 
 @kernel
-def demand(pool: Pool, tables: Tables, dt: float, n: int, teeth: bool) -> int:
-    """How many substeps each body wants in a frame of dt, n at least; the most that any does.
+def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) -> int:
+    """How many substeps each body wants in a frame of dt; the most that any does.
 
-    What it has been asked for (`asked`). teeth: also as many as no outline needs to pass a tooth of a concave one
-    unseen. Convex bodies are met wherever they come (`meet`); teeth, slots and hooks move under a contact that is
-    there already, by no more than a FEATURE of the chord on which such an outline lies.
+    n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
+    and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
+    (`meet`); teeth, slots and hooks move under a contact that is there already, by no more than a FEATURE of the chord
+    on which such an outline lies.
     """
-    most = n
+    most = 1 if free else n
+    slow = CALM * law.gravity * dt
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
-        body.wants = n
+        before = body.calm
+        body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
+            3.0 * slow if before else slow
+        )
+        body.wants = 1 if free and before and body.calm else n
         if body.kind != FIXED:
-            body.wants = max(n, body.asked)
+            body.wants = max(body.wants, body.asked)
             most = max(most, body.wants)
-    if not teeth:
+    if not free:
         return most
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i]]
@@ -77,6 +83,26 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
         arrange(tables, gx, gy)
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
+
+
+@kernel
+def spare(tables: Tables, i: int, n: int) -> None:
+    """Have a jointed body (-1: none) want one substep instead of n, unless it was asked for more."""
+    if i >= 0:
+        body = tables.bodies[i]
+        if body.kind != FIXED and body.wants <= n:
+            body.wants = max(1, body.asked)
+
+
+@kernel
+def spare_nobody_near(tables: Tables, n: int) -> None:
+    """Who is near somebody wants n substeps again."""
+    for k in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[k]]
+        for i in (tables.shapes[pair.a].body, tables.shapes[pair.b].body):
+            body = tables.bodies[i]
+            if body.kind != FIXED:
+                body.wants = max(body.wants, n)
 
 
 @kernel

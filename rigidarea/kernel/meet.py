@@ -225,7 +225,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
-                if jumped_in(region, before, a, b, h):
+                if jumped_in(law, region, before, a, b, h):
                     region.placed = PLACED
         if back > 0.0:
             ax, ay = centre_of(a, pose_a)

@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .apart import gap_along
+from .direction import chord_direction
 from .jit import entry, kernel
 from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
 from .pool import Pool
@@ -128,3 +129,39 @@ def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]
                         best_x = way * mx
                         best_y = way * my
     return best_x, best_y
+
+
+@entry
+def overlaps_of_outlines(
+    pool: Pool, a: np.ndarray, b: np.ndarray, work: Work, start: int, which: np.ndarray, out: np.ndarray
+) -> tuple[int, int]:
+    """Regions of the pool's first two outlines at many places, from row `start` on.
+
+    a, b: (n, 4) x, y, cosine, sine of each. Writes, a region, the row in `which` and in `out` (m, 6) area, centroid,
+    direction, chord. Returns the row at which room (in `work`, `which`, `out`) has run out, n if it has not, and how
+    many regions are written.
+    """
+    m = 0
+    for i in range(start, len(a)):
+        pose = Pose(a[i, 0], a[i, 1], a[i, 2], a[i, 3])
+        n, rel = overlap_of_outlines(pool, 0, pose, 1, Pose(b[i, 0], b[i, 1], b[i, 2], b[i, 3]), work)
+        if n < 0 or m + n > len(out):
+            return i, m
+        for k in range(n):
+            loop = work.loops[k]
+            chord = math.sqrt(loop.chord_x * loop.chord_x + loop.chord_y * loop.chord_y)
+            nx, ny = chord_direction(loop.chord_x, loop.chord_y, loop.area)
+            if nx == 0.0 and ny == 0.0:
+                chord = 0.0
+                nx, ny = push_out(pool, 0, 1, rel)
+            x = loop.x + pool.heads[0].x
+            y = loop.y + pool.heads[0].y
+            which[m] = i
+            out[m, 0] = loop.area
+            out[m, 1] = pose.x + pose.c * x - pose.s * y
+            out[m, 2] = pose.y + pose.s * x + pose.c * y
+            out[m, 3] = pose.c * nx - pose.s * ny
+            out[m, 4] = pose.s * nx + pose.c * ny
+            out[m, 5] = chord
+            m += 1
+    return len(a), m

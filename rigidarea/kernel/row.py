@@ -72,6 +72,10 @@ ROW = record(
         ("l2", "f8"),
         ("lt", "f8"),
         ("weight", "f8"),  # 1/m_eff
+        ("was1", "f8"),  # the impulses before contacts are relaxed
+        ("was2", "f8"),
+        ("was_t", "f8"),
+        ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -202,6 +206,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     Row.region, a, b are set by the caller.
     """
     row.shift = 0.0
+    row.theta = 0.0
     row.friction = pair.friction
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
@@ -261,25 +266,24 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.lt = r.lt * (h / r.step)
     else:
         firm = max(stiffness, region_stiffness(law, pair.firm, r.chord))
+        least = least_extent(a, b)
+        if r.placed == PLACED and law.stiffness == 0.0:
+            most = PLACED_LOADS * max(pair.least, pair.load)
+            if elastic > most:
+                firm *= most / elastic
+                elastic = most
         phase2 = firm * inverse * h * h
         theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(firm / inverse)
-        release = 1.0 / RELEASE_SPEED
-        if law.gravity > 0.0:  # no faster than what pushes can stop again
-            release = max(RELEASE_STEPS * h, min(release, math.sqrt(r.depth / law.gravity)))
-        c += theta * (h + release) * firm
-        least = least_extent(a, b)
-        if r.placed == PLACED and law.stiffness == 0.0:
-            elastic = min(elastic, PLACED_LOADS * max(pair.least, pair.load))
+        c += theta * (1.0 + RELEASE_STEPS) * h * firm
         slowest = elastic / (RELEASE_SPEED * least)
-        if r.placed == PLACED:
-            c = slowest
-        elif r.placed == SPENT and law.followed < math.inf:
+        if r.placed == SPENT and law.followed < math.inf:
             c = max(c, stiffness / RELEASE_SPEED)
-        elif theta > 0.0:
+        elif theta > 0.0 or r.placed == PLACED:
             c = max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
+        row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness
@@ -399,6 +403,25 @@ def visit(row: Any, a: Any, b: Any) -> float:
     return max(abs(d1 + d2), abs(dt)) * row.weight
 
 
+@kernel(forceinline=True)
+def stiffen(row: Any) -> bool:
+    """The row as of a rigid contact, as far as the step is too long for its spring; whether it bears as such."""
+    row.was1 = row.l1
+    row.was2 = row.l2
+    row.was_t = row.lt
+    if row.theta == 0.0:
+        return False
+    rigid = row.theta * row.alpha
+    row.alpha -= rigid
+    row.m11 -= rigid
+    if row.ends == 1:
+        row.det = 1.0 / row.m11
+    else:
+        row.m22 -= rigid
+        row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
+    return bool(row.l1 + row.l2 > 0.0)
+
+
 @kernel
 def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last: bool) -> None:
     """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
@@ -415,7 +438,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     r.friction = row.lt / h
     if law.stiffness == 0.0:
         pair.carrying += normal
-        if r.mode == IMPACT or r.placed == PLACED:
+        if r.mode == IMPACT:
             pair.area = -math.inf  # no load, and no change of stiffness in the middle of it
         elif last and r.mode != NEARING:
             pair.area += area_allowed(law, r, a, b)

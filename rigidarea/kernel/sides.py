@@ -39,12 +39,8 @@ def length_on_first_edge(pool: Pool, i: int, rel: Relative, mine: int, work: Wor
 
 
 @kernel
-def _faces(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> int:
-    """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
-
-    The solid lies to the left of outline i's first edge, the segment, and the other outline's middle decides: the
-    solid is on the far side of it.
-    """
+def over(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> tuple[float, float, float]:
+    """Where another outline's middle is, seen from a segment: height to its left, way along it, its length (length)."""
     head = pool.heads[i]
     p = head.point
     ax, ay = pool.points[p, 0], pool.points[p, 1]
@@ -55,12 +51,27 @@ def _faces(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> int:
     y = other_pose.y + other_pose.s * it.x + other_pose.c * it.y - pose.y
     lx = pose.c * x + pose.s * y - head.x - ax
     ly = pose.c * y - pose.s * x - head.y - ay
-    return 1 if dx * ly - dy * lx <= 0.0 else -1
+    length = math.sqrt(dx * dx + dy * dy)
+    return (dx * ly - dy * lx) / length, (dx * lx + dy * ly) / length, length
+
+
+@kernel
+def _faces(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int) -> int:
+    """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
+
+    The solid lies to the left of outline i's first edge, the segment, and the other outline's middle decides: the
+    solid is on the far side of it. `before`: what it showed when it was last looked at, 0: nothing. It shows that for
+    as long as the other one is over the segment and may reach through it: what tumbles has its middle on either side.
+    """
+    height, along, length = over(pool, i, pose, other, other_pose)
+    if before != 0 and abs(height) < pool.heads[other].radius and 0.0 <= along <= length:
+        return before
+    return 1 if height <= 0.0 else -1
 
 
 @kernel
 def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pose) -> tuple[int, int]:
-    """The outlines that the two shapes show each other; decided anew as long as nothing touches.
+    """The outlines that the two shapes show each other; decided as long as nothing touches.
 
     pose_a, pose_b: where the bodies were before they came to touch.
     """
@@ -70,12 +81,12 @@ def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pos
     ib = sb.outline
     if sa.mirror >= 0:
         if pair.head < 0 or pair.side_a == 0:
-            pair.side_a = _faces(pool, ia, pose_a, ib, pose_b)
+            pair.side_a = _faces(pool, ia, pose_a, ib, pose_b, pair.side_a)
         if pair.side_a < 0:
             ia = sa.mirror
     if sb.mirror >= 0:
         if pair.head < 0 or pair.side_b == 0:
-            pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a)
+            pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b)
         if pair.side_b < 0:
             ib = sb.mirror
     return ia, ib

@@ -12,7 +12,7 @@ from typing import Any
 
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import MOVED, STRAIGHT_WAY
+from .constants import LEFT, MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
 from .place import place, seen_from
@@ -337,27 +337,37 @@ def sweep(tables: Tables, up: bool) -> float:
 
 
 @kernel
-def pace(tables: Tables, law: Law, energy: float, h: float) -> float:
-    """The change of speed in a sweep that is small: beside what pushes gives in a substep, and the bodies' speed."""
+def common(tables: Tables) -> tuple[float, float, float]:
+    """Mass of all that contacts may move, and its centre's velocity: what is the same for all is nobody's speed."""
     mass = 0.0
+    x = 0.0
+    y = 0.0
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
             mass += 1.0 / body.inverse_mass
-    return law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
+            x += body.vx / body.inverse_mass
+            y += body.vy / body.inverse_mass
+    return (mass, x / mass, y / mass) if mass > 0.0 else (0.0, 0.0, 0.0)
 
 
 @kernel
-def kinetic(tables: Tables) -> float:
-    """Kinetic energy of all that contacts may move."""
+def kinetic(tables: Tables, x: float, y: float) -> float:
+    """Kinetic energy of all that contacts may move, for one who goes at (x, y)."""
     total = 0.0
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
-            total += 0.5 * (body.vx * body.vx + body.vy * body.vy) / body.inverse_mass
+            total += 0.5 * ((body.vx - x) ** 2 + (body.vy - y) ** 2) / body.inverse_mass
         if body.inverse_moment > 0.0:
             total += 0.5 * body.w * body.w / body.inverse_moment
     return total
+
+
+@kernel
+def pace(law: Law, mass: float, energy: float, h: float) -> float:
+    """The change of speed in a sweep that is small beside what pushes gives in a substep, and the bodies' speed."""
+    return LEFT * law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
 
 
 @kernel
@@ -394,7 +404,10 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
                 turned = abs(body.w - body.came_w) * body.extent
                 if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
                     turn = body.shift_x * vy - body.shift_y * vx
-                    body.w -= turn * body.inverse_moment / body.inverse_mass
+                    most = abs(
+                        body.w - body.came_w
+                    )  # blow upon blow within a substep is no place for second orders
+                    body.w -= min(most, max(-most, turn * body.inverse_moment / body.inverse_mass))
                 place(body)
             body.shift_x = 0.0
             body.shift_y = 0.0

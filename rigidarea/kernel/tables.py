@@ -47,6 +47,7 @@ BODY = record(
         ("came_vy", "f8"),
         ("came_w", "f8"),
         ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
+        ("calm", "i4"),  # 1: it hardly moved when the last frame began
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),
@@ -120,6 +121,8 @@ PAIR = record(
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
+        ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
+        ("kept_b", "i4"),
         ("side_b", "i4"),
         ("near", "i8"),  # search that last found it near
         (
@@ -310,6 +313,8 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.b = b if first else a
         pair.head = -1
         pair.side_a = 0
+        pair.kept_a = 0
+        pair.kept_b = 0
         pair.side_b = 0
         pair.next = -1
         pair.near = -1

@@ -47,6 +47,14 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 
 
 @kernel
+def refused(tables: Tables, pair: Any, frame: int) -> bool:
+    """Whether the pair did not collide in the frame that has been: nobody wants it to, or it still waits."""
+    if pair.stamp == frame:
+        return not pair.verdict
+    return _heard(tables, pair)
+
+
+@kernel
 def _put_back(body: Any, back: float) -> None:
     """A body where it was `back` ago, its velocity kept."""
     if body.kind == DRIFTS:

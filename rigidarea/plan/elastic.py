@@ -1,16 +1,20 @@
-"""Which bodies with a material bend enough to matter, and whether statics will do: rigid, compliant or modal."""
+"""Which bodies with a material bend enough to matter, and whether statics will do: rigid, compliant or modal; and those
+that do put together as parts of an assembly."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pymunk
 import shapely
 
 from ..outline import Outline
 from . import estimates as est
+
+if TYPE_CHECKING:
+    from ..flexible import Assembly
 
 
 class Choice(NamedTuple):
@@ -22,6 +26,8 @@ class Choice(NamedTuple):
     error: float  # that the level leaves, relative
     reason: str
     overridden: bool
+    mesh: float  # spacing of the boundary nodes of a level that bends (length)
+    bed: float  # contact stiffness at which it sinks by the tolerance under its load (force/length²)
 
 
 class Shape(NamedTuple):
@@ -55,6 +61,10 @@ def shape_of(outline: Outline) -> Shape:
         pitch = 2.0 * math.pi * reach / teeth
         length = height = pitch
     return Shape(teeth, length, height, reach, max(holes, default=0.0), float(outline.area))
+
+
+#: Elements across what bends, a tooth or a bar: the tooth is then 4 % too stiff (docs/flexible.md).
+ACROSS = 5.0
 
 
 def load_on(space: pymunk.Space, body: pymunk.Body, lever: float) -> float:
@@ -145,5 +155,56 @@ def choose(
             reason += f"; sinks {sinks:.1e} at this k"
             error = max(error, sinks)
         yours = overrides.get(body, {}).get("level")
-        out.append(Choice(body, yours or level, modes, error, reason, yours is not None))
+        if yours == "modal" and modes == 0:
+            modes = est.modes_below(3.0 * first, shape.area, material.young, material.density)
+        mesh = (0.5 * shape.length if shape.teeth else shape.height) / ACROSS
+        # as deep as the tolerance allows on half of what bears; where nothing presses, as stiff as the body itself
+        bed = 2.0 * load / (tolerance * shape.length**2) or material.young * material.thickness / shape.length
+        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, bed))
     return out
+
+
+def assemble(
+    choices: list[Choice], materials: Mapping[pymunk.Body, Any], stiffness: float | None
+) -> Assembly | None:
+    """The bodies that have a material as parts of one assembly, each at its level; None where none bends.
+
+    stiffness: of contacts between them (force/length²); None: the stiffest bed that one of them asks for. Joints hold
+    the hole that they lie in, if they lie in one. Of a body with several shapes the largest is its part, the others
+    bear as rigid ones; static bodies stay what they are.
+    """
+    if all(choice.level == "rigid" for choice in choices):
+        return None
+    from ..flexible import Assembly
+
+    moving = [choice for choice in choices if choice.body.body_type != pymunk.Body.STATIC]
+    made = Assembly(stiffness or max(choice.bed for choice in moving))
+    for choice in moving:
+        shape = max(choice.body.shapes, key=lambda shape: Outline.from_pymunk(shape).area)
+        others = [other.body for other in moving if other is not choice]
+        hub, contact = _rings(choice.body, Outline.from_pymunk(shape), others)
+        bends: dict[str, Any] = {} if choice.level == "rigid" else {"mesh": choice.mesh, "hub": hub}
+        if choice.level == "modal":
+            bends["modes"] = choice.modes
+        made.part(shape, materials[choice.body], level=choice.level, contact=contact, **bends)
+    return made
+
+
+def _rings(
+    body: pymunk.Body, outline: Outline, others: list[pymunk.Body]
+) -> tuple[int | None, tuple[int, ...]]:
+    """(the hole that the body's joints lie in, None without; the rings that may touch others: the outer one, and holes
+    in which one of them is)."""
+    anchors = [
+        getattr(joint, "anchor_a" if joint.a is body else "anchor_b", None) for joint in body.constraints
+    ]
+    places = [tuple(anchor) for anchor in anchors if anchor is not None]
+    inside = [tuple(body.world_to_local(other.position)) for other in others]
+    hub, contact = None, [0]
+    for i, ring in enumerate(outline.polygon_rings[1:], start=1):
+        hole = shapely.Polygon(ring)
+        if hub is None and any(hole.contains(shapely.Point(place)) for place in places):
+            hub = i
+        elif any(hole.contains(shapely.Point(place)) for place in inside):
+            contact.append(i)
+    return hub, tuple(contact)

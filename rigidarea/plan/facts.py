@@ -40,7 +40,7 @@ class Facts:
     rounded: Worst | None  # 1 where a round body slips against friction, else 0
     corner: Worst | None  # 1/extent of a body near its balance on a corner (1/length)
     leaning: Worst | None  # 1/reach of a body that leans on one
-    pile: Worst | None  # crossings/extent of a body in a pile (1/length)
+    pile: Worst | None  # crossings/size of a body in a pile (1/length)
     crossings: float  # seams that a body slides over
     rough: bool  # whether there is friction
     column: int  # bodies in a row that may buckle: a tower's layers, or the stones of an arch
@@ -61,6 +61,7 @@ class Facts:
     facet_share: float  # error that the facets of a curve sampled anew may have
     fixed_turns: dict[int, float]  # turns between facets that the user has asked for (radians)
     overlapped: tuple[float, int]  # deepest overlap at the start over the extent, pair
+    met: bool  # whether anything moves relative to anything else, so that it may be met
 
     @property
     def least_sweeps(self) -> int:
@@ -70,8 +71,8 @@ class Facts:
 
     @property
     def least_steps(self) -> int:
-        """With fewer substeps it may fall."""
-        return est.LEAST_PILE_STEPS if self.tower > 2 else 1
+        """With fewer substeps it may fall, or catch on a seam."""
+        return est.LEAST_PILE_STEPS if self.tower > 2 or self.crossings > 1.0 else 1
 
     @property
     def piled(self) -> bool:
@@ -117,13 +118,15 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
     last: Array = est.last_speed(np.where(bounces, speed, 1.0), max(g, 1e-300), e, time)
     carried = (
         np.maximum(np.maximum(layers, ratio), np.where(piled, heavier, 1.0))
-        * crossings
+        * np.where(crossings > 1.0, est.SEAM * crossings, 1.0)
         * est.leaning(np.maximum(margin, 1e-3), seen.reach / extent)
     )
     held = partners > 1  # by its neighbours: it leans, and does not fall over
-    leaning = _worst(
-        1.0 / np.maximum(seen.reach, 1e-300), (corners & (~upright | held)) | (oblique & held & piled)
-    )
+    leans = corners & (~upright | held)
+    size = np.where(
+        leans, np.maximum(seen.reach, extent), extent
+    )  # by how much a ladder gives way is of its length
+    leaning = _worst(1.0 / np.maximum(seen.reach, 1e-300), leans | (oblique & held & piled))
     rim = 0.5 * seen.spin * np.where(np.isfinite(seen.extent), seen.extent, 0.0)
     slips = np.abs(seen.speed - rim) > SLIP * np.maximum(seen.speed, rim)
     toppling = _worst(1.0 / np.maximum(seen.reach, 1e-300), corners)
@@ -140,7 +143,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
         corner=_worst(1.0 / extent, corners & upright & ~held),
         leaning=leaning,
-        pile=_worst(crossings / extent, piled),
+        pile=_worst(crossings / size, piled),
         crossings=float(crossings[piled].max(initial=1.0)),
         rough=bool(friction[free].max(initial=0.0) > 0.0),
         column=max(tower, min(int((oblique & held & piled).sum()), 2 * tower)),
@@ -161,6 +164,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         facet_share=0.0,
         fixed_turns={},
         overlapped=_overlapped(seen),
+        met=len(owner) > 0 and bool(np.ptp(seen.velocity[owner], axis=0).any() or seen.spin[owner].any()),
     )
 
 

@@ -79,6 +79,7 @@ class Plan:
         self.error = self.cost_s_per_s = math.inf
         self.causes: list[Cause] = []
         self.elastic: list[elastic.Choice] = []
+        self._assembled: tuple[Any, Any] = (), None  # what of `elastic` it was made from, and the assembly
         self.again()
 
     # --- choosing ---
@@ -95,6 +96,10 @@ class Plan:
         before, finer = (self.steps, self.sweeps, self.penetration), dict(self.finer)
         current = attached(self.space)
         self.stiffness = given.get("stiffness", current.stiffness if current is not None else None)
+        if not keep:
+            self.elastic = elastic.choose(
+                self.space, self.materials, self.tolerance, self.stiffness, self.overrides
+            )
         seen = survey(self.space, min(self.seconds, AHEAD * self.frame), self.frame)
         found = facts(seen, self.frame, self.seconds)
         self._asked_turns(found)
@@ -141,9 +146,6 @@ class Plan:
             self._choose_sampling(found)
         self.cost_s_per_s = cost / self.frame
         self._frame_cost = cost
-        self.elastic = elastic.choose(
-            self.space, self.materials, self.tolerance, self.stiffness, self.overrides
-        )
         return self
 
     def _candidates(self, found: Facts, given: dict[str, Any]) -> list[Setting]:
@@ -167,7 +169,8 @@ class Plan:
                 out += [Setting("rigid", n, m, depth) for m in sweeps]
                 if total(found, Setting("rigid", n, sweeps[0], depth)) <= MARGIN * self.tolerance:
                     break  # more substeps are dearer, whatever the sweeps
-        native = level == "pymunk" or (level is None and _native_will_do(found, self.stiffness))
+        bends = any(choice.level in ELASTIC for choice in self.elastic)
+        native = level == "pymunk" or (level is None and not bends and _native_will_do(found, self.stiffness))
         if native:
             slop = given.get("penetration", SLOP * self.tolerance / found.tower)
             native_sweeps = (given["sweeps"],) if "sweeps" in given else SWEEPS if piled else SWEEPS[:1]
@@ -272,9 +275,12 @@ class Plan:
     def apply(self) -> AreaContact | None:
         """Make it so: attach (or detach) the space, set its iterations, slop, stiffness and outlines.
 
+        Where a body bends, those with a material become parts of a `flexible.Assembly`, each at its level.
+
         Returns the contact, None where Chipmunk's own response will do. Substeps are the plan's, not the space's:
         step by `Plan.step`, or by `contact.step(dt, steps=plan.steps)`. What is attached already keeps its law and
-        its state where only substeps and sweeps differ; another penetration attaches anew.
+        its state; other levels of what bends attach it anew, with its settings.
+        Raises ValueError as `flexible.Assembly.part` does.
         """
         space = self.space
         current = attached(space)
@@ -293,8 +299,15 @@ class Plan:
             if math.isfinite(smallest):
                 space.collision_slop = self.penetration * smallest
             return None
+        before = self._assembled[1]
+        flexible = self._assembly()
+        held = current._settings["flexible"] if current is not None else None
+        if current is not None and flexible is not held and (flexible is not None or held is before):
+            settings = {**current._settings, "flexible": flexible}
+            current.detach()
+            current = attach(space, **settings)
         if current is None:
-            current = attach(space, self.stiffness, penetration=self.penetration)
+            current = attach(space, self.stiffness, penetration=self.penetration, flexible=flexible)
         for body in self._asked - self.finer.keys():
             if body.space is space:
                 current.ask(body, None)
@@ -305,6 +318,13 @@ class Plan:
             current.stiffness = self.stiffness
         current.penetration = self.penetration
         return current
+
+    def _assembly(self) -> Any:
+        """The parts that bend, made when they are first asked for, and again where their levels are others."""
+        wanted = [(choice.body, choice.level, choice.modes) for choice in self.elastic], self.stiffness
+        if wanted != self._assembled[0]:
+            self._assembled = wanted, elastic.assemble(self.elastic, self.materials, self.stiffness)
+        return self._assembled[1]
 
     def step(self, dt: float | None = None, frames: int = 1) -> None:
         """Frames (of `frame`, unless dt says otherwise), in as many substeps as planned. After `apply`."""

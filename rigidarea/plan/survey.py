@@ -15,6 +15,7 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
+from ..arcs import reversed_ring
 from ..outline import Outline
 
 Array = NDArray[np.float64]
@@ -237,15 +238,17 @@ def _inner_radii(radius: Array, boxes: Array, pairs: Ints, outlines: list[Outlin
             assert outline is not None
             inside = (boxes[k, :2] < boxes[other, :2]).all() and (boxes[other, 2:] < boxes[k, 2:]).all()
             if inside:
-                hole = max(outline.rings[1:], key=len)
-                found[k] = -abs(curvature_radius(_alone(hole.tobytes(), hole.shape)))
+                found[k] = -max(abs(curvature_radius(hole)) for hole in _holes(outline))
     return found
 
 
 @lru_cache(maxsize=256)
-def _alone(points: bytes, shape: tuple[int, int]) -> Outline:
-    """A hole as an outline of its own."""
-    return Outline(np.frombuffer(points).reshape(shape))
+def _holes(outline: Outline) -> list[Outline]:
+    """Its holes as outlines of their own."""
+    if not outline.arcs:
+        return [Outline(ring) for ring in outline.rings[1:]]
+    walked = (reversed_ring(*pair) for pair in list(zip(outline.rings, outline.arcs))[1:])
+    return [Outline.from_curve([ring], arcs=[arcs]) for ring, arcs in walked]
 
 
 def _near(

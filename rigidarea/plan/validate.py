@@ -5,7 +5,8 @@ A plan is given a space, never a scene. Of each scene all settings of a grid are
 where its own run's error is within the tolerance (or where it has said that none will be, and none is), and its
 cost is compared with that of the cheapest setting of the grid that is within it. Errors are those of the study.
 Variations have no exact answer: the finest setting is their reference, and those whose finest two differ by more
-than a third of the tolerance have none.
+than a third of the tolerance have none; nor have those of a scene on which the finest setting itself is further than
+that from the exact answer.
 """
 
 from __future__ import annotations
@@ -84,7 +85,7 @@ def _outline(curve: Curve, tolerance: float) -> Outline:
 
 
 def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A scene as a user would build it: discs are discs, curves are sampled to a thousandth of its size."""
+    """A scene as a user would build it: arcs are arcs, other curves are sampled to a thousandth of its size."""
     space = pymunk.Space()
     space.gravity = scene.gravity
     made: dict[str, pymunk.Body] = {}
@@ -98,6 +99,8 @@ def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
                 shapes.append(pymunk.Poly(here, shape.points, radius=shape.radius))
             elif isinstance(shape, Segment):
                 shapes.append(pymunk.Segment(here, shape.a, shape.b, shape.radius))
+            elif shape.exact is not None:
+                shapes.append(shape.exact().add_to(here))
             else:
                 shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
         for made_shape in shapes:
@@ -146,7 +149,7 @@ def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
     if settings.get("sampling"):
         for shape in space.shapes:
             outline = getattr(shape, "outline", None)
-            if outline is not None:
+            if outline is not None and not outline.arcs:
                 shape.outline = outline.sample(settings["sampling"] * size)  # type: ignore[attr-defined]
     if settings["level"] == "pymunk":
         space.collision_slop = settings["penetration"] * size
@@ -156,12 +159,13 @@ def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
 
 def grid(scene: Scene) -> Iterator[Row]:
     """The settings of the brute-force sweep, by growing number of substeps."""
-    curved = any(isinstance(shape, Curve) for body in scene.bodies for shape in body.shapes)
+    outlines = [shape for body in scene.bodies for shape in body.shapes if isinstance(shape, Curve)]
+    curved = any(shape.exact is None for shape in outlines)
     pile = sum(body.kind == "dynamic" for body in scene.bodies) > 1
     sweeps = SWEEPS_PILE if pile and scene.gravity != (0.0, 0.0) else SWEEPS
     depths = DEPTHS if scene.gravity != (0.0, 0.0) else DEPTHS[2:3]
     samplings = SAMPLINGS if curved else (None,)
-    if not curved:
+    if not outlines:  # Chipmunk sees no outline, only what stands in for it
         for n in NATIVE_STEPS:
             for m in sweeps:
                 for slop in SLOPS:
@@ -232,14 +236,19 @@ def study(
     def kept(task: Row, work: Callable[[], Row]) -> Row:
         row = known.get(key(task))
         if row is None:
-            row = {"task": task, **work()}
+            row = known[key(task)] = {"task": task, **work()}
             if store is not None:
                 append_rows(store, [row])
         return row
 
     name = {"scene": scene.name, "varied": varied}
     reference = cache(partial(_reference, scene)) if varied else _none
-    doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"] if varied else 0.0
+    doubt: float | None = 0.0
+    if varied:
+        doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"]
+        origin = scene.name.rpartition("-")[0]
+        far = kept({"scene": origin, "finest": True}, partial(_finest, origin))["error"]
+        doubt = None if doubt is None or far is None else max(doubt, far)
     judged = [tolerance for tolerance in tolerances if doubt is not None and doubt <= tolerance / 3.0]
     rows: list[Row] = [
         {**name, "tolerance": tolerance, "verdict": "no reference"}
@@ -278,6 +287,12 @@ def _swept(scene: Scene, settings: Row, reference: Callable[[], tuple[Trace | No
 def _none() -> tuple[None, float]:
     """The reference of a scene that has an exact answer."""
     return None, 0.0
+
+
+def _finest(name: str) -> Row:
+    """The finest setting's error on a scene of the study (None: it failed)."""
+    error = errors(get_scene(name), partial(Planned, get_scene(name), {**FINEST, "sampling": 1e-6}), None)
+    return {"error": error if math.isfinite(error) else None}
 
 
 def _reference(scene: Scene) -> tuple[Trace, float]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..outline import Outline
 from ..study.scene import Body, Circle, Curve, Polygon, Rings, Scene, Segment, scenes
 
 LONGEST = 2.0
@@ -34,7 +35,13 @@ def vary(scene: Scene, seed: int) -> Scene:
             outer, holes = known(tolerance / size)
             return outer * size, tuple(hole * size for hole in holes)
 
-        return Curve(rings, shape.convex)
+        def exact(known: Callable[[], Outline] = shape.exact) -> Outline:
+            found = known()
+            return Outline.from_curve(
+                [ring * size for ring in found.rings], arcs=[arcs * size for arcs in found.arcs]
+            )
+
+        return Curve(rings, shape.convex, None if shape.exact is None else exact)
 
     def body_of(body: Body) -> Body:
         return replace(

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import multiprocessing
 import os
+import signal
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Executor, Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -40,8 +41,21 @@ def open_executor(scheduler: str | None = None, workers: int | None = None) -> I
             executor.shutdown()
         return
     context = multiprocessing.get_context("spawn")  # a fork would copy compiled code and locks
-    with ProcessPoolExecutor(workers or os.cpu_count(), mp_context=context) as executor:
-        yield executor
+    others = set(multiprocessing.active_children())
+    with ProcessPoolExecutor(
+        workers or os.cpu_count(), mp_context=context, initializer=_leave_interrupts_to_the_parent
+    ) as executor:
+        try:
+            yield executor
+        except KeyboardInterrupt:  # nobody waits for what has been begun
+            for worker in set(multiprocessing.active_children()) - others:
+                worker.terminate()
+            raise
+
+
+def _leave_interrupts_to_the_parent() -> None:
+    """In a worker: Ctrl-C goes to all processes of a terminal, but one of them is enough to say that it was."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
 def run_tasks(
@@ -80,8 +94,15 @@ def run_tasks(
     elif missing:
         with open_executor(scheduler, workers) as executor:
             futures: dict[Future[Row], Task] = {executor.submit(function, **task): task for task in missing}
-            for future in as_completed(futures) if not scheduler else _dask_completed(futures):
-                keep(futures[future], future.result())
+            try:
+                for future in as_completed(futures) if not scheduler else _dask_completed(futures):
+                    keep(futures[future], future.result())
+            except BaseException:  # an interrupt, or one that failed: what others have finished is kept
+                for future, task in futures.items():
+                    if not future.cancel() and future.done() and future.exception() is None:
+                        if key(task) not in known:
+                            keep(task, future.result())
+                raise
     return [known[key(task)] for task in tasks]
 
 

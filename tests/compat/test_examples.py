@@ -3,12 +3,15 @@
 import copy
 import math
 from pathlib import Path
+from types import SimpleNamespace
 
+import numpy as np
 import pymunk.examples
 import pytest
 
 from rigidarea.compat import command
-from rigidarea.compat.examples import EXAMPLES, STEPPING, compare, judge, run_example
+from rigidarea.compat.examples import EXAMPLES, STEPPING, compare, judge, run_example, widened
+from rigidarea.compat.watch import Frame, Watch
 
 pytest.importorskip("pygame")
 
@@ -68,7 +71,6 @@ def calm() -> dict:
         "box": [0, 0, 300, 400],
         "fastest": 400.0,
         "resting": 0.9,
-        "late_bodies": 100.0,
         "joint_error": 0.5,
         "calls": {"begin": 10, "pre_solve": 200, "post_solve": 0, "separate": 10},
     }
@@ -106,6 +108,36 @@ def test_what_a_judge_forgives():
     own.update(box=[-100, -100, 400, 500], fastest=600.0, resting=0.81, joint_error=1.5)
     own["calls"] = {"begin": 30, "pre_solve": 390, "post_solve": 20, "separate": 0}
     assert judge(calm(), own) == []
+
+
+def test_games_of_chance_are_judged_by_what_pymunk_does_with_other_numbers():
+    other = {**calm(), "box": [-50, 0, 250, 1300], "fastest": 900.0}
+    wide = widened(calm(), [other, {"error": "died", "stderr": "", "facts": []}])
+    assert wide == {**calm(), "box": [-50, 0, 300, 1300], "fastest": 900.0}
+    own = {**copy.deepcopy(calm()), "box": [0, 0, 300, 1300], "fastest": 1000.0}
+    assert len(judge(calm(), own)) == 2 and judge(wide, own) == []
+    assert len(judge(wide, {**own, "resting": 0.7})) == 1
+    assert widened({"error": "died", "facts": []}, [other]) == {"error": "died", "facts": []}
+
+
+def test_who_has_just_come_is_still_on_the_way():
+    """Of two bodies the one that came half a second before the end does not count as one that does not rest."""
+    watch = Watch.__new__(Watch)
+    calls = dict.fromkeys(("begin", "pre_solve", "post_solve", "separate"), 0)
+    watch.host = SimpleNamespace(frame_cpu=[1e-3], frame=300, steps=300, calls=calls)
+    watch.bodies = [pymunk.Body(1, 1) for _ in range(2)]
+    watch.joint_errors, watch.whole_cpu = [], []
+    still, falling = [0.0] * 6, [0.0, 0.0, 0.0, 0.0, -300.0, 0.0]
+
+    def frames(came):
+        return [
+            Frame(np.array([0, 1][: 1 + (i >= came)]), np.array([still, falling][: 1 + (i >= came)]))
+            for i in range(300)
+        ]
+
+    for came, resting in ((270, 1.0), (160, 1.0), (150, 0.5), (0, 0.5)):
+        watch.frames = frames(came)
+        assert watch.measures()["resting"] == resting, came
 
 
 def test_the_page_says_what_is_not_as_meant():

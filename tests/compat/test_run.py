@@ -4,11 +4,14 @@ import json
 import os
 import subprocess
 import sys
+import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from rigidarea.__main__ import main
+from rigidarea.compat.run import alive
 
 ROOT = Path(__file__).parents[2]
 
@@ -127,3 +130,18 @@ def test_bad_input_exits_2(words, message, capsys):
         main(words)
     assert exit.value.code == 2
     assert message in capsys.readouterr().err
+
+
+def test_it_shows_that_it_is_alive(capsys):
+    """What runs, at once; then at which frame it is, as long as that grows."""
+    host = SimpleNamespace(engine="area", frame=0)
+    said = ""
+    with alive(host, Path("game.py"), seconds=0.01):
+        assert capsys.readouterr().err == "rigidarea run: game.py, area\n"
+        host.frame = 7
+        deadline = time.monotonic() + 20
+        while not said and time.monotonic() < deadline:
+            time.sleep(0.02)
+            said = capsys.readouterr().err
+        time.sleep(0.1)
+    assert said + capsys.readouterr().err == "rigidarea run: frame 7\n"

@@ -8,7 +8,7 @@ from rigidarea.compat import command
 from rigidarea.compat.suite import MODES, REASONS, modules, run_suite
 
 #: Tests that may fail with area contact (issue: at least 205 of 211 pass); every other failure is new.
-LEAST = {"pymunk": 209, "area": 196, "area frames": 179}
+LEAST = {"pymunk": 209, "area": 205, "area frames": 205}
 
 
 def test_a_part_natively_and_attached(tmp_path):

@@ -4,6 +4,7 @@ import json
 import subprocess
 import sys
 
+import pymunk
 import pytest
 
 from rigidarea.__main__ import main
@@ -82,6 +83,23 @@ def test_variations_are_seeded_and_differ():
 
 
 @pytest.mark.slow
+def test_a_varied_outline_keeps_its_arcs():
+    """The Geneva drive made larger: the same outlines, scaled, arcs and all."""
+    from rigidarea.study.scene import get_scene
+
+    scene = get_scene("geneva")
+    varied = variations.vary(scene, 3)
+    factor = varied.size / scene.size
+    assert factor != 1.0
+    for one, other in zip(validate.space_of(scene)[0].shapes, validate.space_of(varied)[0].shapes):
+        if isinstance(one, pymunk.Circle):
+            assert other.radius == pytest.approx(factor * one.radius)
+            continue
+        assert len(other.outline.arcs) == len(one.outline.arcs) > 0
+        assert other.outline.area == pytest.approx(factor**2 * one.outline.area)
+        assert other.outline.bounds == pytest.approx([factor * value for value in one.outline.bounds])
+
+
 def test_validate_one_scene(tmp_path, capsys):
     words = ["plan", "bounce", "--validate", "--variations", "0", "--out", str(tmp_path), "--json", "-"]
     assert main(words) == 0
