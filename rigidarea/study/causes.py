@@ -1,7 +1,7 @@
 """Why rigidarea's front is dominated on a scene: what was found when its front was looked at."""
 
 _STEP = "at coarse errors a step decides, and ours costs more: exact outlines, and a step moved in two halves"
-_IMPACT = "impulses are exact in one or two steps a frame, for us too, but ours cost more: overlaps, looks back for touch"
+_IMPACT = "impulses are exact in one or two steps a frame, for us too, but ours cost more: overlaps and looks back"
 _SHORT = (
     "thirty frames: one in flight costs little more than pymunk's step, but the first, on tables that nothing has "
     "touched yet, and that of the impact, with its looks back for the place of touch, cost as much as all others"
