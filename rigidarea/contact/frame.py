@@ -546,14 +546,14 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     s.contacts = 0
     if not _start(s, space, load_tables(s)):
         return False
+    n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     tables = load_tables(s)
     for joint in joints_of(
         s
-    ):  # what hangs in joints is never calm: the shorter the step, the better they hold it
+    ):  # what hangs in a joint is never calm: it is held the better the shorter the step
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0:
-                tables.bodies[i].calm = 0
-    n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
+                tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
         _everybody(s, space)
         if not _keep(s) or not _substeps(s, space, dt, n):

@@ -71,7 +71,7 @@ GAINED = 1.005
 #: Nor is it, where the last sweep has still changed speeds by more than a part of what pushes gives in a substep, and a
 #: part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
-MOVED = 0.01
+MOVED = 0.003
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
 SETTLED = 1e-3
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):

@@ -36,7 +36,7 @@ def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) 
     slow = CALM * law.gravity * dt
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
-        before = body.calm
+        before = body.calm > 0
         body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
             3.0 * slow if before else slow
         )

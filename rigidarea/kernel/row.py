@@ -438,8 +438,10 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     r.friction = row.lt / h
     if law.stiffness == 0.0:
         pair.carrying += normal
-        if r.mode == IMPACT:
-            pair.area = -math.inf  # no load, and no change of stiffness in the middle of it
+        # a blow is no load, nor is what joints hold overlapped, which presses as far as it is stiff
+        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
+        if r.mode == IMPACT or held:
+            pair.area = -math.inf
         elif last and r.mode != NEARING:
             pair.area += area_allowed(law, r, a, b)
     pair.jx += normal * row.nx - row.lt * row.ny

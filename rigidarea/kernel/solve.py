@@ -404,9 +404,7 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
                 turned = abs(body.w - body.came_w) * body.extent
                 if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
                     turn = body.shift_x * vy - body.shift_y * vx
-                    most = abs(
-                        body.w - body.came_w
-                    )  # blow upon blow within a substep is no place for second orders
+                    most = (abs(vx) + abs(vy)) / body.extent  # blow upon blow: no place for second orders
                     body.w -= min(most, max(-most, turn * body.inverse_moment / body.inverse_mass))
                 place(body)
             body.shift_x = 0.0

@@ -47,7 +47,7 @@ BODY = record(
         ("came_vy", "f8"),
         ("came_w", "f8"),
         ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
-        ("calm", "i4"),  # 1: it hardly moved when the last frame began
+        ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),

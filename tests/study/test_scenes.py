@@ -36,6 +36,7 @@ from rigidarea.study.scenes import (
     rocking,
     rough_discs,
     slip_to_roll,
+    standing,
     tipping,
     v_groove_spin,
     wedge,
@@ -496,3 +497,19 @@ def test_gears_start_touching():
     apart = driver.intersection(placed(-0.05 * play / gears.RADII[1])).area
     assert apart == 0.0 or pressed == 0.0
     assert max(apart, pressed) > 3 * film
+
+
+def test_standing_falls_on_too_soft_a_bed():
+    """Where `softest` says: a fifth softer it tips over, at half of it (it swings when it is put down) it stands."""
+    from rigidarea.study.peers import get_peer, record
+
+    scene = scenes()["standing"]
+
+    def error(penetration):
+        run = get_peer("rigidarea").build(scene, {"penetration": penetration, "steps": 2})
+        return scene.measure(record(run, scene))
+
+    limit = standing.softest()
+    assert limit == pytest.approx(8.33e-5, rel=1e-3)
+    assert error(0.5 * limit) < 0.01
+    assert error(1.2 * limit) > 1.0
