@@ -13,10 +13,11 @@ from numpy.typing import ArrayLike
 
 from .arcs import sampled
 from .kernel.direction import chord_direction
-from .kernel.overlap import Work, enlarged, fits, new_work
-from .kernel.place import Pose, overlap_of_outlines, overlaps_of_outlines, push_out
+from .kernel.overlap import Relative, Work, enlarged, fits, new_work
+from .kernel.place import Pose, overlaps_of_outlines, push_out
 from .kernel.pool import Pool, pack
 from .outline import DEFAULT_TOLERANCE, Outline
+from .store import overlap_by_address, state_of_arrays
 
 #: One row a region, as `overlap` returns them.
 OVERLAP = np.dtype(
@@ -85,7 +86,11 @@ class RegionPolygon(Sequence[np.ndarray]):
         return repr(self.points)
 
 
-@lru_cache(maxsize=64)
+#: Pairs of outlines that are kept packed.
+KNOWN = 64
+
+
+@lru_cache(maxsize=KNOWN)
 def _packed(a: Outline, b: Outline) -> Pool:
     return pack([a, b])
 
@@ -111,11 +116,26 @@ def _scratch_for(pool: Pool) -> Work:
     points, rings = len(pool.points), len(pool.rings)
     work: Work | None = getattr(_scratch, "work", None)
     if work is None or not fits(work, points, rings):
+        _scratch.known = {}
         work = _scratch.work = new_work(max(points, 256), 64, max(rings, 16))
     return work
 
 
+def _addressed(pool: Pool, work: Work) -> tuple[int, float, float, Pool, np.ndarray]:
+    """Where machine code finds the two, and the middle of the first outline; what it is made of is kept with it."""
+    known: dict[int, tuple[int, float, float, Pool, np.ndarray]] = _scratch.__dict__.setdefault("known", {})
+    found = known.get(id(pool))
+    if found is None:
+        if len(known) >= KNOWN:
+            known.clear()
+        state = state_of_arrays(pool, work)
+        head = pool.heads[0]
+        found = known[id(pool)] = (state.ctypes.data, float(head["x"]), float(head["y"]), pool, state)
+    return found
+
+
 def _enlarge(pool: Pool, work: Work) -> Work:
+    _scratch.known = {}
     _scratch.work = enlarged(work, max(len(pool.points), 256), max(len(pool.rings), 16))
     return _scratch.work
 
@@ -135,22 +155,22 @@ def overlap(
     a, b = _pose(place_a, "place_a"), _pose(place_b, "place_b")
     pool = _packed(outline_a, outline_b)
     work = _scratch_for(pool)
-    n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
+    address, at_x, at_y, _, _ = _addressed(pool, work)
+    n, *rel = overlap_by_address(address, *a, *b)
     while n < 0:
         work = _enlarge(pool, work)
-        n, rel = overlap_of_outlines(pool, 0, a, 1, b, work)
+        address, at_x, at_y, _, _ = _addressed(pool, work)
+        n, *rel = overlap_by_address(address, *a, *b)
     out = np.zeros(n, OVERLAP)
     if n == 0:
         return out
-    head = pool.heads[0]
-    at_x, at_y = float(head["x"]), float(head["y"])
     for k, loop in enumerate(work.loops[:n]):
         start, stop, area, x, y, chord_x, chord_y, _, _, _, arcs = loop.tolist()
         chord = math.hypot(chord_x, chord_y)
         nx, ny = chord_direction(chord_x, chord_y, area)
         if nx == 0.0 and ny == 0.0:
             chord = 0.0
-            nx, ny = push_out(pool, 0, 1, rel)
+            nx, ny = push_out(pool, 0, 1, Relative(*rel))
         x, y = x + at_x, y + at_y
         span = slice(start, stop)
         corners = work.polygon[span].copy()

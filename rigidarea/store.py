@@ -18,6 +18,7 @@ from .kernel.conjugate import FACTOR, MOBILITY
 from .kernel.jit import entry, kernel
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work, enlarged, fits, new_work
+from .kernel.place import Pose, overlap_of_outlines
 from .kernel.pool import HEAD, HasRings, Pool, pack
 from .kernel.row import ROW
 from .kernel.tables import (
@@ -248,6 +249,30 @@ def load_work(s: Any) -> Work:
         array_at(s.bows_at, (s.bows_n, 3), np.float64),
         array_at(s.loops_at, (s.loops_n,), LOOP),
     )
+
+
+@entry
+def overlap_by_address(
+    address: int, ax: float, ay: float, ac: float, as_: float, bx: float, by: float, bc: float, bs: float
+) -> tuple[int, float, float, float, float]:
+    """`overlap_of_outlines` of the first two outlines of the state record there: what it returns, one by one.
+
+    Handing over two tuples of arrays takes a hundred times as long as clipping two boxes.
+    """
+    s = array_at(address, (1,), STATE)[0]
+    n, rel = overlap_of_outlines(
+        load_pool(s), 0, Pose(ax, ay, ac, as_), 1, Pose(bx, by, bc, bs), load_work(s)
+    )
+    return n, rel.c, rel.s, rel.tx, rel.ty
+
+
+def state_of_arrays(*tuples: Any) -> np.ndarray:
+    """A state record (1,) that has nothing but these named tuples of arrays, which the caller keeps alive."""
+    state = np.zeros(1, STATE)
+    for arrays in tuples:
+        for name, array in arrays._asdict().items():
+            state[f"{name}_at"], state[f"{name}_n"] = array.ctypes.data, len(array)
+    return state
 
 
 @kernel(inline="always")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 import time
 from collections.abc import Callable, Sequence
@@ -120,7 +121,7 @@ class Watch:
         """Numbers of the run that are compared with the other engine's, as JSON knows them.
 
         `resting`: of the bodies that came SETTLING frames before the LAST ones, the share that is slower than
-        REST_SPEED in those.
+        REST_SPEED in those, or has not moved at all: what sleeps keeps the velocity with which it has fallen asleep.
         """
         dynamic = np.array(self.dynamic(), np.int64)
         kept = [frame.state[np.isin(frame.numbers, dynamic)] for frame in self.frames]
@@ -128,9 +129,8 @@ class Watch:
         finite = bool(np.isfinite(states).all())
         states = states[np.isfinite(states).all(axis=1)]
         speeds = np.hypot(states[:, 3], states[:, 4])
-        late = self._settled(dynamic)
+        resting = self._resting(dynamic)
         stepping = [seconds for seconds in self.host.frame_cpu if seconds > 0]
-        resting = np.hypot(late[:, 3], late[:, 4]) < REST_SPEED
         return {
             "bodies": len(dynamic),
             "finite": finite,
@@ -145,14 +145,19 @@ class Watch:
             "calls": dict(self.host.calls),
         }
 
-    def _settled(self, dynamic: NDArray[np.int64]) -> NDArray[np.float64]:
-        """(k, 6) states in the last frames of those dynamic bodies that had come well before."""
-        last = self.frames[-LAST:]
+    def _resting(self, dynamic: NDArray[np.int64]) -> NDArray[np.bool_]:
+        """(k,) whether it rests: those dynamic bodies that had come well before, in each of the last frames."""
+        last = self.frames[-LAST - 1 :]
         before = self.frames[: max(0, len(self.frames) - LAST - SETTLING + 1)][-1:]
-        there = np.intersect1d(before[0].numbers, dynamic) if before else dynamic
-        return np.concatenate(
-            [frame.state[np.isin(frame.numbers, there)] for frame in last] or [np.zeros((0, 6))]
-        )
+        there = set(np.intersect1d(before[0].numbers, dynamic).tolist() if before else dynamic.tolist())
+        found = []
+        for earlier, frame in itertools.pairwise(last):
+            was = {int(n): row for n, row in zip(earlier.numbers, earlier.state)}
+            for n, row in zip(frame.numbers.tolist(), frame.state):
+                if n in there:
+                    still = n in was and np.array_equal(row[:3], was[n][:3])
+                    found.append(still or math.hypot(row[3], row[4]) < REST_SPEED)
+        return np.array(found, bool)
 
 
 def joint_error(space: pymunk.Space) -> float:

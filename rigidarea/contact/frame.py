@@ -21,6 +21,7 @@ from ..kernel.conjugate import search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import (
     FINEST,
+    company,
     connect,
     demand,
     everybody,
@@ -30,7 +31,6 @@ from ..kernel.islands import (
     part,
     share_kicks,
     spare,
-    spare_nobody_near,
 )
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE, GROW_WORK
@@ -480,19 +480,22 @@ def _see(s: Any) -> None:
 
 
 @kernel
-def _turns(s: Any, space: int, dt: float) -> int:
-    """A frame in which some bodies want more substeps than others: how many the finest took; 0: no memory for it."""
+def _turns(s: Any, space: int, dt: float, n: int) -> int:
+    """A frame in which some bodies want more substeps than others, n at the most.
+
+    Returns how many the finest took; 0: there was no memory for it.
+    """
     g = floats(space + s.space_gravity, 2)
     load_tables(s).counters[TURN] = 0
     if not _find_near(s, space, dt, dt):
         return 0
     tables = load_tables(s)
     if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
+        company(tables, s.substeps if n == s.substeps else 1)
         for joint in joints_of(s):
             if joint.taken:
                 spare(tables, joint.a, s.substeps)
                 spare(tables, joint.b, s.substeps)
-        spare_nobody_near(tables, s.substeps)
     part(tables)
     for joint in joints_of(s):
         if joint.taken:
@@ -568,8 +571,8 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 return False
             if _difference(s) <= s.tolerance:
                 break
-    elif n > s.substeps or (s.joint_count > 0 and s.steps_given == 0):
-        n = _turns(s, space, dt)
+    elif n > s.substeps or (n > 1 and s.joint_count > 0 and s.steps_given == 0):
+        n = _turns(s, space, dt, n)
     else:
         _everybody(s, space)
         if not _substeps(s, space, dt, n):

@@ -86,23 +86,26 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
 
 
 @kernel
-def spare(tables: Tables, i: int, n: int) -> None:
-    """Have a jointed body (-1: none) want one substep instead of n, unless it was asked for more."""
-    if i >= 0:
+def company(tables: Tables, least: int) -> None:
+    """Note in `steps` who is near somebody, and have everybody want so many substeps at least."""
+    for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
-        if body.kind != FIXED and body.wants <= n:
-            body.wants = max(1, body.asked)
+        body.steps = 0
+        if body.kind != FIXED:
+            body.wants = max(body.wants, least)
+    for k in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[k]]
+        tables.bodies[tables.shapes[pair.a].body].steps = 1
+        tables.bodies[tables.shapes[pair.b].body].steps = 1
 
 
 @kernel
-def spare_nobody_near(tables: Tables, n: int) -> None:
-    """Who is near somebody wants n substeps again."""
-    for k in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[k]]
-        for i in (tables.shapes[pair.a].body, tables.shapes[pair.b].body):
-            body = tables.bodies[i]
-            if body.kind != FIXED:
-                body.wants = max(body.wants, n)
+def spare(tables: Tables, i: int, n: int) -> None:
+    """After `company`: a jointed body (-1: none) with nobody near wants one substep, not n, unless asked for more."""
+    if i >= 0:
+        body = tables.bodies[i]
+        if body.kind != FIXED and body.steps == 0 and body.wants <= n:
+            body.wants = max(1, body.asked)
 
 
 @kernel

@@ -127,11 +127,14 @@ def test_who_has_just_come_is_still_on_the_way():
     watch.host = SimpleNamespace(frame_cpu=[1e-3], frame=300, steps=300, calls=calls)
     watch.bodies = [pymunk.Body(1, 1) for _ in range(2)]
     watch.joint_errors, watch.whole_cpu = [], []
-    still, falling = [0.0] * 6, [0.0, 0.0, 0.0, 0.0, -300.0, 0.0]
+    asleep = [0.0, 0.0, 0.0, 0.0, 15.0, 0.0]  # it keeps the velocity with which it has fallen asleep
 
     def frames(came):
         return [
-            Frame(np.array([0, 1][: 1 + (i >= came)]), np.array([still, falling][: 1 + (i >= came)]))
+            Frame(
+                np.array([0, 1][: 1 + (i >= came)]),
+                np.array([asleep, [9.0, -5.0 * i, 0.0, 0.0, -300.0, 0.0]][: 1 + (i >= came)]),
+            )
             for i in range(300)
         ]
 
