@@ -25,7 +25,7 @@ lint: .venv/.installed
 	$(BIN)/mypy
 
 test: .venv/.installed lint
-	$(BIN)/python -m pytest -m 'not slow'
+	$(BIN)/python -m pytest -n 2 -m 'not slow'
 
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest

@@ -383,11 +383,13 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
     """Bodies are moved by what takes overlaps apart, and go on without that speed."""
     if not begin_to_relax(tables):
         return
-    for k in range(_relaxing(whole)):
+    mass, x, y = common(tables)
+    small = pace(load_law(s), mass, kinetic(tables, x, y), h)
+    for k in range(whole):
         moved = sweep(tables, k % 2 == 0)
         if jointed:
             _joints(s, tables, APPLY, h)
-        elif moved <= SETTLED * pace(load_law(s), 1.0, 0.0, h):
+        if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
             break
     end_relaxing(tables, h)
 
