@@ -93,6 +93,8 @@ class Kernel:
                 counts[i] = n
             return len(ia), m
 
+        if isinstance(run, numba.core.registry.CPUDispatcher):
+            run.__class__ = kernel_module("jit").Whole  # as the package's own kernels that call kernels
         self._run = run
 
     def work(self, outlines: Sequence[Any]) -> Any:

@@ -56,7 +56,7 @@ def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[...,
         finally:
             numba.config.CACHE_DIR, caching.IndexDataCacheFile = before
         if isinstance(made, CPUDispatcher):
-            made.__class__ = _Whole
+            made.__class__ = Whole
         return made
 
     return compile_cached
@@ -68,7 +68,7 @@ def _general(kind: Any) -> Any:
     return types.int64 if kind in (types.int32, types.uint8) else kind
 
 
-class _Whole(CPUDispatcher):  # type: ignore[misc]
+class Whole(CPUDispatcher):  # type: ignore[misc]
     """What runs for itself, though a part may be what calls it first."""
 
     part = False
@@ -88,7 +88,7 @@ njit: Any = cached(functools.partial(numba.njit, error_model="numpy"))
 entry: Any = functools.partial(njit, _nrt=False)
 
 
-class _Part(_Whole):
+class _Part(Whole):
     """A kernel that is compiled into those that call it, and not for itself (`whole`)."""
 
     part = True
