@@ -33,7 +33,8 @@ REASONS: dict[str, str] = {
     "UnitTestArbiter.testFriction": "a ball comes down on a ball in steps of 0.1 s: the blow is placed within its "
     "frame, natively at the frame's end, and what follows is another way down",
     "UnitTestArbiter.testImpulse": "two discs put 14 deep into each other: each solver lets them out at its own speed",
-    "UnitTestSpace.testRemoveInSeparateWithinStep": "three discs in one place are taken apart until they touch, and stay so",
+    "UnitTestSpace.testRemoveInSeparateWithinStep": "three discs in one place are taken apart until they touch, "
+    "and stay so",
     "UnitTestArbiter.testRestitution": "the tenth step ends within the second blow, of which a callback is asked in "
     "the next (exact: 21.49, natively 22.42)",
     "UnitTestArbiter.testTotalKE": "two discs put into each other, as in testImpulse",
