@@ -553,9 +553,8 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         return False
     n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     tables = load_tables(s)
-    for joint in joints_of(
-        s
-    ):  # what hangs in a joint is never calm: it is held the better the shorter the step
+    # What hangs in a joint is never calm: it is held the better the shorter the step.
+    for joint in joints_of(s):
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0:
                 tables.bodies[i].calm = -1

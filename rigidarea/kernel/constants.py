@@ -12,7 +12,7 @@ MOST_SUBSTEPS = 1024
 #: is stable up to 4; its restitution is then within 0.002.
 FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time): the row's S. It does so without giving speed
-#: (`relax`), so that little depends on it: piles come to rest with 4, 8 and 15.
+#: (`relax`), so that little depends on it.
 RELEASE_STEPS = 8.0
 #: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time), and one that
 #: somebody has put there at this speed.

@@ -1,4 +1,4 @@
-"""Segments without thickness: nothing that collides with one goes through it, however fast it moves and turns.
+"""Segments without thickness, on bodies that nothing moves: what has gone through one goes back.
 
 Contacts are met where bodies first touch (`motion`), once a substep for each pair. What turns by radians in a substep
 may come down with another corner before the next, and be through. That is seen by where its middle is: it goes back to

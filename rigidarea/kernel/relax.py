@@ -56,9 +56,8 @@ def end_relaxing(tables: Tables, h: float) -> None:
             body.y += y
             body.angle += turn
             place(body)
-    for i in range(
-        tables.counters[ROWS]
-    ):  # parted while they slip, two bodies have other arms: spin makes that good
+    # Parted while they slip, two bodies have other arms: spin makes that good.
+    for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if tables.mobility[row.a].moved and tables.mobility[row.b].moved:
             a = tables.bodies[row.a]
