@@ -35,7 +35,16 @@ def scaled(outline: ra.Outline, size: float) -> ra.Outline:
 
 
 def star(rng: np.random.Generator, bulge: float, hole: bool) -> ra.Outline:
-    """A ring of 5 to 12 edges, in and out, straight or arcs either way; a hole of arcs and edges."""
+    """A ring of 5 to 12 edges, in and out, straight or arcs either way; a hole of arcs. Drawn until simple."""
+    while True:
+        ring, holes = star_rings(rng, bulge, hole)
+        try:
+            return ra.Outline.from_bulges(ring, holes)
+        except ValueError as refused:
+            assert "must not cross or touch itself" in str(refused)
+
+
+def star_rings(rng: np.random.Generator, bulge: float, hole: bool) -> tuple[np.ndarray, list[Any]]:
     n = int(rng.integers(5, 13))
     angle = TAU * (np.arange(n) + rng.uniform(-0.2, 0.2, n)) / n
     reach = rng.uniform(0.6, 1.2, n)
@@ -46,7 +55,7 @@ def star(rng: np.random.Generator, bulge: float, hole: bool) -> ra.Outline:
         turn = rng.uniform(0, TAU)
         spots = [(0.25 * math.cos(turn + k * TAU / 3), 0.25 * math.sin(turn + k * TAU / 3)) for k in range(3)]
         holes.append([(*spot, rng.uniform(-0.3, 0.5)) for spot in spots])
-    return ra.Outline.from_bulges(ring, holes)
+    return ring, holes
 
 
 def polygon(rng: np.random.Generator, n: int) -> ra.Outline:
