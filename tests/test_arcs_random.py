@@ -207,6 +207,7 @@ def compare(kernel: Any, pairs: list[Pair]) -> Tally:
         area, at = found.area[mine], found.centroid[mine] @ np.array([[c, -s], [s, c]], float)
         size = math.sqrt(min(a.area, b.area))
         reach = about(a)[1] + about(b)[1]
+        bow = max(float(np.abs(arc[:, 2]).max()) for arc in (*a.arcs, *b.arcs, np.zeros((1, 3))))
         off = abs(float(area.sum() - want.area)) / size**2
         label = f"{k} {how}: {a!r} {pose_a} {b!r} {pose_b}:"
         if found.count[k] < 0 or not off <= 1e-9:
@@ -225,8 +226,9 @@ def compare(kernel: Any, pairs: list[Pair]) -> Tally:
             regions = [(want.area, want.centroid)]
             area, at = area.sum(keepdims=True), (area @ at / area.sum())[None]
         for value, centre in regions:
-            # the poses' own rounding moves a thin region's ends against each other
-            room = 1e-9 * size + 2e-15 * reach * size * size / float(value)
+            # the poses' own rounding moves a thin region's sides against each other, and so does what the doubles of
+            # centre and radius leave of a flat arc: its ends lie beside its circle by up to 2^-52 of the radius
+            room = 1e-9 * size + (2e-15 * reach + 2.0**-52 * bow) * size * size / float(value)
             if room > 0.1 * size or not len(area):
                 continue
             gap = np.hypot(*(at - centre.astype(float)).T)
