@@ -266,6 +266,12 @@ class Tables(NamedTuple):
     counters: np.ndarray  # (COUNTERS,) int64
 
 
+@kernel(forceinline=True)
+def pairs_in_use(tables: Tables) -> int:
+    """How many: whoever walks through all of them may stop after the last."""
+    return len(tables.pairs) - int(tables.counters[FREE_PAIRS])
+
+
 @kernel
 def find_pair(tables: Tables, a: int, b: int) -> int:
     """The pair of shape rows a and b; -1: there is none."""
@@ -294,8 +300,12 @@ def _enter(tables: Tables, a: int, b: int, p: int) -> None:
 def rehash(tables: Tables) -> None:
     """Make the hash table anew from the pairs in use: nothing is ever taken out of it singly."""
     tables.keys[:] = -1
+    left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
+        if left == 0:
+            break
         if tables.pairs[p].a >= 0:
+            left -= 1
             _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
 
 

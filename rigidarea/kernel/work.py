@@ -186,6 +186,7 @@ def measure(
     run_dy = 0.0
     run_of = 2  # nobody's
     leading = True
+    none_yet = True  # no edge so far but such as are rounding
     first_x = 0.0
     first_y = 0.0
     first_dx = 0.0
@@ -216,6 +217,7 @@ def measure(
         if r != 0.0:
             run_of = 2
             leading = False
+            none_yet = False
             chord2 = dx * dx + dy * dy
             if chord2 > 0.0:
                 radius = abs(r)
@@ -244,7 +246,7 @@ def measure(
                 and abs(run_dx * dy - run_dy * dx) <= noise * (abs(run_dx) + abs(run_dy) + steps)
                 and run_dx * dx + run_dy * dy > 0.0
             ):
-                leading = i == start
+                leading = none_yet
                 run_x = ux
                 run_y = uy
                 run_of = own
@@ -259,9 +261,10 @@ def measure(
                 first_x = vx
                 first_y = vy
                 first_of = own
-                if i == start:
+                if none_yet:
                     first_dx = dx
                     first_dy = dy
+            none_yet = False
         ux = vx
         uy = vy
         i = j
