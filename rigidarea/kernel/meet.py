@@ -40,7 +40,6 @@ from .tables import (
     NEARING,
     PLACED,
     REST,
-    SPENT,
     STRUCK,
     SUBSTEP,
     Law,
@@ -218,10 +217,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.placed = 0
         else:
             before = region.depth
-            if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
-                region.placed = 0
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            if region.placed == SPENT and carried:
+            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
@@ -286,8 +283,6 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     old = pair.head
     deepest = 0.0
     if old >= 0:  # it touches: what else of it comes down, turning fast
-        if looks == 1:
-            return DONE
         deepest = HIT * min(size_of(a), size_of(b))
         r = old
         awaited = 0
