@@ -107,20 +107,6 @@ def _take(
     x1: float, y1: float, w1: float, x2: float, y2: float, w2: float, xt: float, yt: float, wt: float,
 ) -> None:  # fmt: skip
     """Take from a body the mobility that a row with the given responses holds: M -= G D G^T."""
-    if not f.second:
-        ax1 = f.d11 * x1 + f.d1t * xt
-        axt = f.d1t * x1 + f.dtt * xt
-        ay1 = f.d11 * y1 + f.d1t * yt
-        ayt = f.d1t * y1 + f.dtt * yt
-        aw1 = f.d11 * w1 + f.d1t * wt
-        awt = f.d1t * w1 + f.dtt * wt
-        m.mxx -= ax1 * x1 + axt * xt
-        m.mxy -= ax1 * y1 + axt * yt
-        m.myy -= ay1 * y1 + ayt * yt
-        m.mxw -= ax1 * w1 + axt * wt
-        m.myw -= ay1 * w1 + ayt * wt
-        m.mww -= aw1 * w1 + awt * wt
-        return
     ax1 = f.d11 * x1 + f.d12 * x2 + f.d1t * xt
     ax2 = f.d12 * x1 + f.d22 * x2 + f.d2t * xt
     axt = f.d1t * x1 + f.d2t * x2 + f.dtt * xt
@@ -283,19 +269,6 @@ def _up(tables: Tables) -> None:
         turn = ma.w - mb.w
         r1 = f.r1 - (v - turn * row.e1)
         rt = f.rt - (uy * row.nx - ux * row.ny + (ma.w * row.lean_a - mb.w * row.lean_b))
-        if not f.second:
-            z1 = f.d11 * r1 + f.d1t * rt
-            zt = f.d1t * r1 + f.dtt * rt
-            f.z1 = z1
-            f.z2 = 0.0
-            f.zt = zt
-            ma.x += f.ax1 * z1 + f.axt * zt
-            ma.y += f.ay1 * z1 + f.ayt * zt
-            ma.w += f.aw1 * z1 + f.awt * zt
-            mb.x -= f.bx1 * z1 + f.bxt * zt
-            mb.y -= f.by1 * z1 + f.byt * zt
-            mb.w -= f.bw1 * z1 + f.bwt * zt
-            continue
         r2 = f.r2 - (v - turn * row.e2)
         z1 = f.d11 * r1 + f.d12 * r2 + f.d1t * rt
         z2 = f.d12 * r1 + f.d22 * r2 + f.d2t * rt
@@ -326,9 +299,7 @@ def _down(tables: Tables) -> float:
         mb = tables.mobility[row.b]
         g1 = f.ax1 * ma.x + f.ay1 * ma.y + f.aw1 * ma.w - (f.bx1 * mb.x + f.by1 * mb.y + f.bw1 * mb.w)
         gt = f.axt * ma.x + f.ayt * ma.y + f.awt * ma.w - (f.bxt * mb.x + f.byt * mb.y + f.bwt * mb.w)
-        g2 = 0.0
-        if f.second:
-            g2 = f.ax2 * ma.x + f.ay2 * ma.y + f.aw2 * ma.w - (f.bx2 * mb.x + f.by2 * mb.y + f.bw2 * mb.w)
+        g2 = f.ax2 * ma.x + f.ay2 * ma.y + f.aw2 * ma.w - (f.bx2 * mb.x + f.by2 * mb.y + f.bw2 * mb.w)
         f.z1 -= f.d11 * g1 + f.d12 * g2 + f.d1t * gt
         f.z2 -= f.d12 * g1 + f.d22 * g2 + f.d2t * gt
         f.zt -= f.d1t * g1 + f.d2t * g2 + f.dtt * gt
