@@ -40,7 +40,6 @@ from .tables import (
     NEARING,
     PLACED,
     REST,
-    SPENT,
     STRUCK,
     SUBSTEP,
     Law,
@@ -220,10 +219,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.placed = 0
         else:
             before = region.depth
-            if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
-                region.placed = 0
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            if region.placed == SPENT and carried:
+            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
@@ -268,6 +265,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     return DONE
 
 
+@kernel(forceinline=True)
+def has_seats(pool: Pool, tables: Tables, pair: Any) -> bool:
+    """Whether the two may touch in several places without turning: one is not convex."""
+    a = tables.shapes[pair.a].outline
+    b = tables.shapes[pair.b].outline
+    return not (pool.heads[a].convex and pool.heads[b].convex)
+
+
 @kernel
 def _there(pool: Pool, work: Work, regions: np.ndarray, head: int, n: int, ia: int, pose: Pose) -> int:
     """Which of the work's n loops are regions of the list: each one's nearest, as bits."""
@@ -310,10 +315,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     old = pair.head
     deepest = 0.0
     seat = old >= 0 and looks == 1
-    if seat:
-        if not first or (pool.heads[sa.outline].convex and pool.heads[sb.outline].convex):
-            return DONE
-    elif old >= 0:  # it touches: what else of it comes down, turning fast
+    if old >= 0 and not seat:  # it touches: what else of it comes down, turning fast
         deepest = HIT * min(size_of(a), size_of(b))
         r = old
         awaited = 0

@@ -76,6 +76,7 @@ ROW = record(
         ("was2", "f8"),
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
+        ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -207,6 +208,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     """
     row.shift = 0.0
     row.theta = 0.0
+    row.slid = 0.0
     row.friction = pair.friction
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
@@ -304,8 +306,6 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
-            most = HIT * least / h  # in a crash the impulse before says nothing of the next slip
-            row.t1 = min(most, max(-most, turning_speed(r, a, b, row.lt, h)))
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
@@ -358,6 +358,14 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
     b.vx += fx * b.inverse_mass
     b.vy += fy * b.inverse_mass
     b.w += (normal * row.arm_b - turn + dt * row.lean_b) * b.inverse_moment
+
+
+@kernel(forceinline=True)
+def turn_under(row: Any, r: Any, a: Any, b: Any, h: float) -> None:
+    """How its surfaces turn under each other, at velocities that are near those of the solution."""
+    if r.mode == REST and row.ends == 1:
+        most = HIT * least_extent(a, b) / h  # in a crash the impulse before says nothing of the next slip
+        row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
 
 
 @kernel(forceinline=True)
@@ -427,7 +435,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
     normal = row.l1 + row.l2
     if r.mode == REST and row.friction > 0.0:
-        slip = slipping(r, a, b, 0.0) - row.tt
+        slip = slipping(r, a, b, 0.0) - row.tt + row.slid
         most = row.friction * normal / h
         r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
     r.l1 = row.l1
