@@ -298,8 +298,8 @@ def _there(pool: Pool, work: Work, regions: np.ndarray, head: int, n: int, ia: i
 def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> int:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
-    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step, or since one of the two is
-    not convex (a disc in a groove touches both its walls): at the list's head.
+    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step, or since one of the two
+    is not convex (a disc in a groove touches both its walls): at the list's head.
     DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
     this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the velocities at
     which bodies come (energy is kept by their being solved together). Others are found when they have happened.
