@@ -14,7 +14,7 @@ from .apart import find_axis, gap_along
 from .broad import search, somebody_left
 from .constants import LEFT, MOVED, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
+from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
 from .pool import Pool
 from .row import make_row, push, settle, visit
@@ -306,7 +306,7 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if old >= 0 and jumped(tables, pair, a, b, h) == 1:
+        if old >= 0 and not (first and has_seats(pool, tables, pair)) and jumped(tables, pair, a, b, h) == 1:
             continue  # it has met already, and turns too little to come down elsewhere
         if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue
