@@ -53,7 +53,6 @@ from ..kernel.solve import (
     pace,
     respond_explicitly,
     sweep,
-    turn_away,
     warm_start,
 )
 from ..kernel.tables import (
@@ -344,7 +343,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
         return False
     tables = load_tables(s)
     s.contacts = tables.counters[ROWS]
-    respond_explicitly(tables, dt)
+    respond_explicitly(tables)
     finish(tables, load_law(s), s.frame, dt, True)
     return True
 
@@ -364,7 +363,6 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
-    turn_away(tables, h)
     searches = whole // SEARCH_SWEEPS
     sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):

@@ -14,10 +14,10 @@ from .apart import find_axis, gap_along
 from .broad import search, somebody_left
 from .constants import LEFT, MOVED, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
-from .place import place, seen_from
+from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
+from .place import place, seen_from, shift
 from .pool import Pool
-from .row import make_row, push, settle, turn_under, visit
+from .row import make_row, push, settle, visit
 from .stiffness import carry
 from .tables import (
     ANEW,
@@ -51,9 +51,12 @@ def drift(tables: Tables, frame: int, time: float) -> None:
         if body.stamp == frame and body.kind == DRIFTS:
             body.x += time * body.vx
             body.y += time * body.vy
-            body.angle += time * body.w
             body.since += time
-            place(body)
+            if body.w == 0.0:
+                shift(body)
+            else:
+                body.angle += time * body.w
+                place(body)
 
 
 @kernel
@@ -220,7 +223,7 @@ def _cannot_meet(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float
 
 @kernel
 def _farthest(pool: Pool, shape: Any, body: Any) -> float:
-    """At most so far from the body's centre turns a point of the shape's outline (length). A disc's own turns nothing."""
+    """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
     head = pool.heads[shape.outline]
     dx = head.x - body.cog_x
     dy = head.y - body.cog_y
@@ -303,7 +306,7 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if old >= 0 and jumped(tables, pair, a, b, h) == 1:
+        if old >= 0 and not (first and has_seats(pool, tables, pair)) and jumped(tables, pair, a, b, h) == 1:
             continue  # it has met already, and turns too little to come down elsewhere
         if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue
@@ -323,14 +326,6 @@ def warm_start(tables: Tables) -> None:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         push(row, tables.bodies[row.a], tables.bodies[row.b], row.l1, row.l2, row.lt)
-
-
-@kernel
-def turn_away(tables: Tables, h: float) -> None:
-    """How the rows' surfaces turn under each other: at the velocities of the warm start, which are nearly solved."""
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        turn_under(row, tables.regions[row.region], tables.bodies[row.a], tables.bodies[row.b], h)
 
 
 @kernel
@@ -429,7 +424,7 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
 
 
 @kernel
-def respond_explicitly(tables: Tables, h: float) -> None:
+def respond_explicitly(tables: Tables) -> None:
     """The explicit law: every row answers to the same velocities, none to what another has done."""
     counters = tables.counters
     for i in range(counters[ROWS]):
@@ -438,7 +433,6 @@ def respond_explicitly(tables: Tables, h: float) -> None:
         b = tables.bodies[row.b]
         keep = (a.vx, a.vy, a.w, b.vx, b.vy, b.w)
         push(row, a, b, row.l1, row.l2, row.lt)
-        turn_under(row, tables.regions[row.region], a, b, h)
         visit(row, a, b)
         a.vx, a.vy, a.w, b.vx, b.vy, b.w = keep
     warm_start(tables)

@@ -118,6 +118,9 @@ PAIR = record(
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        ("bore", "f8"),  # force along its directions, and across, when it was last found to have parted
+        ("bore_t", "f8"),
+        ("bore_stamp", "i8"),  # in which substep that was
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
