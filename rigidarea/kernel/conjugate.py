@@ -187,34 +187,26 @@ def take_part(tables: Tables) -> None:
         nx = row.nx
         ny = row.ny
         wa1 = row.arm_a - row.e1
+        wa2 = row.arm_a - row.e2
         wb1 = row.arm_b - row.e1
+        wb2 = row.arm_b - row.e2
         f.ax1, f.ay1, f.aw1 = _left(ma, nx, ny, wa1)
+        f.ax2, f.ay2, f.aw2 = _left(ma, nx, ny, wa2)
         f.axt, f.ayt, f.awt = _left(ma, -ny, nx, row.lean_a)
         f.bx1, f.by1, f.bw1 = _left(mb, nx, ny, wb1)
+        f.bx2, f.by2, f.bw2 = _left(mb, nx, ny, wb2)
         f.bxt, f.byt, f.bwt = _left(mb, -ny, nx, row.lean_b)
         x1 = f.ax1 + f.bx1
         y1 = f.ay1 + f.by1
-        xt = f.axt + f.bxt
-        yt = f.ayt + f.byt
+        x2 = f.ax2 + f.bx2
+        y2 = f.ay2 + f.by2
         s11 = nx * x1 + ny * y1 + wa1 * f.aw1 + wb1 * f.bw1
-        s1t = nx * xt + ny * yt + wa1 * f.awt + wb1 * f.bwt
-        stt = nx * yt - ny * xt + row.lean_a * f.awt + row.lean_b * f.bwt
+        s12 = nx * x2 + ny * y2 + wa1 * f.aw2 + wb1 * f.bw2
+        s22 = nx * x2 + ny * y2 + wa2 * f.aw2 + wb2 * f.bw2
+        s1t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa1 * f.awt + wb1 * f.bwt
+        s2t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa2 * f.awt + wb2 * f.bwt
+        stt = nx * (f.ayt + f.byt) - ny * (f.axt + f.bxt) + row.lean_a * f.awt + row.lean_b * f.bwt
         least = LEAST_COMPLIANCE * row.weight
-        s12 = 0.0
-        s22 = 1.0
-        s2t = 0.0
-        f.ax2 = f.ay2 = f.aw2 = 0.0
-        f.bx2 = f.by2 = f.bw2 = 0.0
-        if f.second:
-            wa2 = row.arm_a - row.e2
-            wb2 = row.arm_b - row.e2
-            f.ax2, f.ay2, f.aw2 = _left(ma, nx, ny, wa2)
-            f.bx2, f.by2, f.bw2 = _left(mb, nx, ny, wb2)
-            x2 = f.ax2 + f.bx2
-            y2 = f.ay2 + f.by2
-            s12 = nx * x2 + ny * y2 + wa1 * f.aw2 + wb1 * f.bw2
-            s22 = nx * x2 + ny * y2 + wa2 * f.aw2 + wb2 * f.bw2
-            s2t = nx * xt + ny * yt + wa2 * f.awt + wb2 * f.bwt
         _invert(f, s11 + f.e11 + least, s12 + f.e12, s1t, s22 + f.e22 + least, s2t, stt + f.et + least)
         _take(ma, f, f.ax1, f.ay1, f.aw1, f.ax2, f.ay2, f.aw2, f.axt, f.ayt, f.awt)
         _take(mb, f, f.bx1, f.by1, f.bw1, f.bx2, f.by2, f.bw2, f.bxt, f.byt, f.bwt)
@@ -268,8 +260,8 @@ def _up(tables: Tables) -> None:
         v = ux * row.nx + uy * row.ny + (ma.w * row.arm_a - mb.w * row.arm_b)
         turn = ma.w - mb.w
         r1 = f.r1 - (v - turn * row.e1)
-        rt = f.rt - (uy * row.nx - ux * row.ny + (ma.w * row.lean_a - mb.w * row.lean_b))
         r2 = f.r2 - (v - turn * row.e2)
+        rt = f.rt - (uy * row.nx - ux * row.ny + (ma.w * row.lean_a - mb.w * row.lean_b))
         z1 = f.d11 * r1 + f.d12 * r2 + f.d1t * rt
         z2 = f.d12 * r1 + f.d22 * r2 + f.d2t * rt
         zt = f.d1t * r1 + f.d2t * r2 + f.dtt * rt
@@ -298,8 +290,8 @@ def _down(tables: Tables) -> float:
         ma = tables.mobility[row.a]
         mb = tables.mobility[row.b]
         g1 = f.ax1 * ma.x + f.ay1 * ma.y + f.aw1 * ma.w - (f.bx1 * mb.x + f.by1 * mb.y + f.bw1 * mb.w)
-        gt = f.axt * ma.x + f.ayt * ma.y + f.awt * ma.w - (f.bxt * mb.x + f.byt * mb.y + f.bwt * mb.w)
         g2 = f.ax2 * ma.x + f.ay2 * ma.y + f.aw2 * ma.w - (f.bx2 * mb.x + f.by2 * mb.y + f.bw2 * mb.w)
+        gt = f.axt * ma.x + f.ayt * ma.y + f.awt * ma.w - (f.bxt * mb.x + f.byt * mb.y + f.bwt * mb.w)
         f.z1 -= f.d11 * g1 + f.d12 * g2 + f.d1t * gt
         f.z2 -= f.d12 * g1 + f.d22 * g2 + f.d2t * gt
         f.zt -= f.d1t * g1 + f.d2t * g2 + f.dtt * gt
