@@ -6,7 +6,8 @@ import math
 import threading
 from collections.abc import Sequence
 from functools import cached_property, lru_cache
-from typing import Any
+from math import isfinite
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -95,14 +96,15 @@ def _packed(a: Outline, b: Outline) -> Pool:
     return pack([a, b])
 
 
-def _pose(place: Sequence[float], name: str) -> Pose:
+def _pose(place: Sequence[float], name: str) -> tuple[float, float, float, float]:
+    """x, y, cosine, sine."""
     try:
         x, y, angle = map(float, place)
     except (TypeError, ValueError):
         x = y = angle = math.nan
-    if not (math.isfinite(x) and math.isfinite(y) and math.isfinite(angle)):
+    if not (isfinite(x) and isfinite(y) and isfinite(angle)):
         raise ValueError(f"{name} must be finite (x, y, angle), got {place!r}")
-    return Pose(x, y, math.cos(angle), math.sin(angle))
+    return x, y, math.cos(angle), math.sin(angle)
 
 
 def _check_outlines(outline_a: object, outline_b: object) -> None:
@@ -121,16 +123,32 @@ def _scratch_for(pool: Pool) -> Work:
     return work
 
 
-def _addressed(pool: Pool, work: Work) -> tuple[int, float, float, Pool, np.ndarray]:
-    """Where machine code finds the two, and the middle of the first outline; what it is made of is kept with it."""
-    known: dict[int, tuple[int, float, float, Pool, np.ndarray]] = _scratch.__dict__.setdefault("known", {})
+class _Known(NamedTuple):
+    """Two packed outlines, and where machine code finds them and this thread's scratch memory."""
+
+    address: int
+    x: float
+    """The middle of the first outline."""
+    y: float
+    pool: Pool
+    work: Work
+    state: np.ndarray
+    """What is at the address."""
+
+
+def _addressed(pool: Pool) -> _Known:
+    known: dict[int, _Known] = _scratch.__dict__.get("known", {})
     found = known.get(id(pool))
     if found is None:
+        work = _scratch_for(pool)
+        known = _scratch.__dict__.setdefault("known", {})
         if len(known) >= KNOWN:
             known.clear()
         state = state_of_arrays(pool, work)
         head = pool.heads[0]
-        found = known[id(pool)] = (state.ctypes.data, float(head["x"]), float(head["y"]), pool, state)
+        found = known[id(pool)] = _Known(
+            state.ctypes.data, float(head["x"]), float(head["y"]), pool, work, state
+        )
     return found
 
 
@@ -154,33 +172,34 @@ def overlap(
     _check_outlines(outline_a, outline_b)
     a, b = _pose(place_a, "place_a"), _pose(place_b, "place_b")
     pool = _packed(outline_a, outline_b)
-    work = _scratch_for(pool)
-    address, at_x, at_y, _, _ = _addressed(pool, work)
+    address, at_x, at_y, _, work, _ = _addressed(pool)
     n, *rel = overlap_by_address(address, *a, *b)
     while n < 0:
-        work = _enlarge(pool, work)
-        address, at_x, at_y, _, _ = _addressed(pool, work)
+        _enlarge(pool, work)
+        address, at_x, at_y, _, work, _ = _addressed(pool)
         n, *rel = overlap_by_address(address, *a, *b)
     out = np.zeros(n, OVERLAP)
     if n == 0:
         return out
-    for k, loop in enumerate(work.loops[:n]):
-        start, stop, area, x, y, chord_x, chord_y, _, _, _, arcs = loop.tolist()
+    ox, oy, c, s = a
+    pose = Pose(ox, oy, c, s)
+    for k, loop in enumerate(work.loops[:n].tolist()):
+        start, stop, area, x, y, chord_x, chord_y, _, _, _, arcs = loop
         chord = math.hypot(chord_x, chord_y)
         nx, ny = chord_direction(chord_x, chord_y, area)
         if nx == 0.0 and ny == 0.0:
             chord = 0.0
             nx, ny = push_out(pool, 0, 1, Relative(*rel))
-        x, y = x + at_x, y + at_y
-        span = slice(start, stop)
-        corners = work.polygon[span].copy()
-        bows = work.bows[span].copy() if arcs else None
+        x += at_x
+        y += at_y
+        corners = work.polygon[start:stop].copy()
+        bows = work.bows[start:stop].copy() if arcs else None
         out[k] = (
             area,
-            (a.x + a.c * x - a.s * y, a.y + a.s * x + a.c * y),
-            (a.c * nx - a.s * ny, a.s * nx + a.c * ny),
+            (ox + c * x - s * y, oy + s * x + c * y),
+            (c * nx - s * ny, s * nx + c * ny),
             chord,
-            RegionPolygon(corners, bows, a, (at_x, at_y), DEFAULT_TOLERANCE * math.sqrt(area)),
+            RegionPolygon(corners, bows, pose, (at_x, at_y), DEFAULT_TOLERANCE * math.sqrt(area)),
         )
     return out
 

@@ -367,7 +367,7 @@ def test_stiffness_chosen_and_carried(kernel: Any) -> None:
     allowed = 1e-3 * 0.4 * 0.5
     for _ in range(60 * 8):
         pair["carrying"], pair["area"] = 200.0 / 60, allowed  # ten times the weight
-        kernel.stiffness.carry(pair, 1 / 60)
+        kernel.stiffness.carry(pair, 1 / 60, math.inf)
         assert 1.0 <= pair["stiffness"] / before <= rules.MOST_STIFFER * (1 + 1e-12)
         before = pair["stiffness"]
     assert pair["load"] == pytest.approx(200.0, rel=1e-5)

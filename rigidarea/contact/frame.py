@@ -599,7 +599,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         return False
     return_what_passed(load_pool(s), load_tables(s), s.frame)
     if s.stiffness_given == 0:
-        adapt_stiffness(load_tables(s), dt)
+        adapt_stiffness(load_tables(s), load_law(s), s.frame, dt)
     s.taken = n
     return True
 

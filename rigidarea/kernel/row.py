@@ -79,6 +79,7 @@ ROW = record(
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
         ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
+        ("put", "i4"),  # 1: somebody has put its bodies so deep: what takes them apart is no force on them
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -211,6 +212,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.shift = 0.0
     row.theta = 0.0
     row.slid = 0.0
+    row.put = 0
     row.friction = pair.friction
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
@@ -291,7 +293,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             c = max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
-        row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
+        row.put = r.placed == PLACED
+        row.theta = theta * (1.0 - row.alpha)
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness
@@ -418,6 +421,10 @@ def stiffen(row: Any) -> bool:
     row.was1 = row.l1
     row.was2 = row.l2
     row.was_t = row.lt
+    if row.put:  # it bears what it must, and held overlapped by a joint it presses nobody
+        row.f1 = 0.0
+        row.f2 = 0.0
+        return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:
         return False
     rigid = row.theta * row.alpha
@@ -429,6 +436,14 @@ def stiffen(row: Any) -> bool:
         row.m22 -= rigid
         row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
     return bool(row.l1 + row.l2 > 0.0)
+
+
+@kernel(forceinline=True)
+def shift_as_held(body: Any, time: float) -> None:
+    """What hangs in a joint is moved by what a blow, some time ago, and the joint have left of it together."""
+    body.shift_x = time * (body.vx - body.came_vx)
+    body.shift_y = time * (body.vy - body.came_vy)
+    body.shift_a = time * (body.w - body.came_w)
 
 
 @kernel
@@ -461,9 +476,15 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
         turn = row.l1 * row.e1 + row.l2 * row.e2
         fx = (normal * row.nx - row.lt * row.ny) * row.shift
         fy = (normal * row.ny + row.lt * row.nx) * row.shift
-        a.shift_x -= fx * a.inverse_mass
-        a.shift_y -= fy * a.inverse_mass
-        a.shift_a -= (normal * row.arm_a - turn + row.lt * row.lean_a) * row.shift * a.inverse_moment
-        b.shift_x += fx * b.inverse_mass
-        b.shift_y += fy * b.inverse_mass
-        b.shift_a += (normal * row.arm_b - turn + row.lt * row.lean_b) * row.shift * b.inverse_moment
+        if a.calm < 0:
+            shift_as_held(a, row.shift)
+        else:
+            a.shift_x -= fx * a.inverse_mass
+            a.shift_y -= fy * a.inverse_mass
+            a.shift_a -= (normal * row.arm_a - turn + row.lt * row.lean_a) * row.shift * a.inverse_moment
+        if b.calm < 0:
+            shift_as_held(b, row.shift)
+        else:
+            b.shift_x += fx * b.inverse_mass
+            b.shift_y += fy * b.inverse_mass
+            b.shift_a += (normal * row.arm_b - turn + row.lt * row.lean_b) * row.shift * b.inverse_moment

@@ -439,10 +439,21 @@ def respond_explicitly(tables: Tables) -> None:
 
 
 @kernel
-def adapt_stiffness(tables: Tables, dt: float) -> None:
-    """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries."""
+def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
+    """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries.
+
+    Nobody carries more than what pushes everybody, together; joints, which may press harder, are not known here.
+    """
+    most = 0.0
+    for i in range(tables.counters[BODIES]):
+        body = tables.bodies[i]
+        if body.stamp == frame and body.inverse_mass > 0.0:
+            most += max(law.gravity, math.hypot(body.gain_x, body.gain_y) / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
-        carry(tables.pairs[tables.near[i]], dt)
+        pair = tables.pairs[tables.near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        carry(pair, dt, math.inf if a.calm < 0 or b.calm < 0 else most)
 
 
 @kernel
