@@ -28,6 +28,7 @@ from numpy.typing import ArrayLike
 from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
 from .gate import LARGEST, check_valid, checked_attribute, checked_bulges, checked_ring, positive
+from .simple import check_simple
 from .stand_in import stand_in
 
 DEFAULT_TOLERANCE = 5e-5
@@ -127,15 +128,14 @@ class Outline:
 
         The edge from point i to the next is an arc that turns by 4 atan(bulge), to the left if bulge > 0; 0 is a
         straight edge, 1 a half circle to the right of its chord. Two points are enough for a ring with an arc.
-        Raises ValueError as the constructor does; crossings are looked for on the boundary sampled to
-        `DEFAULT_TOLERANCE`.
+        Raises ValueError as the constructor does; crossings are those of the arcs themselves (`simple.py`).
         """
         found = [checked_bulges(ring, "ring")] + [
             checked_bulges(hole, f"holes[{i}]") for i, hole in enumerate(holes)
         ]
-        outline = cls.from_curve([points for points, _ in found], arcs=[arcs for _, arcs in found])
-        check_valid([checked_ring(ring, "ring") for ring in outline.polygon_rings])
-        return outline
+        rings, arcs = [points for points, _ in found], [arcs for _, arcs in found]
+        check_simple(rings, arcs, ["ring"] + [f"holes[{i}]" for i in range(len(rings) - 1)])
+        return cls.from_curve(rings, arcs=arcs)
 
     def with_curve(self, resample: Callable[..., Outline]) -> Outline:
         """The same outline, knowing how to `sample` itself anew."""

@@ -362,6 +362,12 @@ class Store:
         rehash(self.tables)
         self.sync()
 
+    def sizes(self) -> dict[str, int]:
+        """What each array takes (bytes)."""
+        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **self._kept}
+        own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows", "joints")}
+        return {name: array.nbytes for name, array in {**arrays, **own}.items()}
+
     def keep(self) -> None:
         """Room for a copy of what a frame changes."""
         tables = self.tables

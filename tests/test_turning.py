@@ -77,19 +77,18 @@ def test_a_gap_closes_by_what_turns(kind: str, seed: int) -> None:
     h = 1e-4
     tiny = 1e-8  # of h: the closing speed there is now, taken off
     now = (gap(-tiny, 0.0) - gap(tiny, 0.0)) / (2 * tiny)
-    assert abs(gap(h, turning_speed(r, a, b, 0.0, h) - now)) < 1e-2 * abs(gap(h, -now)) + 1e-11
+    assert abs(gap(h, turning_speed(r, a, b, h) - now)) < 1e-2 * abs(gap(h, -now)) + 1e-11
 
 
-@pytest.mark.parametrize("friction", [0.0, 0.3])
-def test_a_disc_on_a_flat_leaves_no_gap(friction: float) -> None:
-    """Its direction stands still, whether it rolls, slides or spins; what friction is about to do included."""
+def test_a_disc_on_a_flat_leaves_no_gap() -> None:
+    """Its direction stands still, whether it rolls, slides or spins."""
     rng = np.random.default_rng(2)
     r = np.zeros(1, REGION)[0]
     r["nx"], r["ny"], r["curve_b"], r["lean_b"] = 0.0, 1.0, 4.0, -0.25
     a, b = bodies(rng)
     a["vx"] = a["vy"] = a["w"] = 0.0
     b["inverse_mass"], b["inverse_moment"] = 1.0, 8.0
-    assert abs(turning_speed(r, a, b, friction, 0.01)) < 1e-15
+    assert abs(turning_speed(r, a, b, 0.01)) < 1e-15
 
 
 @pytest.mark.parametrize(

@@ -95,8 +95,8 @@ EXAMPLES: dict[str, Example] = {
             *drag(20, 1, _line((100, 450), (300, 500), 20)),
             *tap(60, "g"),
             Input(80, "key", "LSHIFT"),
-            # aslant, as a hand would: straight up and down it makes a column of balls that stands on its point natively,
-            # all at x = 200 to the last bit, and there is no telling who rests and who rolls
+            # aslant, as a hand would: straight down it makes a column of balls that natively stands on its tip, all
+            # at x = 200 to the last bit, and there is no telling who rests and who rolls
             *drag(80, 1, [(200 + i, 100 + i) for i in range(5)]),
             Input(90, "key", "LSHIFT", False),
         ),

@@ -55,7 +55,20 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
-from ..kernel.tables import ANEW, BODIES, DRIFTS, LED, MET, NEAR, ROWS, SUBSTEP, TURN, Tables, rehash
+from ..kernel.tables import (
+    ANEW,
+    BODIES,
+    DRIFTS,
+    LED,
+    MET,
+    NEAR,
+    ROWS,
+    SUBSTEP,
+    TURN,
+    Tables,
+    pairs_in_use,
+    rehash,
+)
 from ..kernel.verdict import wait_for_verdicts
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
 from .joints import (
@@ -108,8 +121,12 @@ def silence(constraint: int, dt: float) -> None:
     if s.frame != np.int64(timestamp(space)) and not begin(s, space, dt):
         return
     tables = load_tables(s)
+    left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
+        if left == 0:
+            break
         pair = tables.pairs[p]
+        left -= pair.a >= 0
         if pair.stamp == s.frame and pair.a >= 0 and pair.verdict:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
@@ -661,8 +678,12 @@ def report(constraint: int, space: int) -> None:
         return
     give_back_untaken(s)
     tables = load_tables(s)
+    left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
+        if left == 0:
+            break
         pair = tables.pairs[p]
+        left -= pair.a >= 0
         if pair.stamp != s.frame or pair.a < 0 or not pair.verdict:
             continue
         arbiter = pair.arbiter

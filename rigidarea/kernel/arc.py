@@ -204,16 +204,17 @@ def circle_circle(
     d = math.sqrt(dx * dx + dy * dy)
     if d == 0.0:
         return 1.0, 0.0, ax, ay, ax, ay
-    dx /= d
-    dy /= d
+    inverse = 1.0 / d
+    dx *= inverse
+    dy *= inverse
     heron = ((a + b) - d) * (d - (a - b)) * (d + (a - b)) * (d + (a + b))
-    half = math.sqrt(max(0.0, heron)) / (2.0 * d)
+    half = 0.5 * math.sqrt(max(0.0, heron)) * inverse
     if a <= b:  # from the smaller circle, whose rounding is less
-        foot = min(a, max(-a, 0.5 * (d - (b - a) * (a + b) / d)))
+        foot = min(a, max(-a, 0.5 * (d - (b - a) * (a + b) * inverse)))
         fx = ax + foot * dx
         fy = ay + foot * dy
     else:
-        foot = min(b, max(-b, 0.5 * (d - (a - b) * (a + b) / d)))
+        foot = min(b, max(-b, 0.5 * (d - (a - b) * (a + b) * inverse)))
         fx = bx - foot * dx
         fy = by - foot * dy
     return dx, dy, fx + half * dy, fy - half * dx, fx - half * dy, fy + half * dx

@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
+from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
 from .patch import patch_of
 from .place import overlap_of_outlines
 from .pool import Pool
-from .region import closing, fill, inverse_mass, region_stiffness
+from .region import closing, fill, inverse_mass, region_stiffness, turn_to
 from .stiffness import depth_for
 from .tables import IMPACT, NEARING, PLACED, REST, STRUCK, Law
 from .work import Work
@@ -32,8 +32,11 @@ def touch(
     back: float,
     h: float,
     unseen: float,
+    turn: float,
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
+
+    Nor if its direction was another there: by an angle whose cosine is less than `turn`.
 
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
     u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
@@ -43,6 +46,8 @@ def touch(
     """
     come = back > 0.0
     region.back = back
+    nx = region.nx
+    ny = region.ny
     for _ in range(3):
         d = region.depth
         u = closing(region, a, b, 0.5)
@@ -74,6 +79,9 @@ def touch(
         if best < 0:
             return come
         patch = patch_of(pool, work, law, best, ia, ib, pose)
+        if turn > 0.0 and patch.nx * nx + patch.ny * ny <= turn:
+            turn_to(region, nx, ny)
+            return False
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
         fill(region, patch, ax, ay, bx, by)
@@ -131,6 +139,47 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
     return bool(phase2 <= law.followed or inside > PUT * least)
 
 
+@kernel(forceinline=True)
+def _lying(law: Law, pair: Any, face: float, inverse: float) -> float:
+    """How deep one lies on the other under its own weight (length)."""
+    return law.gravity / (inverse * region_stiffness(law, pair.stiffness, face))
+
+
+@kernel
+def goes_over(
+    pool: Pool, work: Work, law: Law, region: Any, ia: int, ib: int, a: Any, b: Any, height: float, h: float
+) -> bool:
+    """Whether a new region is an edge no higher than what bodies sink by: what is met there goes over it.
+
+    So the next of butted tiles shows a body that lies on the last one its side, as high as the body has sunk. The
+    chord of the sliver that they share says "across" until it is longer than high, a substep or a few later: that
+    direction is taken at once, and the region is no blow.
+    """
+    if region.chord > height or law.followed == math.inf:
+        return False
+    u = closing(region, a, b, 0.0)
+    if u <= 0.0:
+        return False
+    ahead = max(h, 2.0 * height / u)
+    pose = earlier(a, -ahead)
+    n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
+    least = np.inf
+    best = -1
+    for k in range(n):
+        patch = patch_of(pool, work, law, k, ia, ib, pose)
+        far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+        if not patch.blind and far < least:
+            least = far
+            best = k
+    if best < 0:
+        return False
+    patch = patch_of(pool, work, law, best, ia, ib, pose)
+    if patch.nx * region.nx + patch.ny * region.ny > TURNS:
+        return False
+    turn_to(region, patch.nx, patch.ny)
+    return True
+
+
 @kernel
 def enter(
     pool: Pool,
@@ -152,6 +201,14 @@ def enter(
     stiffness = region_stiffness(law, k, max(region.chord, face))
     inverse = inverse_mass(region, a, b)
     phase2 = stiffness * inverse * h * h
+    height = STEP * _lying(law, pair, face, inverse)
+    if back == 0.0 and goes_over(pool, work, law, region, ia, ib, a, b, height, h):
+        region.mode = REST
+        region.placed = 0
+        region.opened = 0
+        region.first_speed = 0.0
+        region.rest_depth = region.depth
+        return
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
     unseen = unseen_for(pair, h)
@@ -159,7 +216,8 @@ def enter(
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
-        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen)
+        turn = TURNS if region.depth <= height else 0.0
+        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
@@ -199,6 +257,10 @@ def expect(
     inverse = inverse_mass(region, a, b)
     if stiffness * inverse * h * h <= law.followed:
         return False  # the steps follow it
+    lying = _lying(law, pair, face, inverse)
+    sinks = law.gravity * h * h  # what carries it is not solved for yet
+    if goes_over(pool, work, law, region, ia, ib, a, b, STEP * lying + sinks, h):
+        return False  # it will be there, and say so itself
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
     if min(1.0, pair.elasticity) * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
@@ -206,11 +268,10 @@ def expect(
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
-        return touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h) and region.back >= -0.5 * h
+        return touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0) and region.back >= -0.5 * h
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
-    lying = law.gravity / (inverse * region_stiffness(law, pair.stiffness, face))
     rest = max(lying, depth_for(law, region, pair.stiffness, gain / inverse))
     region.rest_depth = min(region.depth, rest)
     region.back = ahead

@@ -25,6 +25,7 @@ from .tables import (
     end_pair,
     find_pair,
     new_pair,
+    pairs_in_use,
     rehash,
 )
 
@@ -152,15 +153,22 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
     if near > len(tables.near):
         return GROW_PAIRS
     k = 0
+    ended = 0
+    left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
+        if left == 0:
+            break
         pair = tables.pairs[p]
         if pair.a >= 0:
+            left -= 1
             if pair.near == mark:
                 tables.near[k] = p
                 k += 1
             elif pair.stamp != frame:
                 end_pair(tables, p)
-    rehash(tables)
+                ended += 1
+    if ended > 0:
+        rehash(tables)
     counters[NEAR] = k
     return k
 

@@ -67,8 +67,5 @@ def clip(
             src, dst = dst, src
         ex = fx
         ey = fy
-    if (
-        measure(p, label, bows, loops, 0, src, src + n, False, noise) == 0 or loops[0].area < 0.0
-    ):  # negative: rounding
-        return 0
-    return 1
+    n = measure(p, label, bows, loops, 0, src, src + n, False, True, noise)
+    return 0 if n == 0 or loops[0].area < 0.0 else 1  # negative: rounding

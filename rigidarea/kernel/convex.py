@@ -223,6 +223,5 @@ def convex_pair(
         x = qx
         y = qy
         more = e != in_b
-    if measure(p, label, bows, loops, 0, 0, v, True, noise) == 0 or loops[0].area < 0.0:  # negative: rounding
-        return 0
-    return 1
+    n = measure(p, label, bows, loops, 0, 0, v, True, True, noise)
+    return 0 if n == 0 or loops[0].area < 0.0 else 1  # negative: rounding

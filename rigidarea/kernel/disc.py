@@ -22,6 +22,8 @@ from .work import A_EDGE, B_EDGE, NO_AREA, TANGLED, Relative, measure, placed, p
 TOUCH = 1e-12
 #: A depth below this, over the radii, is computed from the exact difference of squares.
 SHALLOW = 1e-3
+#: Instead of a number of vertices: the region is all of the disc.
+WHOLE = -1
 
 
 @kernel(forceinline=True)
@@ -153,7 +155,7 @@ def _put(
     return put(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
 
 
-@kernel
+@kernel(forceinline=True)
 def _close(
     p: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
     px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
@@ -181,15 +183,23 @@ def _close(
 
 
 @kernel
+def _close_between(
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, v: int, own: int,
+    px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
+) -> int:  # fmt: skip
+    """`_close`, called: where the outline comes in again, which is rare."""
+    return _close(p, label, bows, v, own, px, py, qx, qy, cx, cy, r)
+
+
+@kernel
 def _cut_by_arc(
     px: float, py: float, qx: float, qy: float, ax: float, ay: float, a: float, p_in: bool, q_in: bool,
     cx: float, cy: float, r: float,
 ) -> tuple[bool, bool, float, float, float, float]:  # fmt: skip
-    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit)."""
-    d2 = (cx - ax) ** 2 + (cy - ay) ** 2
+    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit). The two
+    circles cross."""
     if p_in == q_in:
-        if d2 >= (a + r) * (a + r) or d2 <= (a - r) * (a - r):
-            return False, False, 0.0, 0.0, 0.0, 0.0
+        d2 = (cx - ax) ** 2 + (cy - ay) ** 2
         reach = (-a if p_in else a) / math.sqrt(d2)
         if not on_arc(px, py, qx, qy, a, ax + reach * (cx - ax), ay + reach * (cy - ay)):
             return False, False, 0.0, 0.0, 0.0, 0.0
@@ -300,10 +310,10 @@ def disc_convex(
                     if not hit and turn < 0.0:
                         return 0  # the whole disc lies beyond this edge
                     if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
-                        length = math.sqrt(length2)
-                        ux /= length
-                        uy /= length
-                        distance = turn / length
+                        inverse = 1.0 / math.sqrt(length2)
+                        ux *= inverse
+                        uy *= inverse
+                        distance = turn * inverse
                         half = math.sqrt(max(0.0, (r - abs(distance)) * (r + abs(distance))))
                         edge_x = ux
                         edge_y = uy
@@ -323,7 +333,10 @@ def disc_convex(
                 d2 = (kx - ax) ** 2 + (ky - ay) ** 2
                 if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
                     return TANGLED
-                enters, leaves, x1, y1, x2, y2 = _cut_by_arc(px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r)
+                if p_in != q_in or (a - r) * (a - r) < d2 < (a + r) * (a + r):
+                    enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
+                        px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r
+                    )
             # what of p -> q lies inside the disc, and the disc's arc before it
             back = enters and leaves and p_in  # an arc goes out and comes in again
             if back:
@@ -334,7 +347,7 @@ def disc_convex(
             if enters:
                 crossed += 1
                 if open_:
-                    v = _close(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
+                    v = _close_between(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
                     open_ = False
                 else:
                     in_x = x1
@@ -353,14 +366,19 @@ def disc_convex(
             py = qy
             p_in = q_in
     touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
+    n = 0
     if crossed == 0 or touched:
-        n = _nested(kx, ky, r, points, arcs, begin, count, own, p, label, bows, loops, noise)
+        v = _nested(kx, ky, r, points, arcs, begin, count, own, p, label, bows)
+        if v == WHOLE:
+            v = 0
+            n = whole_disc(p, label, bows, loops, mine, kx, ky, r)
     elif crossed == 1 and v == 1 and edge_distance < 0.0 and bows[0, 2] == 0.0:
+        v = 0
         n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance)
-    else:
-        if open_:
-            v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
-        n = measure(p, label, bows, loops, 0, 0, v, True, noise)
+    elif open_:
+        v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
+    if v > 0:
+        n = measure(p, label, bows, loops, 0, 0, v, True, False, noise)
     if n == 0 or loops[0].area < 0.0:  # negative: rounding
         return 0
     if own == B_EDGE:
@@ -389,9 +407,10 @@ def _put_there(p: np.ndarray, bows: np.ndarray, loops: np.ndarray, place: Relati
 @kernel
 def _nested(
     cx: float, cy: float, r: float, points: np.ndarray, arcs: np.ndarray, begin: int, count: int, own: int,
-    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, noise: float,
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray,
 ) -> int:  # fmt: skip
-    """`disc_convex` where the boundaries do not cross: one inside the other, or apart."""
+    """`disc_convex` where boundaries do not cross: all of the outline, put down (its vertices' number), if it lies in
+    the disc; WHOLE if the disc lies in it; 0 if they are apart."""
     farthest = 0.0
     inside = True  # the disc's centre, of the polygon of the chords, or of what an arc adds to it
     v = 0
@@ -413,6 +432,5 @@ def _nested(
     for k in range(v):
         farthest = max(farthest, (p[k, 0] - cx) ** 2 + (p[k, 1] - cy) ** 2)
     if farthest <= r * r * (1.0 + 1e-9):  # a corner may touch the circle
-        return measure(p, label, bows, loops, 0, 0, v, True, noise)
-    mine = B_EDGE if own == A_EDGE else A_EDGE
-    return whole_disc(p, label, bows, loops, mine, cx, cy, r) if inside else 0
+        return v
+    return WHOLE if inside else 0

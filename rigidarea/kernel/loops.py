@@ -17,6 +17,15 @@ NEAR = 1e-7
 
 
 @kernel
+def _measure(
+    p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, n: int, start: int, stop: int, arcs: bool,
+    noise: float,
+) -> int:  # fmt: skip
+    """`measure`, called."""
+    return measure(p, label, bows, loops, n, start, stop, arcs, True, noise)
+
+
+@kernel
 def _arc(pool: Pool, rel: Relative, work: Work, k: int, along: int, v: int) -> tuple[int, int]:
     """Append the boundary along A (0) or B (1) from crossing k to the next, left out: (that crossing, vertices)."""
     work.polygon[v, 0] = work.spot[k, 0]
@@ -321,7 +330,7 @@ def _whole_rings(
                 work.polygon[v, 1] = py
                 work.label[v] = along
                 v += 1
-        n = measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
+        n = _measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
     return n, v
 
 
@@ -397,7 +406,7 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
                     i, v = _arc(pb, rel, work, i, B_EDGE, v)
                 if i == first:
                     break
-            n = measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
+            n = _measure(work.polygon, work.label, work.bows, work.loops, n, start, v, arcs, noise)
     if ha.rings > 1 or not work.hit[0]:
         n, v = _whole_rings(pa, ia, own, pb, ib, rel, 0, work, n, v, noise)
     if hb.rings > 1 or not work.hit[half]:

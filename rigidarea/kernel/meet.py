@@ -27,7 +27,7 @@ from .motion import (
 )
 from .overlap import A_EDGE, OVERFLOW, Work
 from .patch import Patch, patch_of
-from .place import overlap_of_outlines, push_out, seen_from
+from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness
 from .sides import length_on_first_edge, shown_sides
@@ -40,7 +40,6 @@ from .tables import (
     NEARING,
     PLACED,
     REST,
-    SPENT,
     STRUCK,
     SUBSTEP,
     Law,
@@ -49,6 +48,8 @@ from .tables import (
 )
 
 DONE, GROW_WORK, GROW_REGIONS = 0, 1, 2
+#: Places at which a pair is looked at for one more that is to come.
+MOST_SEATS = 60
 
 __all__ = [
     "DONE",
@@ -95,6 +96,21 @@ def _face(pool: Pool, sa: Any, sb: Any, a: Any, b: Any) -> float:
 
 
 @kernel
+def _remember(regions: Any, pair: Any, stamp: int) -> None:
+    """What a pair bore that has parted, by a hair perhaps: should it join again, it begins with that."""
+    pair.bore = 0.0
+    pair.bore_t = 0.0
+    pair.bore_stamp = stamp
+    r = pair.head
+    while r >= 0:
+        region = regions[r]
+        if region.mode == REST or region.mode == NEARING:
+            pair.bore += (region.l1 + region.l2) / region.step
+            pair.bore_t += region.lt / region.step
+        r = region.next
+
+
+@kernel
 def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
     """Bring pair p's regions up to where its bodies are: their places, and which of them are new. DONE, or GROW_...
 
@@ -129,6 +145,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         return GROW_WORK
     if n == 0:
         if not fresh:
+            _remember(regions, pair, stamp)
             free_regions(regions, counters, pair.head)
             pair.head = -1
         return DONE
@@ -218,10 +235,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.placed = 0
         else:
             before = region.depth
-            if region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth:
-                region.placed = 0
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            if region.placed == SPENT and carried:
+            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
@@ -266,11 +281,41 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     return DONE
 
 
+@kernel(forceinline=True)
+def has_seats(pool: Pool, tables: Tables, pair: Any) -> bool:
+    """Whether the two may touch in several places without turning: one is not convex."""
+    a = tables.shapes[pair.a].outline
+    b = tables.shapes[pair.b].outline
+    return not (pool.heads[a].convex and pool.heads[b].convex)
+
+
+@kernel
+def _there(pool: Pool, work: Work, regions: np.ndarray, head: int, n: int, ia: int, pose: Pose) -> int:
+    """Which of the work's n loops are regions of the list: each one's nearest, as bits."""
+    found = 0
+    r = head
+    while r >= 0:
+        best = 0
+        least = np.inf
+        for k in range(n):
+            lx = work.loops[k].x + pool.heads[ia].x
+            ly = work.loops[k].y + pool.heads[ia].y
+            x = pose.x + pose.c * lx - pose.s * ly - regions[r].x
+            y = pose.y + pose.s * lx + pose.c * ly - regions[r].y
+            if x * x + y * y < least:
+                least = x * x + y * y
+                best = k
+        found |= 1 << best
+        r = regions[r].next
+    return found
+
+
 @kernel
 def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> int:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
-    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step: at the list's head.
+    Also for what of a pair that touches will overlap elsewhere, since it turns far in a step, or since one of the two
+    is not convex (a disc in a groove touches both its walls): at the list's head.
     DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
     this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the velocities at
     which bodies come (energy is kept by their being solved together). Others are found when they have happened.
@@ -285,9 +330,8 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     looks = jumped(tables, pair, a, b, h)
     old = pair.head
     deepest = 0.0
-    if old >= 0:  # it touches: what else of it comes down, turning fast
-        if looks == 1:
-            return DONE
+    seat = old >= 0 and looks == 1
+    if old >= 0 and not seat:  # it touches: what else of it comes down, turning fast
         deepest = HIT * min(size_of(a), size_of(b))
         r = old
         awaited = 0
@@ -305,15 +349,21 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         return DONE
     if n == OVERFLOW:
         return GROW_WORK
+    if seat and n > MOST_SEATS:
+        return DONE
     if n > counters[FREE_REGIONS]:
         return GROW_REGIONS
     pose_a = earlier(a, -ahead)
     pose_b = earlier(b, -ahead)
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
     kept = -1
+    count = 0
     ax, ay = centre_of(a, pose_a)
     bx, by = centre_of(b, pose_b)
+    there = _there(pool, work, regions, old, n, ia, pose_a) if seat else 0
     for k in range(n):
+        if there >> k & 1:
+            continue
         if sa.mirror >= 0 and length_on_first_edge(pool, ia, rel, A_EDGE, work, k) == 0.0:
             continue
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
@@ -345,8 +395,16 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.step = h
         region.spring = 0.0
         region.tangent_stiffness = 0.0
+        count += 1
     if kept < 0:
         return DONE
+    if first and pair.bore_stamp == counters[SUBSTEP]:
+        r = kept
+        while r >= 0:
+            region = regions[r]
+            region.l1 = h * pair.bore / count
+            region.lt = h * pair.bore_t / count
+            r = region.next
     face = _face(pool, sa, sb, a, b)
     if pair.stiffness == 0.0:
         choose_stiffness(law, pair, face, a, b, h)

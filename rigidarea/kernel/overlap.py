@@ -88,16 +88,19 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
         noise = noise_of(ha.radius, hb.radius, rel)
         if ha.disc and hb.disc:
             return disc_disc(ha.radius, hb.radius, rel, work.polygon, work.label, work.bows, work.loops)
-        if ha.disc:
+        if ha.disc or hb.disc:
+            pool, head, own, place = pa, ha, A_EDGE, Relative(1.0, 0.0, 0.0, 0.0)
+            x = rel.tx
+            y = rel.ty
+            radius = hb.radius
+            if ha.disc:
+                pool, head, own, place = pb, hb, B_EDGE, rel
+                x = 0.0
+                y = 0.0
+                radius = ha.radius
             return disc_convex(
-                0.0, 0.0, ha.radius, pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + hb.leaves, rel,
-                B_EDGE, work.polygon, work.label, work.bows, work.loops, noise,
-            )  # fmt: skip
-        if hb.disc:
-            own = Relative(1.0, 0.0, 0.0, 0.0)
-            return disc_convex(
-                rel.tx, rel.ty, hb.radius, pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + ha.leaves, own,
-                A_EDGE, work.polygon, work.label, work.bows, work.loops, noise,
+                x, y, radius, pool.points, pool.arcs, pool.boxes, head.point, head.count, head.box + head.leaves, place,
+                own, work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
         if ha.arcs + hb.arcs == 0 and ha.count * hb.count <= CLIP_PAIRS:
             return clip(

@@ -31,6 +31,12 @@ def place(body: Any) -> None:
     """What follows from a body's centre and angle."""
     body.c = math.cos(body.angle)
     body.s = math.sin(body.angle)
+    shift(body)
+
+
+@kernel(forceinline=True)
+def shift(body: Any) -> None:
+    """The same where only its centre has moved."""
     body.ox = body.x - (body.c * body.cog_x - body.s * body.cog_y)
     body.oy = body.y - (body.s * body.cog_x + body.c * body.cog_y)
 

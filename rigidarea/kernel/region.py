@@ -29,6 +29,22 @@ def fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) 
     region.lean_b = (patch.x - bx) * patch.nx + (patch.y - by) * patch.ny
 
 
+@kernel
+def turn_to(region: Any, nx: float, ny: float) -> None:
+    """Another direction about the same point of application: arms turn with it, and no face is seen along it."""
+    c = region.nx * nx + region.ny * ny
+    s = region.nx * ny - region.ny * nx
+    arm_a, lean_a, arm_b, lean_b = region.arm_a, region.lean_a, region.arm_b, region.lean_b
+    region.arm_a = arm_a * c + lean_a * s
+    region.lean_a = lean_a * c - arm_a * s
+    region.arm_b = arm_b * c + lean_b * s
+    region.lean_b = lean_b * c - arm_b * s
+    region.nx = nx
+    region.ny = ny
+    region.middle = 0.0
+    region.straight = 0.0
+
+
 @kernel(forceinline=True)
 def closing(r: Any, a: Any, b: Any, full: float) -> float:
     """Closing speed at the region (length/time), with the part `full` of the substep's kick taken off."""

@@ -11,6 +11,8 @@ At rest, F = k A, nothing opens, and this changes nothing.
 
 from __future__ import annotations
 
+from typing import Any
+
 from .constants import HIT
 from .jit import kernel
 from .place import place
@@ -45,35 +47,38 @@ def end_relaxing(tables: Tables, h: float) -> None:
     for k in range(tables.counters[LIVE]):
         i = tables.live[k]
         body = tables.bodies[i]
-        before = tables.mobility[i]
-        x = h * (before.vx - body.vx)
-        y = h * (before.vy - body.vy)
-        turn = h * (before.vw - body.w)
-        way = abs(x) + abs(y) + abs(turn) * body.extent
-        before.moved = 0.0 < way <= HIT * body.extent and body.kind == DRIFTS
-        if before.moved:
-            body.x += x
-            body.y += y
-            body.angle += turn
+        taken = tables.mobility[i]
+        taken.vx -= body.vx
+        taken.vy -= body.vy
+        taken.vw -= body.w
+        way = h * (abs(taken.vx) + abs(taken.vy) + abs(taken.vw) * body.extent)
+        taken.moved = 0.0 < way <= HIT * body.extent and body.kind == DRIFTS
+        if taken.moved:
+            body.x += h * taken.vx
+            body.y += h * taken.vy
+            body.angle += h * taken.vw
             place(body)
-    # Parted while they slip, two bodies have other arms: spin makes that good.
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        if tables.mobility[row.a].moved and tables.mobility[row.b].moved:
-            a = tables.bodies[row.a]
-            b = tables.bodies[row.b]
-            share = a.inverse_moment + b.inverse_moment
-            if share > 0.0:
-                normal = row.was1 - row.l1 + row.was2 - row.l2
-                along = row.was_t - row.lt
-                jx = normal * row.nx - along * row.ny
-                jy = normal * row.ny + along * row.nx
-                turn = (
-                    h
-                    * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx))
-                    * a.inverse_moment
-                    * b.inverse_moment
-                    / share
-                )
-                a.w += turn
-                b.w += turn
+        of_a = tables.mobility[row.a]
+        of_b = tables.mobility[row.b]
+        if of_a.moved:
+            row.slid += row.nx * of_a.vy - row.ny * of_a.vx + row.lean_a * of_a.vw
+        if of_b.moved:
+            row.slid -= row.nx * of_b.vy - row.ny * of_b.vx + row.lean_b * of_b.vw
+        if of_a.moved and of_b.moved:
+            _turn_back(row, tables.bodies[row.a], tables.bodies[row.b], h)
+
+
+@kernel(forceinline=True)
+def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
+    """Parted while they slip, two bodies have other arms: spin makes good what the rows' change gains by that."""
+    share = a.inverse_moment + b.inverse_moment
+    if share > 0.0:
+        normal = row.was1 - row.l1 + row.was2 - row.l2
+        along = row.was_t - row.lt
+        jx = normal * row.nx - along * row.ny
+        jy = normal * row.ny + along * row.nx
+        turn = h * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx)) * a.inverse_moment * b.inverse_moment / share
+        a.w += turn
+        b.w += turn

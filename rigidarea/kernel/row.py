@@ -46,19 +46,10 @@ ROW = record(
         ("arm_b", "f8"),
         ("lean_a", "f8"),
         ("lean_b", "f8"),
-        ("e1", "f8"),
-        ("e2", "f8"),
         ("alpha", "f8"),
         ("gamma_a", "f8"),  # gamma [[a, b], [b, a]]
-        ("gamma_b", "f8"),
         ("f1", "f8"),  # h F0 of the ends
-        ("f2", "f8"),
         ("t1", "f8"),  # vt
-        ("t2", "f8"),
-        ("m11", "f8"),  # alpha + gamma C W
-        ("m12", "f8"),
-        ("m21", "f8"),
-        ("m22", "f8"),
         ("det", "f8"),  # one over its determinant; of a single end: one over m11
         ("friction", "f8"),
         ("alpha_t", "f8"),
@@ -67,15 +58,27 @@ ROW = record(
         ("tt", "f8"),
         ("mt", "f8"),  # 1 / (alpha_t + gamma_t W_t)
         ("slip1", "f8"),  # what an impulse at either end takes from the slip
-        ("slip2", "f8"),
         ("l1", "f8"),
-        ("l2", "f8"),
         ("lt", "f8"),
         ("weight", "f8"),  # 1/m_eff
+        # of two ends:
+        ("e1", "f8"),
+        ("e2", "f8"),
+        ("gamma_b", "f8"),
+        ("f2", "f8"),
+        ("t2", "f8"),
+        ("m11", "f8"),  # alpha + gamma C W
+        ("m12", "f8"),
+        ("m21", "f8"),
+        ("m22", "f8"),
+        ("slip2", "f8"),
+        ("l2", "f8"),
+        # not of the sweeps:
         ("was1", "f8"),  # the impulses before contacts are relaxed
         ("was2", "f8"),
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
+        ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
         ("put", "i4"),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
@@ -208,6 +211,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     """
     row.shift = 0.0
     row.theta = 0.0
+    row.slid = 0.0
     row.put = 0
     row.friction = pair.friction
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
@@ -249,9 +253,13 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.gamma_t = 1.0 / inverse_t
         row.ft = 0.0
         r.spring = 0.0
-        row.l1 = 0.0
+        scale = h / r.step if r.mode == NEARING else 0.0  # a bounce says nothing of a load
+        row.l1 = r.l1 * scale
         row.l2 = 0.0
-        row.lt = 0.0
+        row.lt = r.lt * scale
+        if row.ends == 2:
+            row.l1 *= 0.5
+            row.l2 = row.l1
     elif r.mode == IMPACT:
         row.ends = 1
         row.e1 = 0.0
@@ -307,8 +315,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
-            most = HIT * least / h  # in a crash the impulse before says nothing of the next slip
-            row.t1 = min(most, max(-most, turning_speed(r, a, b, row.lt, h)))
+            most = HIT * least / h
+            row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
@@ -352,7 +360,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
 def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
     """Give the two bodies impulses d1, d2 at the ends and dt along the tangent."""
     normal = d1 + d2
-    turn = d1 * row.e1 + d2 * row.e2
+    turn = 0.0 if row.ends == 1 else d1 * row.e1 + d2 * row.e2
     fx = normal * row.nx - dt * row.ny
     fy = normal * row.ny + dt * row.nx
     a.vx -= fx * a.inverse_mass
@@ -395,9 +403,10 @@ def visit(row: Any, a: Any, b: Any) -> float:
                 d2 = -row.l2
                 d1 = max(-row.l1, (r1 - row.m12 * d2) / row.m11)
         row.l2 += d2
+        slip -= d2 * row.slip2
     row.l1 += d1
-    slip -= d1 * row.slip1 + d2 * row.slip2
-    most = row.friction * (row.l1 + row.l2)
+    slip -= d1 * row.slip1
+    most = row.friction * (row.l1 if row.ends == 1 else row.l1 + row.l2)
     lt = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
     lt = min(most, max(-most, lt))
     dt = lt - row.lt
@@ -441,8 +450,10 @@ def shift_as_held(body: Any, time: float) -> None:
 def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last: bool) -> None:
     """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
     normal = row.l1 + row.l2
-    if r.mode == REST and row.friction > 0.0:
-        slip = slipping(r, a, b, 0.0) - row.tt
+    if r.mode == NEARING:
+        r.spring = row.lt / h  # what grips will go on gripping
+    elif r.mode == REST and row.friction > 0.0:
+        slip = slipping(r, a, b, 0.0) - row.tt + row.slid
         most = row.friction * normal / h
         r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
     r.l1 = row.l1

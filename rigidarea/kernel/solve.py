@@ -14,8 +14,8 @@ from .apart import find_axis, gap_along
 from .broad import search, somebody_left
 from .constants import LEFT, MOVED, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, jumped, meet, meet_ahead, pose_of
-from .place import place, seen_from
+from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
+from .place import place, seen_from, shift
 from .pool import Pool
 from .row import make_row, push, settle, visit
 from .stiffness import carry
@@ -51,9 +51,12 @@ def drift(tables: Tables, frame: int, time: float) -> None:
         if body.stamp == frame and body.kind == DRIFTS:
             body.x += time * body.vx
             body.y += time * body.vy
-            body.angle += time * body.w
             body.since += time
-            place(body)
+            if body.w == 0.0:
+                shift(body)
+            else:
+                body.angle += time * body.w
+                place(body)
 
 
 @kernel
@@ -220,11 +223,12 @@ def _cannot_meet(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float
 
 @kernel
 def _farthest(pool: Pool, shape: Any, body: Any) -> float:
-    """At most so far from the body's centre is a point of the shape (length)."""
+    """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
     head = pool.heads[shape.outline]
     dx = head.x - body.cog_x
     dy = head.y - body.cog_y
-    return float(math.sqrt(dx * dx + dy * dy) + head.radius)
+    own = 0.0 if head.disc else head.radius
+    return float(math.sqrt(dx * dx + dy * dy) + own)
 
 
 @kernel
@@ -302,6 +306,8 @@ def join(
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
+        if old >= 0 and not (first and has_seats(pool, tables, pair)) and jumped(tables, pair, a, b, h) == 1:
+            continue  # it has met already, and turns too little to come down elsewhere
         if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue
         if not allowed(tables, pair, frame):

@@ -118,6 +118,9 @@ PAIR = record(
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        ("bore", "f8"),  # force along its directions, and across, when it was last found to have parted
+        ("bore_t", "f8"),
+        ("bore_stamp", "i8"),  # in which substep that was
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
@@ -266,6 +269,12 @@ class Tables(NamedTuple):
     counters: np.ndarray  # (COUNTERS,) int64
 
 
+@kernel(forceinline=True)
+def pairs_in_use(tables: Tables) -> int:
+    """How many: whoever walks through all of them may stop after the last."""
+    return len(tables.pairs) - int(tables.counters[FREE_PAIRS])
+
+
 @kernel
 def find_pair(tables: Tables, a: int, b: int) -> int:
     """The pair of shape rows a and b; -1: there is none."""
@@ -294,8 +303,12 @@ def _enter(tables: Tables, a: int, b: int, p: int) -> None:
 def rehash(tables: Tables) -> None:
     """Make the hash table anew from the pairs in use: nothing is ever taken out of it singly."""
     tables.keys[:] = -1
+    left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
+        if left == 0:
+            break
         if tables.pairs[p].a >= 0:
+            left -= 1
             _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
 
 

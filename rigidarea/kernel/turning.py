@@ -91,20 +91,21 @@ def curvature_of_disc(radius: float, chord: float) -> float:
 
 
 @kernel
-def turning_speed(r: Any, a: Any, b: Any, friction: float, h: float) -> float:
+def turning_speed(r: Any, a: Any, b: Any, h: float) -> float:
     """The closing speed that leaves no gap behind a drift of h (length/time).
 
-    At the bodies' present velocities and what the impulse `friction` along t on B is about to add to them. Where the
-    direction would turn by an angle p of about 1 or more (a pin in its journal), 2 / (1 + sqrt(1 + p^2)) of it: exact
-    for a straight way past a round surface, and bounded by the speed.
+    At the velocities at which the bodies come, the substep's kick taken off: what it adds, contacts may yet stop, and
+    what lies still would turn for ever. Where the direction would turn by an angle p of about 1 or more (a pin in its
+    journal), 2 / (1 + sqrt(1 + p^2)) of it: exact for a straight way past a round surface, and bounded by the speed.
     """
     both = r.curve_a + r.curve_b
     if both <= 0.0:
         return 0.0
-    wa = a.w - friction * r.lean_a * a.inverse_moment
-    wb = b.w + friction * r.lean_b * b.inverse_moment
-    s = (b.vx - a.vx) * -r.ny + (b.vy - a.vy) * r.nx + friction * (a.inverse_mass + b.inverse_mass)
-    s += wb * r.lean_b - wa * r.lean_a
+    wa = a.w - a.kick_w
+    wb = b.w - b.kick_w
+    ux = b.vx - b.kick_x - a.vx + a.kick_x
+    uy = b.vy - b.kick_y - a.vy + a.kick_y
+    s = uy * r.nx - ux * r.ny + wb * r.lean_b - wa * r.lean_a
     mixed = wb * r.curve_a + wa * r.curve_b
     product = r.curve_a * r.curve_b
     bend = (product * s * s + 2.0 * s * mixed - (wb - wa) ** 2) / both

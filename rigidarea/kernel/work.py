@@ -153,15 +153,16 @@ def put(
     return v
 
 
-@kernel
+@kernel(forceinline=True)
 def measure(
     p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, n: int, start: int, stop: int, arcs: bool,
-    noise: float,
+    flat: bool, noise: float,
 ) -> int:  # fmt: skip
     """Area, centroid, chord and straight stretch of the polygon start:stop as loop n; the number of loops then.
 
-    arcs: whether its edges may be arcs, by `work.bows`. noise: see `noise_of`; edges that turn by no more at a vertex
-    are one straight stretch.
+    arcs: whether its edges may be arcs, by `bows`: two vertices each, start and middle. flat: whether both outlines
+    have straight edges; else there is no straight stretch to look for. noise: see `noise_of`; edges that turn by no
+    more at a vertex are one straight stretch.
     """
     if stop - start < 2:
         return n
@@ -176,25 +177,31 @@ def measure(
     flat_a = 0.0  # squared lengths of the longest stretches
     flat_b = 0.0
     perimeter = 0.0
-    ux = p[stop - 1, 0] - ox
-    uy = p[stop - 1, 1] - oy
-    own = label[stop - 1]
-    r = bows[stop - 1, 2] if arcs else 0.0
+    ux = 0.0  # the edge being walked: from u to v
+    uy = 0.0
     # the stretch that is being walked: where it began, its last edge, whether the loop's start lies in it
-    run_x = ux
-    run_y = uy
+    run_x = 0.0
+    run_y = 0.0
     run_dx = 0.0
     run_dy = 0.0
     run_of = 2  # nobody's
     leading = True
-    first_x = ux
-    first_y = uy
+    none_yet = True  # no edge so far but such as are rounding
+    first_x = 0.0
+    first_y = 0.0
     first_dx = 0.0
     first_dy = 0.0
     first_of = 2
-    for i in range(start, stop):
-        vx = p[i, 0] - ox
-        vy = p[i, 1] - oy
+    i = start
+    while i < stop:
+        r = bows[i, 2] if arcs else 0.0
+        j = i + 1 if r == 0.0 else i + 2
+        vx = 0.0
+        vy = 0.0
+        if j < stop:
+            vx = p[j, 0] - ox
+            vy = p[j, 1] - oy
+        own = label[i]
         cross = ux * vy - uy * vx
         doubled += cross
         sx += (ux + vx) * cross
@@ -207,13 +214,39 @@ def measure(
             chord_x += dx
             chord_y += dy
             lever += 0.5 * (vx * vx + vy * vy - ux * ux - uy * uy)
-        if r == 0.0 and steps > noise:
+        if r != 0.0:
+            run_of = 2
+            leading = False
+            none_yet = False
+            chord2 = dx * dx + dy * dy
+            if chord2 > 0.0:
+                radius = abs(r)
+                x = min(1.0, 0.5 * math.sqrt(chord2) / radius)
+                x2 = x * x
+                if x2 < FLAT:
+                    area, moment = flat_segment(x, x2)
+                else:
+                    if x2 < 0.5:
+                        c = math.sqrt((1.0 - x) * (1.0 + x))
+                        area = math.asin(x) - x * c
+                    else:  # the sine says little of a wide arc's angle: its middle does
+                        tx = p[i + 1, 0] - ox - 0.5 * (ux + vx)
+                        ty = p[i + 1, 1] - oy - 0.5 * (uy + vy)
+                        c = 1.0 - math.sqrt(tx * tx + ty * ty) / radius
+                        area = 0.5 * math.pi - math.asin(c) - x * c
+                    moment = (2.0 / 3.0) * x2 * x - area * c
+                area *= r * radius
+                moment *= 3.0 * radius * radius / x
+                doubled += 2.0 * area
+                sx += 3.0 * area * (ux + vx) + moment * dy
+                sy += 3.0 * area * (uy + vy) - moment * dx
+        elif flat and steps > noise:
             if not (
                 own == run_of
                 and abs(run_dx * dy - run_dy * dx) <= noise * (abs(run_dx) + abs(run_dy) + steps)
                 and run_dx * dx + run_dy * dy > 0.0
             ):
-                leading = i == start
+                leading = none_yet
                 run_x = ux
                 run_y = uy
                 run_of = own
@@ -228,33 +261,13 @@ def measure(
                 first_x = vx
                 first_y = vy
                 first_of = own
-                if i == start:
+                if none_yet:
                     first_dx = dx
                     first_dy = dy
-        elif r != 0.0:
-            run_of = 2
-            leading = False
-            chord2 = dx * dx + dy * dy
-            if chord2 > 0.0:
-                radius = abs(r)
-                chord = math.sqrt(chord2)
-                x = min(1.0, 0.5 * chord / radius)
-                x2 = x * x
-                if x2 < FLAT:
-                    area, moment = flat_segment(x, x2)
-                else:
-                    c = math.sqrt((1.0 - x) * (1.0 + x))
-                    area = math.asin(x) - x * c
-                    moment = (2.0 / 3.0) * x2 * x - area * c
-                area *= r * radius
-                moment *= 6.0 * radius * radius * radius / chord
-                doubled += 2.0 * area
-                sx += 3.0 * area * (ux + vx) + moment * dy
-                sy += 3.0 * area * (uy + vy) - moment * dx
-        own = label[i]
-        r = bows[i, 2] if arcs else 0.0
+            none_yet = False
         ux = vx
         uy = vy
+        i = j
     if abs(doubled) <= 2.0 * NO_AREA * perimeter * perimeter:
         return n
     if not leading and run_of == first_of and run_of != 2:  # does the last stretch go on in the first?
@@ -269,14 +282,15 @@ def measure(
     loop.start = start
     loop.stop = stop
     loop.area = 0.5 * doubled
-    sx /= 3.0 * doubled
-    sy /= 3.0 * doubled
+    third = 1.0 / (3.0 * doubled)
+    sx *= third
+    sy *= third
     loop.x = ox + sx
     loop.y = oy + sy
     loop.chord_x = chord_x
     loop.chord_y = chord_y
     loop.lever = lever - sx * chord_x - sy * chord_y
-    loop.straight = math.sqrt(min(flat_a, flat_b))
+    loop.straight = math.sqrt(min(flat_a, flat_b)) if flat else 0.0
     loop.region = n
     loop.arcs = 1 if arcs else 0
     return n + 1

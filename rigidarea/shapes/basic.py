@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike
 
 from ..arcs import circle_ring
 from ..outline import Outline, positive
+from ..simple import check_simple
 
 
 def circle(radius: float, *, tolerance: float | None = None) -> Outline:
@@ -88,13 +89,10 @@ def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None
     if spare[-1] <= noise and cut[0] > 0 and arcs[-1] == (0.0, 0.0, 0.0):
         ring.pop()
         arcs.pop()
-    _check_valid(ring, arcs)
+    check_simple(
+        [np.array(ring)], [np.array(arcs)], ["points"]
+    )  # arcs may cut into each other in a narrow neck
     return _sampled(Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)]), tolerance)
-
-
-def _check_valid(ring: list[np.ndarray], arcs: list[tuple[float, float, float]]) -> None:
-    """ValueError if the arcs cut into each other, as those of a narrow neck can."""
-    Outline(Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)]).polygon_rings[0])
 
 
 def _sampled(outline: Outline, tolerance: float | None) -> Outline:

@@ -15,6 +15,7 @@ import numpy as np
 from ..outline import Outline
 from ..report import envelope
 from .crowds import CROWDS
+from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
 from .records import Progress, Row
 from .scene import Scene
@@ -295,16 +296,25 @@ _compiled: Any = None
 # ----------------------------------------------------------------------------------------------------------
 
 
+HELD: dict[str, tuple[Callable[[int], Scene], int]] = {
+    **{name: (make, 10) for name, make in CROWDS.items()},
+    "discs": (pit_of_discs, 300),
+}
+"""What memory is measured of, and after how many frames."""
+
+
 def memory(names: Sequence[str] = (), size: int = 1000, peer_names: Sequence[str] = ()) -> Row:
-    """Resident memory that a crowd takes once it is built and has run a few frames, per body.
+    """Resident memory that a crowd takes once it is built and has run a few frames, or a pit of discs once it lies, per
+    body.
 
     Each run is built in a fresh process, so that nothing is reused. Rows: scene, bodies, peer,
-    bytes_per_body, python_bytes_per_body (of that, what Python's allocator holds).
+    bytes_per_body, python_bytes_per_body (of that, what Python's allocator holds), of ours tables_bytes_per_body (what
+    contacts take, all in all) and, by name, largest_tables_bytes_per_body.
     """
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
-    chosen = list(names) or list(CROWDS)
+    chosen = list(names) or list(HELD)
     wanted = [name for name in USUAL if not peer_names or name in peer_names]
     rows = []
     progress = Progress("memory", len(chosen) * len(wanted))
@@ -317,19 +327,20 @@ def memory(names: Sequence[str] = (), size: int = 1000, peer_names: Sequence[str
 
 
 def memory_row(name: str, size: int, peer: str) -> Row:
-    """Growth of this process's resident memory while a crowd is built and run ten frames."""
-    small, scene = CROWDS[name](10), CROWDS[name](size)
+    """Growth of this process's resident memory while a crowd is built and run."""
+    make, frames = HELD[name]
+    small, scene = make(10), make(size)
     engine, settings = get_peer(peer), USUAL[peer][0]
     engine.build(small, settings).advance(2)  # what is loaded and compiled once does not count
     tracemalloc.start()
     before = resident()
     run = engine.build(scene, settings)
-    run.advance(10)
+    run.advance(frames)
     grown = resident() - before
     python = tracemalloc.get_traced_memory()[0]
     tracemalloc.stop()
     bodies = sum(body.kind == "dynamic" for body in scene.bodies)
-    return {
+    row = {
         "scene": name,
         "bodies": bodies,
         "peer": peer,
@@ -337,6 +348,12 @@ def memory_row(name: str, size: int, peer: str) -> Row:
         "bytes_per_body": grown / bodies,
         "python_bytes_per_body": python / bodies,
     }
+    if contact := getattr(run, "contact", None):
+        sizes = {name: size / bodies for name, size in contact._store.sizes().items()}
+        largest = sorted(sizes, key=lambda name: -sizes[name])[:8]
+        row["tables_bytes_per_body"] = sum(sizes.values())
+        row["largest_tables_bytes_per_body"] = {name: sizes[name] for name in largest}
+    return row
 
 
 def resident() -> int:

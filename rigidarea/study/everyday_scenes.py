@@ -171,6 +171,11 @@ def pit(name: str, maker: Maker, count: int = 150, width: float = 600.0) -> Call
     return make
 
 
+def pit_of_discs(count: int) -> Scene:
+    """So many discs in a pit as deep, over its width, as the one of 150."""
+    return pit("discs", _a_disc, count, 600.0 * math.sqrt(count / 150))(0)
+
+
 def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list[Body]:
     """Squares in a pyramid, each on two, moved sideways by up to `scatter`."""
     chance = random.Random(seed)

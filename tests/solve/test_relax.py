@@ -73,3 +73,27 @@ def test_what_tumbles_fast_stays_in_its_room(seed):
         for b in world.bodies:
             assert -out < b.position.x < 600 + out and -out < b.position.y < 400 + out
             assert b.velocity.length < 1e4 * math.sqrt(8)
+
+
+@area_only
+@pytest.mark.parametrize("steps", [1, 2, 4, None])
+def test_six_discs_in_three_rows_lie_still(steps):
+    """Rolling on each other they stand by friction alone, of exactly as many contacts as they need (2 x 9 for 3 x 6).
+
+    A friction spring that does not take what relaxing has moved them by creeps, and so does one that turns under
+    velocities that contacts have yet to stop: they roll apart within 4 s.
+    """
+    world = World(900.0, friction=1.5)
+    world.floor()
+    radius = 12.0
+    discs = [
+        world.disc(((k - (2 - row) / 2) * 2.002 * radius, radius + row * math.sqrt(3) * radius), radius)
+        for row in range(3)
+        for k in range(3 - row)
+    ]
+    world.run(3.0, steps)
+    places = [disc.position for disc in discs]
+    world.run(3.0, steps)
+    moved = max((disc.position - place).length for disc, place in zip(discs, places, strict=True))
+    assert moved < 1e-3  # px: a fifth of a bed's depth at 2e-4
+    assert max(disc.velocity.length for disc in discs) < 1e-3  # px/s, of the 15 that a frame of gravity gives
