@@ -205,8 +205,10 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
     wrong = []
     if own["error"]:
         wrong.append(own["error"].splitlines()[0][:160])
-    if own["stderr"] and not native["stderr"]:
-        wrong.append(f"on standard error: {own['stderr'].strip().splitlines()[-1][:160]}")
+    known = set(native["stderr"].splitlines())
+    said = [line for line in own["stderr"].splitlines() if line.strip() and line not in known]
+    if said:
+        wrong.append(f"on standard error: {said[-1][:160]}")
     wrong += [f"{fact['name']}: {fact['measured']}" for fact in own["facts"] if not fact["holds"]]
     if "finite" not in own or "finite" not in native:
         return wrong
