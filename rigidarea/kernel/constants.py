@@ -25,7 +25,8 @@ REST_DAMPING = 1.0
 #: Tangential over normal stiffness. Cundall & Strack (1979) leave it free; 2/7 makes a sphere's two periods equal.
 TANGENT_STIFFNESS = 2.0 / 7.0
 #: First touch slower than what the load gives in so many substeps (or natural times, where they are longer) is rest.
-REST_KICKS = 2.0
+#: (A hair more than two: what has fallen from rest for two is as fast as that exactly, and rounding would decide.)
+REST_KICKS = 2.0001
 #: Deeper (at first touch, or than before) than so many substeps' motion: put there, not come there. No impact then.
 MOST_ARRIVED = 2.0
 #: And by this fraction of the smaller one's smallest extent: less may be what a solve has left, and carries a load;

@@ -79,7 +79,7 @@ ROW = record(
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
         ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
-        ("put", "i4"),  # 1: somebody has put its bodies so deep: what takes them apart is no force on them
+        ("put", "i4"),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -293,8 +293,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             c = max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
-        row.put = r.placed == PLACED
-        row.theta = theta * (1.0 - row.alpha)
+        row.put = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
+        row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness

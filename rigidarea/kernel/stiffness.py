@@ -85,16 +85,16 @@ def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
 def carry(pair: Any, dt: float, most: float) -> None:
     """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it.
 
-    most: no load is more (force). What is jammed between walls presses as far as it is stiff: followed, that would be
-    stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved. Too soft, it goes half of the
-    way, in powers, to a tenth more than it must be; far too stiff, it softens slowly.
+    most: no load that it follows is more (force). What is jammed between walls presses as far as it is stiff: that
+    would be stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved. Too soft, it goes half
+    of the way, in powers, to a tenth more than it must be; far too stiff, it softens slowly.
     What joints hold overlapped presses back as much as it is stiff: if that does not take it apart it is left as it is.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
-        pressed = min(most, pair.carrying / dt)
+        pressed = pair.carrying / dt
         pair.load += dt / (dt + LOAD_TIME) * (pressed - pair.load)
-        wanted = max(pair.load, pair.least) / pair.area
-        pair.firm = max(wanted, pressed / pair.area)
+        wanted = max(min(most, pair.load), pair.least) / pair.area
+        pair.firm = max(wanted, min(most, pressed) / pair.area)
         k = pair.stiffness
         if wanted > k:
             pair.held = pair.held + 1.0 if pressed > HELD * pair.pressed else 0.0

@@ -35,10 +35,7 @@ def test_a_box_slides_over_butted_tiles(penetration, steps):
 
 @pytest.mark.parametrize("drop", [0.0, 0.05])
 def test_a_step_as_high_as_a_tenth_of_it_stops_a_box(drop):
-    """What is higher than a body sinks is a wall all the same, and so it is from a little above the lower ground.
-
-    It turns about the edge: of m v (1/2 - 1/10) about that over I = 1/6 + 0.5² + 0.4² it keeps 2.8 rad/s, 1.1 along.
-    """
+    """What is higher than a body sinks is a wall all the same, and so it is from a little above the lower ground."""
     space = pymunk.Space()
     space.gravity = 0, -G
     for left, right, top in ((-5, 1, 0.0), (1, 5, 0.1)):
@@ -50,13 +47,14 @@ def test_a_step_as_high_as_a_tenth_of_it_stops_a_box(drop):
     contact = ra.attach(space)
     contact.step(FRAME, 20)
     assert box.velocity.x < 2.0
+    assert box.position.x < 0.8  # 1.33 where nothing is in its way; it tips over the edge of 0.1
 
 
 @pytest.mark.parametrize("stiffness", [1e8, 1e12])
 def test_a_disc_in_a_groove_is_held_by_both_walls_from_the_first_frame(stiffness):
     """Spinning, one step a frame: its friction is that of both (the study's scene, by its own error).
 
-    A frame without the wall that bears less would be 0.07 off; a quarter of that is allowed.
+    A frame without one wall's would be 4e-3 off at least; what is left here is how deep it is put at first.
     """
     scene = get_scene("v_groove_spin")
     run = get_peer("rigidarea").build(scene, {"stiffness": stiffness, "steps": 1})
@@ -64,4 +62,4 @@ def test_a_disc_in_a_groove_is_held_by_both_walls_from_the_first_frame(stiffness
     slowing = 0.2 * 2 / 0.5 * G / (math.cos(math.radians(45)) * (1 + 0.2**2))
     for frame in range(1, 31):
         run.advance(1)
-        assert disc.angular_velocity == pytest.approx(20.0 - slowing * frame * FRAME, abs=0.02)
+        assert disc.angular_velocity == pytest.approx(20.0 - slowing * frame * FRAME, abs=30e-4)
