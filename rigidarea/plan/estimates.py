@@ -209,7 +209,10 @@ def modes_below(frequency: float, area: float, young: float, density: float) -> 
 
 
 def free_fall(gravity: Number, h: float, extent: Number) -> Number:
-    """How far a body falls in a substep in which nothing holds it yet, over s (dimensionless): g h²/(2 s)."""
+    """How far a body falls in a substep in which nothing holds it yet, over s (dimensionless): g h²/(2 s).
+
+    With h/2 for h, in the half drift before the first solve.
+    """
     return gravity * h * h / (2.0 * extent)
 
 
@@ -274,12 +277,13 @@ def pile_sag(gravity: Number, h: float, extent: Number, wanted: Number, sweeps: 
 CARRY = 3.0
 """Conjugate sweeps a layer: (2/pi) ln(100), which is 2.9 (dimensionless)."""
 LEAST_SWEEPS, LEAST_PILE_SWEEPS = 5, 10
-"""Of a body on a fixed one, whose normal forces at a face's two ends and friction answer to each other, and of a
-tower; and of a pile whose supports are shared, or of a body that tips from one end of its face to the other. The
-second is measured: with five sweeps an arch comes to rest a hundredth lower; with ten not."""
+"""Of a body on fixed ones, whose normal forces at a face's two ends and friction answer to each other, and of a
+tower; and of a pile whose supports are shared. The second is measured: with five sweeps an arch comes to rest a
+hundredth lower; with ten not."""
 LEAST_PILE_STEPS = 2
 """Substeps for a pile of three and more: what the first has met, the second answers. Measured: with one, an arch and
-five books over an edge may fall, and what slides over seams catches on one."""
+five books over an edge may fall. And for what slides over seams on a bed that gives less than it falls: with one, it is
+tilted at each."""
 SEAM = 3.0
 """So many times its depth a body is off after each seam that it slides over. Measured on tiles: 2.2 to 3, from one to
 64 substeps (dimensionless)."""

@@ -39,6 +39,7 @@ class Facts:
     )  # how many times its depth a flush body sinks: what it carries, how near its base's edge it stands
     rounded: Worst | None  # 1 where a round body slips against friction, else 0
     corner: Worst | None  # 1/extent of a body near its balance on a corner (1/length)
+    rocks: bool  # whether that one stands on its corner already, and does not tip from its face
     leaning: Worst | None  # 1/reach of a body that leans on one
     pile: Worst | None  # crossings/size of a body in a pile (1/length)
     crossings: float  # seams that a body slides over
@@ -66,13 +67,18 @@ class Facts:
     @property
     def least_sweeps(self) -> int:
         """With fewer sweeps its loads are not found."""
-        tips = self.corner is not None or self.leaning is not None
-        return est.LEAST_PILE_SWEEPS if tips or (self.piled and self.shared) else est.LEAST_SWEEPS
+        several = self.piled and self.shared and (self.tower > 1 or self.leaning is not None)
+        return est.LEAST_PILE_SWEEPS if several else est.LEAST_SWEEPS
 
     @property
     def least_steps(self) -> int:
-        """With fewer substeps it may fall, or catch on a seam."""
-        return est.LEAST_PILE_STEPS if self.tower > 2 or self.crossings > 1.0 else 1
+        """With fewer substeps it may fall."""
+        return est.LEAST_PILE_STEPS if self.tower > 2 else 1
+
+    @property
+    def seams(self) -> bool:
+        """Whether what slides does so over what does not move: on one tile it is held, while it comes to the next."""
+        return self.tower == 1 and self.crossings > 1.0
 
     @property
     def piled(self) -> bool:
@@ -127,6 +133,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         leans, np.maximum(seen.reach, extent), extent
     )  # by how much a ladder gives way is of its length
     leaning = _worst(1.0 / np.maximum(seen.reach, 1e-300), leans | (oblique & held & piled))
+    corner = _worst(1.0 / extent, corners & upright & ~held)
     rim = 0.5 * seen.spin * np.where(np.isfinite(seen.extent), seen.extent, 0.0)
     slips = np.abs(seen.speed - rim) > SLIP * np.maximum(seen.speed, rim)
     toppling = _worst(1.0 / np.maximum(seen.reach, 1e-300), corners)
@@ -141,7 +148,8 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         struck=falls_on,
         flat=_worst(carried, free & polygon & ~corners & (g > 0.0)),
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
-        corner=_worst(1.0 / extent, corners & upright & ~held),
+        corner=corner,
+        rocks=corner is not None and bool(turned[corner.body]),
         leaning=leaning,
         pile=_worst(crossings / size, piled),
         crossings=float(crossings[piled].max(initial=1.0)),
