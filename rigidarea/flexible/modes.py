@@ -269,10 +269,11 @@ def _reduce(
         if modes:
             geometric = stiffer
         else:
-            soft, soft_stretch = rows.T @ (first_modes / first_omega), spin @ first_modes / first_omega
+            soft = np.asarray(rows.T @ (first_modes / first_omega))
+            soft_stretch = spin @ first_modes / first_omega
             stiffer[0] -= np.eye(len(first_omega))
             tension = stiffer / np.outer(first_omega, first_omega)
     return Reduced(
         float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned), stretch, swell, geometric,
-        float(slowest), np.asarray(soft), soft_stretch, tension,
+        float(slowest), soft, soft_stretch, tension,
     )  # fmt: skip
