@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from ..outline import Outline
+from ..overlap import overlap
 from ..report import envelope
 from .crowds import CROWDS
 from .everyday_scenes import pit_of_discs
@@ -183,7 +184,8 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
     """One overlap query (µs) in a compiled loop, beside shapely's intersection with area and centroid.
 
     Processor time, the median of `repeats` rounds, each of which asks all pairs of both: a drift hits all alike.
-    Rows: pair, points_a, points_b, regions, query_us, shapely_us, area_error (relative, against shapely). Points are
+    Rows: pair, points_a, points_b, regions, query_us, call_us (of `rigidarea.overlap`, from Python), shapely_us,
+    area_error (relative, against shapely). Points are
     the ends of edges and arcs; shapely gets arcs sampled to a thousandth of half the extent (a disc: 72 points), as
     its users sample them.
     """
@@ -209,9 +211,15 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
             both = shapely.intersection(one, other)
             return both.area, *both.centroid.coords[0]
 
+        def asked(
+            one: Outline = a, other: Outline = b, place: tuple[float, float, float] = (x, y, angle)
+        ) -> Any:
+            return overlap(one, (0.0, 0.0, 0.0), other, place)
+
+        asked()  # its scratch memory is made once
         queries.append(query)
         areas.append(theirs()[0])
-        jobs += [query.time_us, partial(_us, theirs, 100)]
+        jobs += [query.time_us, partial(_us, asked, 1000), partial(_us, theirs, 100)]
         progress.step(name)
     times = median_times(jobs, repeats, patience_s=math.inf)
     rows = [
@@ -221,10 +229,13 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
             "points_b": sum(map(len, pairs[name][1].rings)),
             "regions": query.regions,
             "query_us": ours_us,
+            "call_us": call_us,
             "shapely_us": shapely_us,
             "area_error": abs(query.area / area - 1),
         }
-        for name, query, area, ours_us, shapely_us in zip(chosen, queries, areas, times[::2], times[1::2])
+        for name, query, area, ours_us, call_us, shapely_us in zip(
+            chosen, queries, areas, times[::3], times[1::3], times[2::3]
+        )
     ]
     return envelope("bench kernels", {"pairs": chosen, "repeats": repeats}, rows)
 

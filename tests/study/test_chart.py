@@ -207,7 +207,7 @@ def test_bench_kernels():
     """Areas agree with shapely to rounding; keys of design 7."""
     report = bench.kernels(["boxes", "gears"], repeats=1)
     for row in report["results"]:
-        assert {"pair", "points_a", "points_b", "query_us", "shapely_us"} <= set(row)
+        assert {"pair", "points_a", "points_b", "query_us", "call_us", "shapely_us"} <= set(row)
         assert row["area_error"] < 1e-9  # cancellation: areas of 1e-5 from coordinates of 1
         assert row["query_us"] > 0
 
