@@ -448,7 +448,7 @@ class Outline:
 # --- pymunk's shapes ---
 
 
-@lru_cache(maxsize=4096)  # outlines are immutable: ten thousand equal boxes share one
+@lru_cache(maxsize=512)  # outlines are immutable: ten thousand equal boxes share one
 def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance: float | None) -> Outline:
     """The convex polygon `vertices` (counter-clockwise; one: a disc, two: a capsule) grown by `radius`."""
     points = np.array(vertices)
@@ -465,7 +465,7 @@ def _rounded(vertices: tuple[tuple[float, float], ...], radius: float, tolerance
     return Outline.from_curve([ring], arcs=[arcs])
 
 
-@lru_cache(maxsize=4096)
+@lru_cache(maxsize=512)
 def _half_space(
     a: tuple[float, float], b: tuple[float, float], side: str, thickness: float | None
 ) -> Outline:

@@ -108,7 +108,7 @@ def test_curvatures_are_those_of_the_sides(
     pin = ra.Outline.circle(0.25)
     pool = _packed(outline, pin)
     work = new_work(64)
-    n, _ = overlap_of_outlines(pool, 0, Pose(0.0, 0.0, 1.0, 0.0), 1, _pose(place, "place"), work)
+    n, _ = overlap_of_outlines(pool, 0, Pose(0.0, 0.0, 1.0, 0.0), 1, Pose(*_pose(place, "place")), work)
     assert n == 1
     loop = work.loops[0]
     chord = math.hypot(loop["chord_x"], loop["chord_y"])
@@ -123,7 +123,7 @@ def test_a_corner_is_its_angle_spread_over_the_region() -> None:
     box = ra.Outline([(0, 0), (-1, 1), (-2, 0), (-1, -1)])
     disc = ra.Outline.circle(1e4, (1e4 - 0.01, 0.0))
     work = new_work(64)
-    place = _pose((0, 0, 0), "place")
+    place = Pose(*_pose((0, 0, 0), "place"))
     n, _ = overlap_of_outlines(_packed(box, disc), 0, place, 1, place, work)
     assert n == 1
     loop = work.loops[0]

@@ -37,6 +37,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--steps", type=int, default=1_000_000, metavar="N", help="of soak (default: %(default)s)"
     )
     parser.add_argument(
+        "--every",
+        type=int,
+        default=5,
+        metavar="N",
+        help="of soak: frames between two bodies, each of which lives for 150 (default: %(default)s)",
+    )
+    parser.add_argument(
         "--seed", type=int, default=0, metavar="N", help="of fuzz and soak (default: %(default)s)"
     )
     output_arguments(parser, Path("out") / "compat")
@@ -200,15 +207,17 @@ def _fuzz(arguments: argparse.Namespace) -> int:
 def _soak(arguments: argparse.Namespace) -> int:
     if arguments.steps < 10:
         raise ValueError(f"steps must be at least 10, got {arguments.steps}")
+    if arguments.every < 1:
+        raise ValueError(f"every must be at least 1, got {arguments.every}")
 
     def tell(row: dict[str, Any]) -> None:
         if arguments.json != "-":
             text = f"{row['steps']:9} steps, {row['bodies']:4} bodies, {row['resident_mb']:8.1f} MB"
             print(text, flush=True)
 
-    rows = soak(arguments.steps, arguments.seed, tell=tell)
+    rows = soak(arguments.steps, arguments.seed, tell=tell, every=arguments.every)
     grown = rows[-1]["resident_mb"] - rows[0]["resident_mb"]
-    settings = {"steps": arguments.steps, "seed": arguments.seed}
+    settings = {"steps": arguments.steps, "seed": arguments.seed, "every": arguments.every}
     write_json(envelope("compat soak", settings, rows, summary={"grown_mb": grown}), arguments.json)
     if arguments.json != "-":
         print(f"grown since the first {rows[0]['steps']}: {grown:+.1f} MB")

@@ -95,7 +95,9 @@ EXAMPLES: dict[str, Example] = {
             *drag(20, 1, _line((100, 450), (300, 500), 20)),
             *tap(60, "g"),
             Input(80, "key", "LSHIFT"),
-            *drag(80, 1, [(200, 100 + i) for i in range(5)]),
+            # aslant, as a hand would: straight down it makes a column of balls that natively stands on its tip, all
+            # at x = 200 to the last bit, and there is no telling who rests and who rolls
+            *drag(80, 1, [(200 + i, 100 + i) for i in range(5)]),
             Input(90, "key", "LSHIFT", False),
         ),
     ),
@@ -203,8 +205,10 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
     wrong = []
     if own["error"]:
         wrong.append(own["error"].splitlines()[0][:160])
-    if own["stderr"] and not native["stderr"]:
-        wrong.append(f"on standard error: {own['stderr'].strip().splitlines()[-1][:160]}")
+    known = set(native["stderr"].splitlines())
+    said = [line for line in own["stderr"].splitlines() if line.strip() and line not in known]
+    if said:
+        wrong.append(f"on standard error: {said[-1][:160]}")
     wrong += [f"{fact['name']}: {fact['measured']}" for fact in own["facts"] if not fact["holds"]]
     if "finite" not in own or "finite" not in native:
         return wrong

@@ -21,12 +21,19 @@ def resident_bytes() -> int:
 
 
 def soak(
-    steps: int, seed: int = 0, samples: int = 10, tell: Callable[[dict[str, Any]], None] | None = None
+    steps: int,
+    seed: int = 0,
+    samples: int = 10,
+    tell: Callable[[dict[str, Any]], None] | None = None,
+    every: int = 5,
 ) -> list[dict[str, Any]]:
     """So many steps of the fountain; after each of `samples` parts a row: `steps`, `resident_mb`, `bodies`.
 
-    tell: is shown each row as it comes.
+    tell: is shown each row as it comes. every: frames between two bodies, each of which lives for LIFE of them.
+    Raises ValueError for fewer than a step or a frame.
     """
+    if steps < 1 or every < 1:
+        raise ValueError(f"steps and every must be at least 1, got {steps} and {every}")
     draw = random.Random(seed)
     space = pymunk.Space()
     space.gravity = 0, -900
@@ -37,7 +44,7 @@ def soak(
     alive: list[tuple[int, pymunk.Body]] = []
     rows = []
     for step in range(steps):
-        if step % 5 == 0:
+        if step % every == 0:
             kind = draw.randrange(3)
             if kind == 0:
                 body = star.body(mass=1.0)

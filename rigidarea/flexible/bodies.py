@@ -21,9 +21,8 @@ from rigidarea.kernel.memory import array_at as compiled_array_at
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SIZES = (
-    7  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses
-)
+SIZES = 8  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses,
+# coordinates of ``tension``
 WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
 COUPLING = WORK + len(Work._fields)
 GEOMETRIC = COUPLING + 1
@@ -57,7 +56,8 @@ def table(
             if not array.flags.c_contiguous:
                 raise ValueError(f"{name} must be contiguous, got strides {array.strides}")
         row[:SIZES] = (
-            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s)
+            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s),
+            b.soft.shape[1],
         )  # fmt: skip
         row[SIZES:] = [array.ctypes.data for array in arrays]
     return out
@@ -67,7 +67,7 @@ def table(
 def boundary_at(bodies: Ints, i: int) -> Boundary:
     """Body i's boundary."""
     row = bodies[i]
-    n, f, t, m, c, s = row[0], row[1], row[2], row[3], row[4], row[5]
+    n, f, t, m, c, s, r = row[0], row[1], row[2], row[3], row[4], row[5], row[7]
     return Boundary(
         array_at(row[SIZES], (n, 2), np.float64),
         array_at(row[SIZES + 1], (n,), np.int64),
@@ -85,6 +85,9 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
         array_at(row[SIZES + 13], (c, c), np.float64),
         array_at(row[SIZES + 14], (f, 2), np.float64),
         array_at(row[SIZES + 15], (s,), np.float64),
+        array_at(row[SIZES + 16], (2 * f + 3, r), np.float64),
+        array_at(row[SIZES + 17], (r,), np.float64),
+        array_at(row[SIZES + 18], (3 if r > 0 else 0, r, r), np.float64),
     )
 
 
@@ -92,7 +95,7 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
 def work_at(bodies: Ints, i: int) -> Work:
     """Body i's work arrays."""
     row = bodies[i]
-    n, f, m = row[0], row[1], row[3]
+    n, f, m, r = row[0], row[1], row[3], row[7]
     return Work(
         array_at(row[WORK], (n, 2), np.float64),
         array_at(row[WORK + 1], (n,), np.int64),
@@ -112,6 +115,9 @@ def work_at(bodies: Ints, i: int) -> Work:
         array_at(row[WORK + 15], (f,), np.int64),
         array_at(row[WORK + 16], (f + 1,), np.int64),
         array_at(row[WORK + 17], (f, 2), np.float64),
+        array_at(row[WORK + 18], (1,), np.bool_),
+        array_at(row[WORK + 19], (r, 2 * r), np.float64),
+        array_at(row[WORK + 20], (3, r), np.float64),
     )
 
 

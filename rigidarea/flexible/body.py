@@ -96,7 +96,8 @@ def elastic_body(
         share.append((np.arange(len(fine)) % refine) / refine)
         first += len(fine) // refine
     carriers = (np.concatenate(low), np.concatenate(high), np.concatenate(share))
-    boundary = build(profile, carriers, body.modes, body.flexibility, body.swell)
+    soft = (body.soft, body.soft_stretch, body.tension)
+    boundary = build(profile, carriers, body.modes, body.flexibility, body.swell, soft)
     angle = keys.pop("angle", 0.0)
     c, s = np.cos(angle), np.sin(angle)
     x, y = keys.pop("position", (0.0, 0.0))

@@ -28,7 +28,8 @@ class Boundary(NamedTuple):
     half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
     rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
     not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
-    them beyond the modes (time² × length), or (0,).
+    them beyond the modes (time² × length), or (0,). soft (2 f + 3, r), soft_stretch (r,), tension (3, r, r): of a
+    compliant body that may spin, see ``tension``; r = 0 if there is none.
     """
 
     points: Array
@@ -47,6 +48,9 @@ class Boundary(NamedTuple):
     flexibility: Array
     nodes: Array
     swell: Array
+    soft: Array
+    soft_stretch: Array
+    tension: Array
 
 
 class Work(NamedTuple):
@@ -70,6 +74,9 @@ class Work(NamedTuple):
     slot_region: Ints  # (f,) that wrote it
     given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
     given_load: Array  # (f, 2) and by what, in their order
+    tight: NDArray[np.bool_]  # (1,) whether spin or the hub's force change the flexibility, see ``tension``
+    yielding: Array  # (r, 2 r) D in its right half
+    drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
 
 
 def _box(p: Array) -> Array:
@@ -89,10 +96,11 @@ def build(
     modes: Array | None = None,
     flexibility: Array | None = None,
     swell: Array | None = None,
+    soft: tuple[Array, Array, Array] | None = None,
 ) -> Boundary:
     """A boundary from rings of contact points; without ``carriers`` (low, high, share) each point is its own node.
 
-    FE nodes that no point lies on keep the body's origin as their place.
+    soft: the last three of ``Boundary``. FE nodes that no point lies on keep the body's origin as their place.
     """
     points = np.ascontiguousarray(np.vstack(rings), float)
     n = len(points)
@@ -162,21 +170,28 @@ def build(
     on_node = np.flatnonzero(np.asarray(share) == 0.0)
     nodes = np.zeros((f, 2))
     nodes[np.asarray(low, np.int64)[on_node]] = points[on_node]
+    psi, h, tension = (
+        (np.zeros((2 * f + 3, 0)), np.zeros(0), np.zeros((0, 0, 0)))
+        if soft is None or len(soft[1]) == 0
+        else soft
+    )
     return Boundary(
         points, nxt, prv, ring,
         np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
         np.array(centre), np.array(radius), np.array(left), np.array(right), np.array(box), modes,
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
         nodes, np.zeros(0) if swell is None else np.ascontiguousarray(swell, float),
+        np.ascontiguousarray(psi, float), np.ascontiguousarray(h, float), np.ascontiguousarray(tension, float),
     )  # fmt: skip
 
 
 def workspace(b: Boundary) -> Work:
     """Scratch arrays for one body."""
-    n, f = len(b.points), (len(b.modes) - 3) // 2
+    n, f, r = len(b.points), (len(b.modes) - 3) // 2, b.soft.shape[1]
     return Work(
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
-        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)),
+        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(1, bool), np.zeros((r, 2 * r)),
+        np.zeros((3, r)),
     )  # fmt: skip

@@ -36,6 +36,7 @@ from rigidarea.flexible.dense import dot, eliminate
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
+from rigidarea.flexible.tension import follow, pull
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -231,6 +232,8 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
                 old -= w.hub_load[c] * (ex * b.flexibility[row, h + c] + ey * b.flexibility[row + 1, h + c])
         if len(b.swell) > 0:
             old -= w.spin[0] * (ex * b.swell[row] + ey * b.swell[row + 1])
+        if w.tight[0]:
+            old -= follow(b, w, 1, row, ex, ey)
         buf.stale[i] = -old if static else 0.0
         buf.shift[i] = -dot(along, free)
     for i in range(n):
@@ -239,6 +242,8 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
         row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
         for c in range(m):
             give[c] = buf.modal[i, c] * w.mobility[c]
+        if w.tight[0]:
+            pull(b, w, row, ex, ey)
         for j in range(i + 1):
             if s.side[j] != body:
                 continue
@@ -247,6 +252,8 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
                 u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
                 top, low = b.flexibility[row], b.flexibility[row + 1]
                 moved = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)
+                if w.tight[0]:
+                    moved += follow(b, w, 2, u, ux, uy)
                 buf.stale[i] += moved * s.force[j]
                 if j != i:
                     buf.stale[j] += moved * s.force[i]
@@ -266,10 +273,14 @@ def hub_moves(
     h, row = len(b.modes) - 3, 2 * node
     for m in range(len(give)):
         give[m] = modal[m] * w.mobility[m]
+    if w.tight[0]:
+        pull(b, w, row, ex, ey)
     for k in range(3):
         c = 0.0
         if b.flexibility.shape[0] > 0:
             c = ex * b.flexibility[row, h + k] + ey * b.flexibility[row + 1, h + k]
+        if w.tight[0]:
+            c += dot(b.soft[h + k], w.drawn[2])
         out[k] = c + dot(give, b.modes[h + k])
     x, y = out[0], out[1]
     out[0], out[1] = pose[2] * x - pose[3] * y, pose[3] * x + pose[2] * y

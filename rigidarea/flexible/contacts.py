@@ -10,6 +10,7 @@ from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
 from rigidarea.flexible.search import NEAR, keep, narrow
+from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import entry, kernel
 
 #: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
@@ -90,6 +91,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
     _bend(bodies, sy, buf, q)
     for b in range(len(sy.mass)):
         clear_loads(work_at(bodies, b))
+        draw(boundary_at(bodies, b), work_at(bodies, b))
     total = 0
     for p in range(len(pairs)):
         ia, ib = pairs[p, 0], pairs[p, 1]

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.dense import dot
+from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -24,7 +25,7 @@ def prescribed(drive: Array, t: float) -> float:
 
 @kernel
 def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
-    """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin."""
+    """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin (drawn)."""
     n = b.modes.shape[0] - 3 + row
     u = dot(b.modes[n], modal)
     if b.flexibility.shape[0] > 0:
@@ -36,6 +37,8 @@ def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
             u += c[len(c) - 3 + k] * w.hub_load[k]
     if len(b.swell) > 0:
         u += b.swell[n] * w.spin[0]
+    if w.tight[0]:
+        u += dot(b.soft[n], w.drawn[0])
     return u
 
 
@@ -57,6 +60,7 @@ class Hub(NamedTuple):
 @kernel
 def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
     """The hub of body b in the present state."""
+    draw(body, w)
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s, q = buf.pose[b, 2], buf.pose[b, 3], state.q[lo:hi]
     x, y = sy.hub[b, 0] + hub_displacement(body, w, q, 0), sy.hub[b, 1] + hub_displacement(body, w, q, 1)

@@ -31,6 +31,8 @@ from rigidarea.flexible.mesh import Mesh
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+SOFT = 8  # modes of a compliant body that spin stiffens: a beam's tip at half its first frequency yields as with 24, to
+# 0.1 % (tests/flexible/test_spin.py)
 BLOCK = 32  # right-hand sides solved at once: more cost memory, and time as they leave the processor cache
 
 
@@ -43,7 +45,9 @@ class Reduced:
     moves by the centrifugal forces of unit angular velocity that the modes leave out (length × time²). geometric (3,
     m, m):
     stiffness of the stress by those forces, and by a unit force on the hub along x and y; (0, m, m) for a clamped body
-    and without modes. slowest: the first elastic angular frequency, 0 for a rigid body.
+    and without modes. slowest: the first elastic angular frequency, 0 for a rigid body. soft (i, r), soft_stretch (r,),
+    tension (3, r, r): modes, stretch and geometric stiffness of the first r = SOFT modes over their frequencies, of a
+    compliant body that is not clamped (``tension``); else r = 0.
     """
 
     mass: float
@@ -57,6 +61,9 @@ class Reduced:
     swell: Array
     geometric: Array
     slowest: float
+    soft: Array
+    soft_stretch: Array
+    tension: Array
 
 
 def reduce(
@@ -230,15 +237,17 @@ def _reduce(
     n, f = 2 * len(mass), 2 * len(nodes)
     if not flexible:
         return Reduced(float(mass.sum()), inertia, centre, np.zeros(0), np.zeros((f + 3, 0)), np.zeros((0, 0)),
-                       np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), 0.0)  # fmt: skip
+                       np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), 0.0, np.zeros((f + 3, 0)),
+                       np.zeros(0), np.zeros((0, 0, 0)))  # fmt: skip
     # interface displacements = rowsᵀ u, loads on the nodes = rows f
     pick = (2 * nodes[:, None] + np.arange(2)).ravel()
     hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
     boundary = sp.csc_array((np.ones(f), (pick, np.arange(f))), shape=(n, f))
     rows = sp.hstack([boundary, sp.csc_array(hubs)]).tocsc()
     response = elastic(mesh, material, clamped, smooth)
-    phi, omega = response.modes(modes) if modes else (np.zeros((n, 0)), np.zeros(0))
-    slowest = omega[0] if modes else response.modes(1)[1][0]
+    first_modes, first_omega = response.modes(modes or min(SOFT if clamped is None else 1, n - 3))
+    slowest = first_omega[0]
+    phi, omega = first_modes[:, :modes], first_omega[:modes]
     at = np.asarray(rows.T @ phi)
     c = response.between(rows)
     for first in range(0, f + 3, BLOCK):
@@ -251,15 +260,20 @@ def _reduce(
     spin = m2 * (mesh.points - centre).ravel()
     stretch = spin @ phi
     swell, geometric = np.zeros(0), np.zeros((0, modes, modes))
+    soft, soft_stretch, tension = np.zeros((f + 3, 0)), np.zeros(0), np.zeros((0, 0, 0))
     if clamped is None:
         tense = response(np.column_stack([spin, hubs[:, :2]]))
         swell = rows.T @ tense[:, 0] - (at / omega**2) @ stretch
+        tensions = [geometric_stiffness(mesh, material, stress(mesh, material, u, smooth)) for u in tense.T]
+        stiffer = np.array([first_modes.T @ (s @ first_modes) for s in tensions])
         if modes:
-            tensions = [
-                geometric_stiffness(mesh, material, stress(mesh, material, u, smooth)) for u in tense.T
-            ]
-            geometric = np.array([phi.T @ (s @ phi) for s in tensions])
+            geometric = stiffer
+        else:
+            soft = np.asarray(rows.T @ (first_modes / first_omega))
+            soft_stretch = spin @ first_modes / first_omega
+            stiffer[0] -= np.eye(len(first_omega))
+            tension = stiffer / np.outer(first_omega, first_omega)
     return Reduced(
         float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned), stretch, swell, geometric,
-        float(slowest),
+        float(slowest), soft, soft_stretch, tension,
     )  # fmt: skip

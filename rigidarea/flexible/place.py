@@ -48,6 +48,9 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
         row, f = b.swell[2 * first : 2 * end], w.spin[0]
         for i in range(len(u)):
             u[i] += row[i] * f
+    if w.tight[0]:
+        for i in range(len(u)):
+            u[i] += dot(b.soft[2 * first + i], w.drawn[0])
 
 
 @kernel

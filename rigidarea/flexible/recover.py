@@ -4,6 +4,7 @@ The reduced state is modes q, loads f on boundary nodes, the hub's load and the 
 
     u = Φ q + C f + ω² s,
 
+(and, in a compliant body, what spin changes of C: ``tension``)
 with all rows of Φ and C where the stepper has those of the interface: one sparse factorisation of the body's own
 stiffness, made when first asked for, gives C f as the static response less what the modes have of it.
 """
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 from rigidarea.flexible.element import Material, lumped_mass, stress, von_mises
 from rigidarea.flexible.mesh import Mesh
 from rigidarea.flexible.modes import Flexibility, Reduced, elastic, hub_rows
+from rigidarea.flexible.tension import matrix
 
 Array = NDArray[np.float64]
 
@@ -47,6 +49,15 @@ class Shape:
         """All rows of the modes (2 n, m), from their frequencies: with the signs that the reduction has."""
         m = len(self.reduced.frequency)
         return self._response.modes(m)[0] if m else np.zeros((2 * len(self.mesh.points), 0))
+
+    @cached_property
+    def _soft(self) -> Array:
+        """All rows of the modes that spin stiffens, over their frequencies (2 n, r)."""
+        r = len(self.reduced.soft_stretch)
+        if r == 0:
+            return np.zeros((2 * len(self.mesh.points), 0))
+        phi, omega = self._response.modes(r)
+        return phi / omega
 
     @cached_property
     def _nodes(self) -> NDArray[np.int64]:
@@ -81,6 +92,10 @@ class Shape:
         u = self._response(full[:, None])[:, 0]
         phi = self._modes
         u = u - phi @ (phi.T @ full / self.reduced.frequency**2) + phi @ modal
+        r = len(self.reduced.soft_stretch)
+        out = np.zeros((r, 2 * r))
+        if r and matrix(self.reduced.tension, float(spin) ** 2, float(hub[0]), float(hub[1]), out):
+            u = u + self._soft @ (out[:, r:] @ (self._soft.T @ full))
         return u.reshape(-1, 2)
 
     def stress(self, u: Array) -> Array:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.hub import direction, prescribed
+from rigidarea.flexible.tension import between
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -125,7 +126,10 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
             if body.flexibility.shape[0] > 0:
                 for i in range(3):
                     for j in range(3):
-                        value += e[i] * body.flexibility[n - 3 + i, n - 3 + j] * d[j]
+                        part = body.flexibility[n - 3 + i, n - 3 + j]
+                        if w.tight[0]:
+                            part += between(body, w, n - 3 + i, n - 3 + j)
+                        value += e[i] * part * d[j]
             for j in range(hi - lo):
                 pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
                 pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]

@@ -8,6 +8,7 @@ from rigidarea.flexible.hub import hub_displacement, hub_rate
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
+from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import entry, kernel
 
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
@@ -57,6 +58,7 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
             row[at + i] = state.x[b, i]
             row[at + 3 + i] = state.v[b, i]
         body, w = boundary_at(bodies, b), work_at(bodies, b)
+        draw(body, w)
         row[at + 6] = state.x[b, 2] + hub_displacement(body, w, state.q[lo:hi], 2)
         row[at + 7] = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
         at += BODY

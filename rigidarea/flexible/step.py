@@ -26,6 +26,7 @@ from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_nodes
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
+from rigidarea.flexible.tension import tighten
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -177,6 +178,8 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     _predict(state, scheme)
     for b in range(count):
         w = work_at(bodies, b)
+        w.spin[0] = state.v[b, 2] ** 2
+        tighten(boundary_at(bodies, b), w)
         for i in range(sy.first[b], sy.first[b + 1]):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - sy.first[b]] = 1.0 / stiffness

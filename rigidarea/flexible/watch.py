@@ -26,7 +26,7 @@ def watch(bodies: Sequence[Any], size: Array, deflection: Array, spin: Array) ->
 
     bodies: ``integrate.Body``; size (b,): their largest radii; deflection (b,): the largest of their boundaries, by
     contact loads and modes; spin (b,): the largest angular velocity of their frames. Stress stiffening is in the modal
-    level (``frame``); the compliant level has the growth by spin, but stays as stiff as at rest.
+    level (``frame``) and in the compliant one (``tension``); a body that was made without it is told of.
     """
     for i, b in enumerate(bodies):
         if b.young == 0.0:
@@ -39,11 +39,11 @@ def watch(bodies: Sequence[Any], size: Array, deflection: Array, spin: Array) ->
                 LinearityWarning,
                 stacklevel=3,
             )
-        stiffened = b.geometric is not None and len(b.geometric) > 0
+        stiffened = (b.geometric is not None and len(b.geometric) > 0) or len(b.boundary.tension) > 0
         if b.slowest > 0.0 and not stiffened and spin[i] > SPIN * b.slowest:
             warnings.warn(
                 f"body {i} spun at {spin[i]:.4g} rad/time, {spin[i] / b.slowest:.3g} of its first elastic frequency:"
-                f" what tension does to its stiffness is left out, expected at most {SPIN:g}; level='modal' has it",
+                f" what tension does to its stiffness is left out, expected at most {SPIN:g}; elastic_body has it",
                 LinearityWarning,
                 stacklevel=3,
             )

@@ -204,17 +204,16 @@ def circle_circle(
     d = math.sqrt(dx * dx + dy * dy)
     if d == 0.0:
         return 1.0, 0.0, ax, ay, ax, ay
-    inverse = 1.0 / d
-    dx *= inverse
-    dy *= inverse
+    dx /= d
+    dy /= d
     heron = ((a + b) - d) * (d - (a - b)) * (d + (a - b)) * (d + (a + b))
-    half = 0.5 * math.sqrt(max(0.0, heron)) * inverse
+    half = math.sqrt(max(0.0, heron)) / (2.0 * d)
     if a <= b:  # from the smaller circle, whose rounding is less
-        foot = min(a, max(-a, 0.5 * (d - (b - a) * (a + b) * inverse)))
+        foot = min(a, max(-a, 0.5 * (d - (b - a) * (a + b) / d)))
         fx = ax + foot * dx
         fy = ay + foot * dy
     else:
-        foot = min(b, max(-b, 0.5 * (d - (a - b) * (a + b) * inverse)))
+        foot = min(b, max(-b, 0.5 * (d - (a - b) * (a + b) / d)))
         fx = bx - foot * dx
         fy = by - foot * dy
     return dx, dy, fx + half * dy, fy - half * dx, fx - half * dy, fy + half * dx

@@ -79,9 +79,9 @@ GAINED = 1.005
 LEFT = 0.1
 MOVED = 0.003
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
-SETTLED = 1e-3
+SETTLED = 5e-3
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
-CALM = 0.01
+CALM = 0.02
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

@@ -259,3 +259,93 @@ def test_functions_set_back_are_pymunks_own_again():
             space.step(DT)
         places.append((*body.position, body.angle, *body.velocity))
     assert places[0] == places[1]
+
+
+def test_what_is_jammed_grows_no_stiffer_than_all_that_pushes():
+    """A disc a hair too wide for its slot, a heap on it: no contact bears more than the weight of all, and all rest.
+
+    (Seen in pymunk's `index_video`: a disc of 8 px between a letter's strokes pressed with 1e11, and shook the heap.)
+    """
+    space = space_with(gravity=(0, -900))
+    for side in (-1, 1):  # a slot of 15.98, and a funnel above it
+        for a, b in (((8.99, -60), (8.99, 0)), ((8.99, 0), (80, 60)), ((80, 60), (80, 400))):
+            wall = pymunk.Segment(space.static_body, (side * a[0], a[1]), (side * b[0], b[1]), 1)
+            wall.friction = 0.5
+            space.add(wall)
+    bodies = []
+    for i in range(20):
+        body, shape = disc((0.7 * (i % 3) if i else 0, 9 + 17 * i), radius=8, mass=3)
+        space.add(body, shape)
+        bodies.append(body)
+    contact = ra.attach(space)
+    for i in range(600):
+        space.step(DT)
+        if i > 540:
+            assert max(b.velocity.length for b in bodies) < 10
+    weight = 20 * 3 * 900
+    assert max(contact.regions["force"]) < 2 * weight
+
+
+def test_what_a_joint_holds_overlapped_is_turned_by_nothing():
+    """A flipper on a wall's end, as in pymunk's `flipper`: it swings on its spring as if the wall were not there."""
+    space = space_with(gravity=(0, 900))  # y points down in that example
+    corners = [(20, -20), (-120, 0), (20, 20)]
+    moment, rest, stiffness, damping = pymunk.moment_for_poly(100, corners), 0.15, 2e7, 9e5
+    flipper, post = pymunk.Body(100, moment), pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    flipper.position = post.position = 450, 500
+    space.add(flipper, pymunk.Poly(flipper, corners))
+    space.add(pymunk.PivotJoint(flipper, post, (450, 500)))
+    space.add(pymunk.DampedRotarySpring(flipper, post, rest, stiffness, damping))
+    space.add(pymunk.Segment(space.static_body, (450, 500), (550, 50), 1))
+    ra.attach(space)
+    angle = speed = 0.0
+    for _ in range(60):
+        for _ in range(5):
+            space.step(DT / 5)
+        for _ in range(1000):  # the spring alone
+            speed += DT / 1000 * (stiffness * (rest - angle) - damping * speed) / moment
+            angle += DT / 1000 * speed
+        assert flipper.angle == pytest.approx(angle, abs=0.04)  # a quarter of the spring's rest angle
+
+
+@pytest.mark.parametrize("friction", [0.0, 0.5])
+def test_a_blow_moves_what_joints_hold_as_far_as_they_let_it(friction):
+    """An arrow that sticks, and one that is shot at it, heard by a callback: it waits a frame, and nothing turns.
+
+    (Seen: 1.8 rad within the frame of the blow; where a blow is put right in time, joints count as well.)
+    """
+    points = [(-30, 0), (0, 3), (10, 0), (0, -3)]
+    target, one, two = (
+        pymunk.Body(body_type=pymunk.Body.KINEMATIC),
+        pymunk.Body(12, 885),
+        pymunk.Body(12, 885),
+    )
+    target.position = 300, 200
+    one.position, one.angle = (305.5, 238.3), -0.54
+    two.position, two.angle, two.velocity = (261, 279), -0.98, (620, -730)
+    space = space_with(target, one, two, gravity=(0, 1000))
+    for body in (one, two):
+        shape = pymunk.Poly(body, points)
+        shape.friction = friction
+        space.add(shape)
+    space.add(pymunk.PivotJoint(one, target, (300, 230)), pymunk.GearJoint(one, target, -one.angle, 1))
+    heard = []
+    space.on_collision(0, 0, post_solve=lambda arbiter, space, data: heard.append(arbiter.total_impulse))
+    ra.attach(space)
+    for _ in range(8):
+        space.step(DT)
+        assert one.angle == pytest.approx(-0.54, abs=0.05)
+    assert heard
+
+
+def test_no_bounce_gives_back_more_than_it_was_given():
+    """Elasticities of 1.5 and 0.95, as of `flipper`'s bumpers: natively 1.4 of the speed, here all of it."""
+    body, shape = disc((0, 60), velocity=(0, -300), elasticity=1.5)
+    space = space_with(body, shape)
+    floor = pymunk.Segment(space.static_body, (-500, 0), (500, 0), 5)
+    floor.elasticity = 0.95
+    space.add(floor)
+    ra.attach(space)
+    for _ in range(20):
+        space.step(DT)
+    assert body.velocity.y == pytest.approx(300, rel=0.002)
