@@ -167,6 +167,7 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
             s.broken = i if s.broken < 0 else s.broken
             continue
+        body.thrust = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
         function = words(address + s.body_velocity_func, 1)[0]
         whole = (function != s.velocity_func and function != s.velocity_func_again) or s.explicit
         body.gain_x = 0.0
@@ -573,7 +574,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     # What hangs in a joint is never calm: it is held the better the shorter the step.
     for joint in joints_of(s):
         for i in (joint.a, joint.b):
-            if joint.taken and i >= 0:
+            if joint.taken and i >= 0 and tables.bodies[i].mobile:
                 tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
         _everybody(s, space)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
+from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, STEP_AHEAD, TURNS
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
 from .patch import patch_of
@@ -36,7 +36,7 @@ def touch(
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
-    Nor if its direction was another there: by an angle whose cosine is less than `turn`.
+    Nor if its direction was another there: by an angle whose cosine is no more than `turn` (0: whatever it was).
 
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
     u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
@@ -46,9 +46,7 @@ def touch(
     """
     come = back > 0.0
     region.back = back
-    nx = region.nx
-    ny = region.ny
-    for _ in range(3):
+    for look in range(3):
         d = region.depth
         u = closing(region, a, b, 0.5)
         gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
@@ -79,8 +77,7 @@ def touch(
         if best < 0:
             return come
         patch = patch_of(pool, work, law, best, ia, ib, pose)
-        if turn > 0.0 and patch.nx * nx + patch.ny * ny <= turn:
-            turn_to(region, nx, ny)
+        if look == 0 and turn > 0.0 and patch.nx * region.nx + patch.ny * region.ny <= turn:
             return False
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
@@ -161,6 +158,8 @@ def goes_over(
     if u <= 0.0:
         return False
     ahead = max(h, 2.0 * height / u)
+    if ahead > STEP_AHEAD * h:
+        return False  # it gets there too slowly to be seen there: what gravity adds on the way is not solved
     pose = earlier(a, -ahead)
     n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
     least = np.inf
@@ -208,6 +207,10 @@ def enter(
         region.opened = 0
         region.first_speed = 0.0
         region.rest_depth = region.depth
+        region.l1 = 0.0  # what it bore, it bore in another direction
+        region.l2 = 0.0
+        region.lt = 0.0
+        region.spring = 0.0
         return
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, region, k, push)
@@ -216,7 +219,7 @@ def enter(
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
-        turn = TURNS if region.depth <= height else 0.0
+        turn = TURNS if back == 0.0 and region.depth <= height else 0.0
         touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0

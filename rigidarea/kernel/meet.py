@@ -236,7 +236,9 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         else:
             before = region.depth
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
+            hangs = a.calm < 0 or b.calm < 0  # in a joint, which may press it as deep as it was put
+            shallow = region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth
+            if shallow or (carried and not (hangs and region.placed == PLACED)):
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
@@ -362,7 +364,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     bx, by = centre_of(b, pose_b)
     there = _there(pool, work, regions, old, n, ia, pose_a) if seat else 0
     for k in range(n):
-        if there >> k & 1:
+        if seat and there >> k & 1:
             continue
         if sa.mirror >= 0 and length_on_first_edge(pool, ia, rel, A_EDGE, work, k) == 0.0:
             continue

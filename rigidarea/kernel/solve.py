@@ -442,13 +442,15 @@ def respond_explicitly(tables: Tables) -> None:
 def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
     """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries.
 
-    Nobody carries more than what pushes everybody, together; joints, which may press harder, are not known here.
+    Nobody carries more than what pushes everybody, and what moves everybody as it moves, together; joints, which may
+    press harder, are not known here.
     """
     most = 0.0
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         if body.stamp == frame and body.inverse_mass > 0.0:
-            most += max(law.gravity, math.hypot(body.gain_x, body.gain_y) / dt) / body.inverse_mass
+            changed = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
+            most += max(law.gravity, max(body.thrust, changed) / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i]]
         a = tables.bodies[tables.shapes[pair.a].body]

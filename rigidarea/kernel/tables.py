@@ -40,6 +40,7 @@ BODY = record(
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
         ("gain_w", "f8"),
+        ("thrust", "f8"),  # how much that changed its velocity, whoever did it: the user's functions too
         ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
@@ -344,6 +345,10 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.axis_x = 0.0
         pair.axis_y = 0.0
         pair.parted = -1
+        pair.waiting = -1
+        pair.held = 0.0
+        pair.pressed = 0.0
+        pair.bore_stamp = -1
         _enter(tables, a, b, p)
     return int(p)
 

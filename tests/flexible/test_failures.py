@@ -207,7 +207,7 @@ def test_an_error_names_pair_and_stiffness():
 
 
 def test_where_linear_elements_end_it_says_so():
-    """A rubber strip that bends by a tenth of its length; a ring that spins fast without the stiffness of tension."""
+    """A rubber strip that bends by a tenth of its length; a ring that spins fast without its tension's stiffness."""
     rubber = Material(1e6, 0.4, 1000.0, 0.01)
     strip, _ = elastic_body([np.array([[0, 0], [0.1, 0], [0.1, 0.005], [0, 0.005]])], 2.5e-3, rubber)
     ball = Body(build([circle(0.005, 400)]), 0.02, 1e-6, (0.05, 0.01005), velocity=(0.0, -1.0, 0.0))

@@ -1,4 +1,9 @@
-"""The gearbox's teeth beside quadratic triangles (T6, scikit-fem), fine on the teeth that count, coarse beyond them."""
+"""The gearbox's teeth beside quadratic triangles (T6, scikit-fem), fine on the teeth that count, coarse beyond them.
+
+How far the loaded wheel lags behind at the teeth's real stiffness: the oracle is the wheel's equilibrium under its
+torque, hubs held by their mean, by ``statics`` (Newton on Gauss points) on T6 condensed to the faces, not by the
+stepper. Ours: the compliant level's stepper, so slow that nothing swings.
+"""
 
 from __future__ import annotations
 
@@ -13,18 +18,35 @@ from skfem.models.elasticity import linear_elasticity
 
 from rigidarea.cases import gearbox as gb
 from rigidarea.flexible.body import elastic_body
+from rigidarea.flexible.boundary import build
+from rigidarea.flexible.integrate import Simulation
 from rigidarea.flexible.mesh import resample, triangulate
 from rigidarea.flexible.modes import hub_rows
-from rigidarea.flexible.statics import hub_fixed
+from rigidarea.flexible.statics import hub_fixed, solve
 
 COARSE = 1e-3  # m, away from the teeth that count
+K = 2e11  # N/m², near the teeth's own stiffness
+TORQUE = gb.DAMPER * gb.SPEED * gb.IDEAL  # N m, on the wheel
+BASE = gb.PITCHES[1] * np.cos(gb.ANGLE)
+SLOW = 100  # times slower than the case, under the same torque: the teeth then pass in 0.4 s, swings decay in 0.3 ms
+ANGLES = (
+    0.0,
+    0.2,
+    0.375,
+    0.5625,
+    0.6125,
+)  # of the pinion, in pitches: no tooth touches by the edge of its tip
 
 
 class Quadratic(NamedTuple):
-    """A gear of T6 elements: the near nodes (n, 2) of its outer ring, their degrees of freedom, and the stiffness with
-    the hub held, its size and factors."""
+    """A gear of T6 elements: its curve by length, nodes (n, 2) of that ring and where they are on it (n,), which of
+    them are near, their degrees of freedom, and the stiffness with the hub held, its size and factors."""
 
+    points: np.ndarray
+    total: np.ndarray
     nodes: np.ndarray
+    along: np.ndarray
+    near: np.ndarray
     dof: np.ndarray
     size: int
     solved: Any
@@ -83,7 +105,8 @@ def quadratic(outline, teeth, fine, pitches):
     near = np.abs(np.arctan2(*nodes.T[::-1])) < window
     dof = (2 * numbers(nodes[near])[:, None] + np.arange(2)).ravel()
     print(f"T6, {1e3 * fine:g} mm on the teeth: {len(at)} nodes")
-    return Quadratic(nodes[near], dof, system.shape[0], spl.splu(system))
+    along = np.stack([s, 0.5 * (s + np.append(s[1:], total[-1]))], 1).ravel()
+    return Quadratic(points, total, nodes, along, near, dof, system.shape[0], spl.splu(system))
 
 
 def land(points):
@@ -99,7 +122,7 @@ def test_a_tooth_pushed_at_its_tip():
     values = {}
     for fine in (3e-4, 1.5e-4):
         gear = quadratic(pinion, gb.TEETH[0], fine, 1.5)
-        nodes = gear.nodes
+        nodes = gear.nodes[gear.near]
         at = np.flatnonzero(land(nodes))
         at = at[np.argsort(nodes[at, 1])]
         assert len(at) % 2 == 1  # whole sides
@@ -125,3 +148,95 @@ def test_a_tooth_pushed_at_its_tip():
     print("T3, 0.6 mm, over T6 of 0.15 mm, by sides:", found)
     assert found[1] == pytest.approx(1.0, abs=0.06)
     assert found[2] == pytest.approx(1.0, abs=0.02)
+
+
+def boundary(gear, parts=4, points=4):
+    """What ``statics`` asks of a gear: its curve, ``points`` on each of ``parts`` a side, where the displacement is
+    that of the side's three nodes, by their quadratic shape functions; loads go to them by the same."""
+    c = np.hstack([gear.response(part) for part in np.array_split(np.eye(len(gear.dof)), 40, 1)])
+    sides, number = len(gear.nodes) // 2, np.cumsum(gear.near) - 1
+    ends = np.append(gear.along[2::2], gear.total[-1])
+    three = 2 * np.arange(sides)[:, None] + np.arange(3)
+    three[-1, 2] = 0
+    near = gear.near[three].all(1)
+    # the parts' nodes: of near sides, and one that does not move for all others
+    t = np.arange(parts) / parts
+    shape = np.stack([(1 - t) * (1 - 2 * t), 4 * t * (1 - t), t * (2 * t - 1)], 1)
+    place = np.full(sides * parts, near.sum() * parts)
+    on = np.repeat(near, parts)
+    place[on] = np.arange(on.sum())
+    rows = np.repeat(place[on], 3)
+    columns = number[np.repeat(three[near], parts, axis=0)].ravel()
+    values = np.tile(shape, (near.sum(), 1)).ravel()
+    q = sp.coo_array((values, (rows, columns)), shape=(near.sum() * parts, gear.near.sum()))
+    q = sp.kron(q, sp.eye_array(2)).tocsr()
+    f = on.sum() + 1
+    flexibility = np.zeros((2 * f + 3, 2 * f + 3))
+    flexibility[: 2 * f - 2, : 2 * f - 2] = q @ (q @ (0.5 * (c + c.T))).T
+    corners = gear.along[::2]
+    fine = (corners[:, None] + (ends - corners)[:, None] * t).ravel()
+    after = np.append(fine[1:], gear.total[-1])
+    s = fine[:, None] + (after - fine)[:, None] * np.arange(points) / points
+    share = np.tile(np.arange(points) / points, len(fine))
+    low, high = np.repeat(place, points), np.repeat(np.roll(place, -1), points)
+    return build([on_ring(gear.points, gear.total, s.ravel())], (low, high, share), None, flexibility)
+
+
+def at_rest(pinion, wheel, angles):
+    """Turn of the wheel beyond the ideal one, as a length on the line of action, in equilibrium at pinion angles."""
+    found = []
+    x = 4e-6
+    for phi in angles:
+        start = np.pi + np.pi / gb.TEETH[1] - phi * gb.IDEAL
+
+        def off(x, phi=phi, start=start):
+            pose = (gb.CENTRES, 0.0, start + x / BASE)
+            moment = solve(pinion, (0.0, 0.0, phi), wheel, pose, K, tolerance=1e-5, limit=200).moment
+            return (-moment - TORQUE) / BASE
+
+        x0, x1 = x, 1.02 * x
+        f0, f1 = off(x0), off(x1)
+        while abs(f1) > 1e-4 * TORQUE / BASE:
+            x0, f0, x1 = x1, f1, x1 - f1 * (x1 - x0) / (f1 - f0)
+            f1 = off(x1)
+        x = x1
+        found.append(x)
+    return np.array(found)
+
+
+def slowly(**keys):
+    """The same from the compliant level's stepper, over the third pitch."""
+    (a, _), (b, _) = gb.bodies("compliant", 0.6, refine=20, damper=SLOW * gb.DAMPER, **keys)
+    a.drive = (0.0, gb.SPEED / SLOW, 0.02)
+    start = b.angle
+    r = Simulation([a, b], k=K, margin=5e-5, rho=gb.RHO).run(3 * SLOW * gb.MESHING, 4e-4)
+    error = (r.hub[:, 1] - start + r.hub[:, 0] * gb.IDEAL) * BASE
+    third = r.t > 1.9 * SLOW * gb.MESHING
+    pitch = 2 * np.pi / gb.TEETH[0]
+    phase = np.mod(r.hub[third, 0], pitch)
+    order = np.argsort(phase)
+    return np.interp(pitch * np.array(ANGLES), phase[order], error[third][order], period=pitch)
+
+
+@pytest.mark.slow
+def test_how_far_a_loaded_wheel_lags_behind():
+    """Within 1 % of the oracle at every angle, at 0.6 mm; the oracle's own meshes differ by a fifth of that.
+
+    Where a tooth touches by the edge of its tip (0.7 to 0.75 of a pitch) the oracle does not converge: under a load on
+    a corner finite elements yield the more the finer they are. So nothing is said of the peak there.
+    """
+    found = {}
+    angles = 2 * np.pi / gb.TEETH[0] * np.array(ANGLES)
+    for fine, parts in ((4e-4, 4), (2e-4, 2)):
+        # the wheel stands turned round by half a pitch: one of its gaps is where the pinion's tooth is
+        gears = [
+            boundary(quadratic(o, z, fine, 1.6), parts) for o, z in zip(gb.outlines(), gb.TEETH, strict=True)
+        ]
+        found[fine] = at_rest(*gears, angles)
+    exact = found[2e-4]
+    print("T6, um:", {f: np.round(1e6 * v, 4) for f, v in found.items()})
+    assert found[4e-4] == pytest.approx(exact, rel=2e-3)
+    for sides in (1, 2):
+        ours = slowly(sides=sides)
+        print(f"0.6 mm, sides {sides}, um:", np.round(1e6 * ours, 4), "over T6:", np.round(ours / exact, 4))
+        assert ours == pytest.approx(exact, rel=0.01)

@@ -17,7 +17,7 @@ FRAME = 1 / 60
 def test_a_box_slides_over_butted_tiles(penetration, steps):
     """It has sunk, and the next tile shows it a side as high as that: no wall. Each of these was caught at a seam.
 
-    Smooth, so that nothing slows it: 1 % is for thirty seams, at each of which it tilts a little.
+    Smooth, so that nothing slows it: 1 % is for twenty seams, at each of which it tilts a little.
     """
     space = pymunk.Space()
     space.gravity = 0, -G
