@@ -28,13 +28,14 @@ def true(name: str, holds: bool, measured: object) -> Fact:
 
 
 def lowest(w: Watch, up: int, inside: Callable[[np.ndarray], np.ndarray]) -> float:
-    """The lowest place (up: which sign of y is up) that a dynamic body reached where inside(x)."""
+    """The lowest place (up: which sign of y is up) that a dynamic body reached where inside(x); NaN, which no fact holds of: none did."""
     dynamic = w.dynamic()
     ys = [
         up * frame.state[np.isin(frame.numbers, dynamic) & inside(frame.state[:, 0])][:, 1]
         for frame in w.frames
     ]
-    return float(np.min(np.concatenate([*ys, np.array([np.inf])])))
+    seen = np.concatenate(ys) if ys else np.zeros(0)
+    return float(np.min(seen)) if len(seen) else math.nan
 
 
 # --- balls and boxes on lines ---
@@ -48,7 +49,7 @@ def rolls_into_corner(first: tuple[float, float], up: int, slope: tuple[float, f
         x0, y0, x1, y1 = slope
         on = (path[:, 1] > x0) & (path[:, 1] < x1 - 30)
         line = y0 + (path[:, 1] - x0) * (y1 - y0) / (x1 - x0)
-        under = np.max(up * (line - path[:, 2])[on], initial=-math.inf)
+        under = np.max(up * (line - path[:, 2])[on]) if on.any() else math.nan
         return [
             within("the first body ends in the corner: x", path[-1, 1], first[0] - 5, first[0] + 5),
             within("and y", path[-1, 2], first[1] - 5, first[1] + 5),
@@ -379,7 +380,7 @@ def logo_holds(w: Watch) -> list[Fact]:
         within("bodies under the floor at a time", under, 0, 0),
         within("bodies", len(w.dynamic()), 100, 130),
         # 110 small balls come down on the letters, which are between y = 40 and 150
-        within("small balls that the letters hold up", sum(row[1] < 150 for row in small), 104, 110),
+        within("small balls that the letters hold up", sum(0 < row[1] < 150 for row in small), 104, 110),
         within("the first red ball has rolled off the floor, to x", red[-1, 1], -400, -100),
     ]
 
@@ -418,6 +419,11 @@ def lands_on_line(w: Watch) -> list[Fact]:
     on = (path[:, 1] > 30) & (path[:, 1] < 395)
     height = path[:, 2] - (280 + (path[:, 1] - 11) * (246 - 280) / 396)
     return [
-        within("its middle stays above the line", float(np.min(height[on], initial=math.inf)), 5, math.inf),
+        within(
+            "its middle stays above the line",
+            float(np.min(height[on])) if on.any() else math.nan,
+            5,
+            math.inf,
+        ),
         within("and it comes down on it", float(height[-1]), 10, 60),
     ]
