@@ -28,7 +28,10 @@ def true(name: str, holds: bool, measured: object) -> Fact:
 
 
 def lowest(w: Watch, up: int, inside: Callable[[np.ndarray], np.ndarray]) -> float:
-    """The lowest place (up: which sign of y is up) that a dynamic body reached where inside(x); NaN, which no fact holds of: none did."""
+    """The lowest place (up: which sign of y is up) that a dynamic body reached where inside(x).
+
+    NaN, of which no fact holds, where none did.
+    """
     dynamic = w.dynamic()
     ys = [
         up * frame.state[np.isin(frame.numbers, dynamic) & inside(frame.state[:, 0])][:, 1]
