@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, STEP_AHEAD, TURNS
+from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
 from .patch import patch_of
@@ -158,8 +158,8 @@ def goes_over(
     if u <= 0.0:
         return False
     ahead = max(h, 2.0 * height / u)
-    if ahead > STEP_AHEAD * h:
-        return False  # it gets there too slowly to be seen there: what gravity adds on the way is not solved
+    if 0.5 * law.gravity * ahead * ahead > height:
+        return False  # too slow to be seen there: what gravity adds on the way, and somebody carries, would be more
     pose = earlier(a, -ahead)
     n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
     least = np.inf

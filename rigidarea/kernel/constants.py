@@ -44,8 +44,6 @@ HIT = 0.05
 #: An edge of no more than so many times the depth at which a body lies is none to what slides over it: of the next of
 #: butted tiles. Twice that may be carried by one end of a face, and a sinking body is on its way there.
 STEP = 4.0
-#: What it is over is seen so many substeps ahead at the most.
-STEP_AHEAD = 4.0
 #: Cosine of the angle by which such a region's direction turns as it grows.
 TURNS = 0.7
 #: Fraction of the chord on which a concave outline lies (of a gear: a tooth's) that it may move by in a substep.

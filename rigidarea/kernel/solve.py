@@ -26,6 +26,7 @@ from .tables import (
     FIRST,
     FIXED,
     LAST,
+    LED,
     LIVE,
     MET,
     NEAR,
@@ -442,20 +443,20 @@ def respond_explicitly(tables: Tables) -> None:
 def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
     """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries.
 
-    Nobody carries more than what pushes everybody, and what moves everybody as it moves, together; joints, which may
-    press harder, are not known here.
+    Nobody carries more than what pushes everybody, together, but for who hangs in a joint or lies on a kinematic body:
+    those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
     """
     most = 0.0
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         if body.stamp == frame and body.inverse_mass > 0.0:
-            changed = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
-            most += max(law.gravity, max(body.thrust, changed) / dt) / body.inverse_mass
+            most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i]]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
-        carry(pair, dt, math.inf if a.calm < 0 or b.calm < 0 else most)
+        led = a.kind == LED or b.kind == LED
+        carry(pair, dt, math.inf if led or a.calm < 0 or b.calm < 0 else most)
 
 
 @kernel
