@@ -46,7 +46,9 @@ def touch(
     """
     come = back > 0.0
     region.back = back
-    for look in range(3):
+    nx = region.nx
+    ny = region.ny
+    for _ in range(3):
         d = region.depth
         u = closing(region, a, b, 0.5)
         gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
@@ -77,7 +79,8 @@ def touch(
         if best < 0:
             return come
         patch = patch_of(pool, work, law, best, ia, ib, pose)
-        if look == 0 and turn > 0.0 and patch.nx * region.nx + patch.ny * region.ny <= turn:
+        if turn > 0.0 and patch.nx * nx + patch.ny * ny <= turn:
+            turn_to(region, nx, ny)
             return False
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
