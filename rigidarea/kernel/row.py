@@ -451,7 +451,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
     normal = row.l1 + row.l2
     if r.mode == NEARING:
-        r.spring = row.lt / h if r.l1 > 0.0 else 0.0  # what has gripped goes on gripping
+        r.spring = row.lt / h  # what grips will go on gripping
     elif r.mode == REST and row.friction > 0.0:
         slip = slipping(r, a, b, 0.0) - row.tt + row.slid
         most = row.friction * normal / h
