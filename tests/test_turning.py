@@ -87,8 +87,23 @@ def test_a_disc_on_a_flat_leaves_no_gap() -> None:
     r["nx"], r["ny"], r["curve_b"], r["lean_b"] = 0.0, 1.0, 4.0, -0.25
     a, b = bodies(rng)
     a["vx"] = a["vy"] = a["w"] = 0.0
-    b["inverse_mass"], b["inverse_moment"] = 1.0, 8.0
     assert abs(turning_speed(r, a, b, 0.01)) < 1e-15
+
+
+def test_what_the_substep_has_given_turns_nothing() -> None:
+    """Round corners of two bodies, with a kick and without: contacts stop it, or what lies still turned for ever."""
+    rng = np.random.default_rng(3)
+    r = np.zeros(1, REGION)[0]
+    r["nx"], r["ny"], r["curve_a"], r["curve_b"], r["lean_a"], r["lean_b"] = 0.6, 0.8, 2.0, 4.0, 0.7, -0.4
+    a, b = bodies(rng)
+    alone = turning_speed(r, a, b, 0.01)
+    assert abs(alone) > 1e-4
+    for body in (a, b):
+        body["kick_x"], body["kick_y"], body["kick_w"] = rng.normal(size=3)
+        body["vx"] += body["kick_x"]
+        body["vy"] += body["kick_y"]
+        body["w"] += body["kick_w"]
+    assert turning_speed(r, a, b, 0.01) == pytest.approx(alone, rel=1e-12)  # rounding of the sums
 
 
 @pytest.mark.parametrize(
