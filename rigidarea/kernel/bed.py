@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +12,8 @@ from .jit import njit
 from .meet import pose_of
 from .place import overlap_of_outlines
 from .pool import Pool
-from .tables import LAW_AREA, SUBSTEP, Law, Tables
+from .region import inverse_mass, region_stiffness
+from .tables import LAW_AREA, STRUCK, SUBSTEP, Law, Tables
 from .work import Work
 
 #: Nodes and weights of Gauss's rule for `bed_energy` between two cuts: exact to rounding there.
@@ -86,6 +88,22 @@ def bed_energy(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: flo
 
 
 @njit
+def _borne(law: Law, r: Any, a: Any, b: Any) -> float:
+    """The part of a region's elastic energy that comes back.
+
+    All, where the step follows the contact. Else no more than belongs to the force that it bears (a spring's, as its
+    square): a bounce shorter than the step has none, and what it leaves overlapped opens without giving speed.
+    """
+    if r.mode >= STRUCK:
+        return 0.0
+    elastic = r.stiffness * r.area if law.law == LAW_AREA else r.stiffness * r.area * r.chord / law.length
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * r.step * r.step
+    if phase2 <= law.followed or r.force >= elastic:
+        return 1.0
+    return float((r.force / elastic) ** 2)
+
+
+@njit
 def stored(pool: Pool, tables: Tables, work: Work, law: Law) -> float:
     """Elastic energy of all pairs that had a region in the last substep, friction springs included (force length).
 
@@ -106,6 +124,10 @@ def stored(pool: Pool, tables: Tables, work: Work, law: Law) -> float:
         r = pair.head
         while r >= 0:
             region = tables.regions[r]
+            r = region.next
+            share = _borne(law, region, tables.bodies[sa.body], tables.bodies[sb.body])
+            if share == 0.0:
+                continue
             if region.tangent_stiffness > 0.0:
                 total += 0.5 * region.spring * region.spring / region.tangent_stiffness
             best = -1
@@ -122,11 +144,10 @@ def stored(pool: Pool, tables: Tables, work: Work, law: Law) -> float:
             if best >= 0:
                 loop = work.loops[best]
                 if law.law != LAW_AREA:
-                    total += 0.5 * region.stiffness * loop.area * loop.area / law.length
+                    total += share * 0.5 * region.stiffness * loop.area * loop.area / law.length
                 else:
                     nx = a.c * region.nx + a.s * region.ny
                     ny = a.c * region.ny - a.s * region.nx
                     energy = bed_energy(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
-                    total += region.stiffness * energy
-            r = region.next
+                    total += share * region.stiffness * energy
     return total
