@@ -521,7 +521,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables, g[0], g[1])
-    turn = next_turn(tables, FINEST)
+    turn = next_turn(tables, FINEST, g[0], g[1])
     taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
@@ -534,7 +534,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         load_tables(s).counters[SUBSTEP] = last - turn
         if not _substeps(s, space, dt, turn):
             return 0
-        turn = next_turn(load_tables(s), turn)
+        turn = next_turn(load_tables(s), turn, g[0], g[1])
     if load_tables(s).counters[MET] and _again(
         s
     ):  # (where tables have grown, the next frame finds what has met)

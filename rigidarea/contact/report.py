@@ -41,11 +41,14 @@ def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:
     out = np.zeros(len(live), REGIONS)
     row: Any
     for row, region, pair in zip(out, live, tables.pairs[live["pair"]]):
-        for side in ("a", "b"):
-            shape = shapes[int(tables.shapes[pair[side]]["ident"])]
+        ident = [int(tables.shapes[pair[side]]["ident"]) for side in ("a", "b")]
+        # A is who was added first; in the tables it goes by place
+        sign = 1.0 if ident[0] < ident[1] else -1.0
+        for side, which in zip(("a", "b"), sorted(ident)):
+            shape = shapes[which]
             row[f"shape_{side}"], row[f"body_{side}"] = shape, shape.body
         row["centroid"] = region["x"], region["y"]
-        row["direction"] = region["nx"], region["ny"]
+        row["direction"] = sign * region["nx"], sign * region["ny"]
     for name in ("area", "chord", "stiffness", "force", "friction", "speed", "slip"):
         out[name] = live[name]
     return out

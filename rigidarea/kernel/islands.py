@@ -16,7 +16,7 @@ import math
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .jit import kernel
 from .pool import Pool
-from .solve import arrange, bound, turn_of
+from .solve import arrange, bound, line_up, turn_of
 from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TURN, TURNED, Law, Tables
 
 #: More substeps than any turn has.
@@ -75,9 +75,11 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
     """All bodies and pairs in one turn; (gx, gy) gravity, by which pairs are sorted."""
     counters = tables.counters
     counters[TURN] = 0
-    counters[LIVE] = counters[BODIES]
-    for i in range(counters[BODIES]):
-        tables.live[i] = i
+    if counters[LIVE] != counters[BODIES]:
+        counters[LIVE] = counters[BODIES]
+        for i in range(counters[BODIES]):
+            tables.live[i] = i
+        line_up(tables, gx, gy)
     if counters[TURNED]:
         counters[TURNED] = 0
         arrange(tables, gx, gy)
@@ -177,7 +179,7 @@ def number(tables: Tables, gx: float, gy: float) -> int:
 
 
 @kernel
-def next_turn(tables: Tables, last: int) -> int:
+def next_turn(tables: Tables, last: int, gx: float, gy: float) -> int:
     """The largest number of substeps below `last` that an island takes; 0: there is none.
 
     Its bodies and pairs are live then. What does not move belongs to every turn.
@@ -195,6 +197,7 @@ def next_turn(tables: Tables, last: int) -> int:
             tables.live[n] = i
             n += 1
     counters[LIVE] = n
+    line_up(tables, gx, gy)
     bound(tables)
     return turn
 

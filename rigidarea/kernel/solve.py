@@ -87,14 +87,20 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx:
     return DONE
 
 
+@kernel(forceinline=True)
+def up(gx: float, gy: float) -> tuple[float, float]:
+    """The unit vector against gravity."""
+    size = math.hypot(gx, gy)
+    return (-gx / size, -gy / size) if size > 0.0 else (0.0, 1.0)
+
+
 @kernel
 def arrange(tables: Tables, gx: float, gy: float) -> None:
     """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first.
 
     Where a frame is made of turns (`islands`), turn by turn.
     """
-    size = math.hypot(gx, gy)
-    ux, uy = (-gx / size, -gy / size) if size > 0.0 else (0.0, 1.0)
+    ux, uy = up(gx, gy)
     near = tables.near
     n = tables.counters[NEAR]
     for i in range(n):
@@ -127,7 +133,37 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
                 j -= gap
             near[j] = p
         gap //= 3
+    line_up(tables, gx, gy)
     bound(tables)
+
+
+@kernel
+def line_up(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the live bodies in the same way: sums over them then do not depend on who came first either."""
+    ux, uy = up(gx, gy)
+    live = tables.live
+    n = tables.counters[LIVE]
+    gap = 1
+    while gap < n:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, n):
+            k = live[i]
+            j = i
+            while j >= gap and _above(tables.bodies[live[j - gap]], tables.bodies[k], ux, uy):
+                live[j] = live[j - gap]
+                j -= gap
+            live[j] = k
+        gap //= 3
+
+
+@kernel(forceinline=True)
+def _above(one: Any, other: Any, ux: float, uy: float) -> bool:
+    here = ux * one.x + uy * one.y
+    there = ux * other.x + uy * other.y
+    if here != there:
+        return bool(here > there)
+    return bool(abs(ux * one.y - uy * one.x) > abs(ux * other.y - uy * other.x))
 
 
 @kernel
@@ -447,8 +483,9 @@ def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
     those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
     """
     most = 0.0
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    lined_up = tables.counters[LIVE] == tables.counters[BODIES]
+    for k in range(tables.counters[BODIES]):
+        body = tables.bodies[tables.live[k] if lined_up else k]
         if body.stamp == frame and body.inverse_mass > 0.0:
             most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):

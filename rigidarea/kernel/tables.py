@@ -313,16 +313,36 @@ def rehash(tables: Tables) -> None:
             _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
 
 
+@kernel
+def comes_first(tables: Tables, a: int, b: int) -> bool:
+    """Whether shape a is A of a pair with b: what cannot move, then what is lower, then what is further left.
+
+    By place, so that nothing depends on who was added first (`report` shows A first added all the same); that only
+    decides between two in one place.
+    """
+    one = tables.shapes[a]
+    other = tables.shapes[b]
+    me = tables.bodies[one.body]
+    it = tables.bodies[other.body]
+    if me.mobile != it.mobile:
+        return bool(me.mobile < it.mobile)
+    if me.y != it.y:
+        return bool(me.y < it.y)
+    if me.x != it.x:
+        return bool(me.x < it.x)
+    return bool(one.ident < other.ident)
+
+
 @entry
 def new_pair(tables: Tables, a: int, b: int) -> int:
-    """Take a pair from the free list, A the shape that was added first; -1: there is none."""
+    """Take a pair from the free list, A by place (`comes_first`); -1: there is none."""
     counters = tables.counters
     p = counters[FREE_PAIR]
     if p >= 0:
         pair = tables.pairs[p]
         counters[FREE_PAIR] = pair.next
         counters[FREE_PAIRS] -= 1
-        first = tables.shapes[a].ident < tables.shapes[b].ident
+        first = comes_first(tables, a, b)
         pair.a = a if first else b
         pair.b = b if first else a
         pair.head = -1
