@@ -541,7 +541,7 @@ class Store:
             np.fromiter(self._bodies.keys(), np.uint64, len(self._bodies)),
             np.fromiter(self._bodies.values(), np.int32, len(self._bodies)),
         )
-        extents(self.tables)
+        extents(self.pool, self.tables)
         self.sync()
 
     def forget(self, idents: Iterable[int], bodies: Iterable[int]) -> None:

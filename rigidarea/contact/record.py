@@ -314,7 +314,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
         return False
     tables = load_tables(s)
     if solid:  # a body is as thin as its thinnest shape that is no sensor
-        extents(tables)
+        extents(load_pool(s), tables)
     if not s.explicit:
         n = len(members(space, s.space_constraints))
         if n > s.joints_n and not ask(s, MORE_JOINTS):

@@ -193,12 +193,15 @@ def passes(one: Any, other: Any) -> bool:
 
 
 @entry
-def extents(tables: Tables) -> None:
-    """Every body's smallest extent, from its shapes'."""
+def extents(pool: Pool, tables: Tables) -> None:
+    """Every body's smallest extent and its reach, from its shapes'."""
     for i in range(tables.counters[BODIES]):
         tables.bodies[i].extent = 0.0
+        tables.bodies[i].reach = 0.0
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
         if shape.outline >= 0 and not shape.sensor:
             body = tables.bodies[shape.body]
             body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)
+            head = pool.heads[shape.outline]
+            body.reach = max(body.reach, abs(head.x) + abs(head.y) + shape.half_x + shape.half_y)

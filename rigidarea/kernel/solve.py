@@ -10,9 +10,11 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import LEFT, MOVED, STRAIGHT_WAY
+from .constants import LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
@@ -319,9 +321,26 @@ def gather(
             return status, i
         if pair.head < 0:
             _part(pool, tables, pair, a, b)
-        elif not _add_rows(tables, law, p, h, -1):
+            continue
+        pair.seats = has_seats(pool, tables, pair)
+        if not _add_rows(tables, law, p, h, -1):
             return GROW_REGIONS, i
     return DONE, counters[LAST]
+
+
+@kernel
+def _fastest(tables: Tables, h: float) -> tuple[float, float]:
+    """No point of a live body goes farther in h than the first (length); no live body is thinner than the second."""
+    most = 0.0
+    least = np.inf
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.extent > 0.0:
+            arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+            speed = abs(body.vx) + abs(body.vy) + abs(body.kick_x) + abs(body.kick_y) + abs(body.w) * arm
+            most = max(most, h * speed)
+            least = min(least, body.extent)
+    return most, least
 
 
 @kernel
@@ -335,15 +354,22 @@ def join(
     """
     counters = tables.counters
     before = counters[ROWS]
+    most, least = _fastest(tables, h)
+    still = 2.0 * most <= LOOK * least  # nobody turns or passes far enough to be `jumped`
     for i in range(max(start, counters[FIRST]), counters[LAST]):
         p = tables.near[i]
         pair = tables.pairs[p]
         old = pair.head
+        if old >= 0:
+            if still and not (first and pair.seats):
+                continue
+        elif pair.parted == counters[SUBSTEP] and 2.0 * most < pair.gap:
+            continue
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
             continue
-        if old >= 0 and not (first and has_seats(pool, tables, pair)) and jumped(tables, pair, a, b, h) == 1:
+        if old >= 0 and not (first and pair.seats) and jumped(tables, pair, a, b, h) == 1:
             continue  # it has met already, and turns too little to come down elsewhere
         if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
             continue

@@ -63,6 +63,7 @@ BODY = record(
             "f8",
         ),  # how long it has moved by itself: since the user last set its place or velocity (time)
         ("extent", "f8"),  # smallest extent of its shapes (length)
+        ("reach", "f8"),  # no point of them is farther from its origin (length)
         ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
         ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
         ("asked", "i4"),  # substeps a frame that the user wants for its island, at least; 0: none
@@ -113,6 +114,7 @@ PAIR = record(
         ("a", "i4"),  # rows of the two shapes; -1: none
         ("b", "i4"),
         ("head", "i4"),  # first region; -1: none
+        ("seats", "i4"),  # 1: it touches, and may do so elsewhere as well without turning
         ("next", "i4"),  # in the free list
         ("axis_x", "f8"),  # what parted them last, A's frame, A to B (`apart`); (0, 0): nothing known
         ("axis_y", "f8"),
@@ -346,6 +348,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.a = a if first else b
         pair.b = b if first else a
         pair.head = -1
+        pair.seats = 0
         pair.side_a = 0
         pair.kept_a = 0
         pair.kept_b = 0
