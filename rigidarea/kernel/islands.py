@@ -193,11 +193,15 @@ def next_turn(tables: Tables, last: int, gx: float, gy: float) -> int:
     counters[TURN] = turn
     n = 0
     for i in range(counters[BODIES]):
-        if tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn:
-            tables.live[n] = i
-            n += 1
-    counters[LIVE] = n
-    line_up(tables, gx, gy)
+        n += tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn
+    if n < counters[BODIES] or counters[LIVE] < n:  # else everybody is, and lined up
+        n = 0
+        for i in range(counters[BODIES]):
+            if tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn:
+                tables.live[n] = i
+                n += 1
+        counters[LIVE] = n
+        line_up(tables, gx, gy)
     bound(tables)
     return turn
 
