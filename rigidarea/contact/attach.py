@@ -37,9 +37,18 @@ class SimulationError(RuntimeError):
     """A step went wrong for a reason that the message names (body and step)."""
 
 
-def _take_out(space: Any, joint: Any, body: Any, pivot: int, kept: Any) -> None:
+def _roll(constraints: int, by: int) -> None:
+    """Move Chipmunk's list of joints on by so many places. constraints: where a space keeps it."""
+    at = ffi.cast("uintptr_t *", int(ffi.cast("uintptr_t *", constraints)[0]))
+    count = ffi.cast("int *", at)[0]
+    listed = np.frombuffer(ffi.buffer(ffi.cast("void *", int(at[1])), 8 * count), np.uint64)
+    listed[:] = np.roll(listed, by)
+
+
+def _take_out(space: Any, joint: Any, body: Any, pivot: int, constraints: int, kept: Any) -> None:
     """Remove the hidden constraint from Chipmunk's space, and free it."""
     lib.cpSpaceSetUserData(space, ffi.NULL)
+    _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
     lib.cpSpaceRemoveConstraint(space, joint)
     ffi.cast("uintptr_t *", joint)[0] = pivot
     lib.cpConstraintFree(joint)
@@ -89,7 +98,6 @@ class AreaContact:
         state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
-        state["release_at"] = joints.release.address
         own = weakref.ref(self)  # C keeps no Python object alive
         self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
         state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
@@ -101,9 +109,8 @@ class AreaContact:
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
-        joint, body, pivot = self._hidden
         kept = self._classes, self._store
-        self._end = weakref.finalize(space, _take_out, space._space, joint, body, pivot, kept)
+        self._end = weakref.finalize(space, _take_out, space._space, *self._hidden, kept)
         try:
             self._register()
             if self._memory is not None:
@@ -125,10 +132,12 @@ class AreaContact:
             [
                 *(idle, idle, idle, none),
                 *(frame.silence.address, frame.solve.address, idle, none),
+                *(joints.prepared.address, idle, idle, none),
             ],
             np.uint64,
         )
         self._state["idle_kind"] = self._classes.ctypes.data
+        self._state["seized_kind"] = self._classes.ctypes.data + 64
         body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
         joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
         own = ffi.cast("uintptr_t *", joint)
@@ -137,7 +146,9 @@ class AreaContact:
         at = int(self._state["constraint_post_solve"]) // 8
         own[at] = frame.report.address
         lib.cpSpaceAddConstraint(space._space, joint)
-        self._hidden = joint, body, pivot
+        constraints = address_of(space._space) + int(self._state["space_constraints"])
+        _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
+        self._hidden = joint, body, pivot, constraints
         self._state["hidden"] = address_of(joint)
         wildcard = int(
             ffi.cast("uintptr_t", ~0)
