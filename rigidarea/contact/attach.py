@@ -14,6 +14,7 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout, springs
+from ..gate import not_negative
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
@@ -584,7 +585,12 @@ def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
 
 
 def attached(space: pymunk.Space) -> AreaContact | None:
-    """The area contact of a space, None if it has none. Of a copied or unpickled space too."""
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
+
+    Raises ValueError for what is no space.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
     contact: AreaContact | None = space.__dict__.get(_KEY)
     return contact
 
@@ -592,21 +598,15 @@ def attached(space: pymunk.Space) -> AreaContact | None:
 # --- settings ---
 
 
-def _not_negative(value: float, name: str) -> float:
-    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value >= 0):
-        raise ValueError(f"{name} must be a finite number >= 0, got {value!r}")
-    return float(value)
-
-
 def _count(value: int, name: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value < 2**31:
-        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+        raise ValueError(f"{name} must be a whole number >= 1, got {value!r:.80}")
     return int(value)
 
 
 def _one_of(value: str, name: str, known: Any) -> str:
-    if value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r:.80}")
     return value
 
 
@@ -650,8 +650,8 @@ def attach(
         "law": _one_of(law, "law", LAWS),
         "length": None if length is None else positive(length, "length"),
         "direction": _one_of(direction, "direction", DIRECTIONS),
-        "exponent": _not_negative(exponent, "exponent"),
-        "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
+        "exponent": not_negative(exponent, "exponent"),
+        "rest_speed": None if rest_speed is None else not_negative(rest_speed, "rest_speed"),
         "integration": _one_of(integration, "integration", INTEGRATIONS),
         "flexible": flexible,
     }
