@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import copy
 import json
 import random
 from typing import Any
@@ -49,9 +50,9 @@ def _damage(draw: random.Random, tree: Any) -> None:
         if fate < 0.15:
             del at[key]
         elif fate < 0.3 and isinstance(at, dict):
-            at[draw.choice(("", "nonsense", "mass", "type"))] = draw.choice(_VALUES)
+            at[draw.choice(("", "nonsense", "mass", "type"))] = copy.deepcopy(draw.choice(_VALUES))
         else:
-            at[key] = draw.choice(_VALUES)
+            at[key] = copy.deepcopy(draw.choice(_VALUES))
         return
 
 
