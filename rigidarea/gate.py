@@ -73,6 +73,13 @@ def numbers(values: Any, name: str, count: int) -> tuple[float, ...]:
     return given
 
 
+def truth(value: bool, name: str) -> bool:
+    """The value as a bool; ValueError with its name for anything else."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False, got {value!r:.80}")
+    return bool(value)
+
+
 def listed(values: Any, name: str) -> list[Any]:
     """What is in a list or the like; ValueError with its name for what holds nothing."""
     try:

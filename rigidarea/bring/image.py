@@ -11,7 +11,7 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
-from ..gate import finite, size
+from ..gate import finite, size, truth
 from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read
 from .rings import curve_tolerance, outlines_of_polygons
@@ -81,7 +81,7 @@ def outlines_from_mask(
         raise ValueError("mask must be finite, got NaN or infinity")
     if not 0 < finite(threshold, "threshold") < 1:
         raise ValueError(f"threshold must be between 0 and 1, got {threshold!r}")
-    size(scale, "scale")
+    size(scale, "scale"), truth(flip, "flip")
     rows, columns = given.shape
     dropped = 0.5 * scale if tolerance is None else curve_tolerance(tolerance, (0, 0, columns, rows))
     padded = np.pad(given, 1)

@@ -368,6 +368,10 @@ class _Reader(Values):
                 values.append(
                     self.number(given[name], f"{place}.{name}", low=0.0 if sort == LENGTH else None)
                 )
+        if all(end.body_type != pymunk.Body.DYNAMIC for end in ends):
+            raise ValueError(
+                f"{place}: expected a joint of two bodies of which one is dynamic, got two that are not"
+            )
         joint = make(*ends, *values)
         if "distance" in given:
             joint.distance = self.number(given["distance"], f"{place}.distance", low=0.0)  # type: ignore[attr-defined]

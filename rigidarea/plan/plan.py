@@ -14,7 +14,7 @@ import numpy as np
 import pymunk
 
 from ..contact import AreaContact, SimulationError, attach, attached
-from ..gate import positive, whole
+from ..gate import positive, truth, whole
 from . import costs, elastic
 from . import estimates as est
 from .curves import FACETS
@@ -89,8 +89,7 @@ class Plan:
 
         keep: level and outlines stay, and nothing gets coarser: what can be changed between frames without a jump.
         """
-        if not isinstance(keep, bool | np.bool_):
-            raise ValueError(f"keep must be True or False, got {keep!r:.80}")
+        truth(keep, "keep")
         given = dict(self.overrides.get(None, {}))
         sampled = dict(self.sampling)
         if keep:
