@@ -19,9 +19,73 @@ LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 def positive(value: float, name: str) -> float:
     """The value as a float; ValueError with its name unless it is positive and finite."""
-    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value > 0):
-        raise ValueError(f"{name} must be positive and finite, got {value!r}")
+    if not (isinstance(value, int | float | np.number) and _real(value) and value > 0):
+        raise ValueError(f"{name} must be positive and finite, got {value!r:.80}")
     return float(value)
+
+
+def finite(value: float, name: str) -> float:
+    """The value as a float; ValueError with its name unless it is a finite number."""
+    if not (isinstance(value, int | float | np.number) and _real(value)):
+        raise ValueError(f"{name} must be a finite number, got {value!r:.80}")
+    return float(value)
+
+
+def not_negative(value: float, name: str) -> float:
+    """The value as a float; ValueError with its name unless it is finite and not negative."""
+    if not (isinstance(value, int | float | np.number) and _real(value) and value >= 0):
+        raise ValueError(f"{name} must be finite and not negative, got {value!r:.80}")
+    return float(value)
+
+
+def size(value: float, name: str) -> float:
+    """A length as a float; ValueError with its name unless it is positive and no more than coordinates may be."""
+    if positive(value, name) > LARGEST:
+        raise ValueError(f"{name} must be at most {LARGEST:g}, got {value:.6g}")
+    return float(value)
+
+
+def _real(value: Any) -> bool:
+    """Whether a number is finite as a double: whole numbers can be too large for one."""
+    try:
+        return math.isfinite(float(value))
+    except OverflowError:
+        return False
+
+
+def whole(value: int, name: str, low: int, high: int | None = None) -> int:
+    """The value as an int; ValueError with its name unless it is a whole number of low to high (None: no end)."""
+    good = isinstance(value, int | np.integer) and not isinstance(value, bool) and value >= low
+    if not good or (high is not None and value > high):
+        wanted = f"of at least {low}" if high is None else f"from {low} to {high}"
+        raise ValueError(f"{name} must be a whole number {wanted}, got {value!r:.80}")
+    return int(value)
+
+
+def numbers(values: Any, name: str, count: int) -> tuple[float, ...]:
+    """So many finite numbers, as a tuple; ValueError with their name for anything else."""
+    try:
+        given = tuple(float(value) for value in values)
+    except (TypeError, ValueError, OverflowError):
+        given = ()
+    if len(given) != count or not all(map(math.isfinite, given)):
+        raise ValueError(f"{name} must be {count} finite numbers, got {values!r:.80}")
+    return given
+
+
+def truth(value: bool, name: str) -> bool:
+    """The value as a bool; ValueError with its name for anything else."""
+    if not isinstance(value, bool | np.bool_):
+        raise ValueError(f"{name} must be True or False, got {value!r:.80}")
+    return bool(value)
+
+
+def listed(values: Any, name: str) -> list[Any]:
+    """What is in a list or the like; ValueError with its name for what holds nothing."""
+    try:
+        return list(values)
+    except TypeError:
+        raise ValueError(f"{name} must be a list, got {values!r:.80}") from None
 
 
 def checked_attribute(name: str, value: Any) -> None:

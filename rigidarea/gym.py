@@ -112,7 +112,10 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self, action: NDArray[np.float32]
     ) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """One action for FRAME seconds. ValueError for another shape, and for values that are not finite."""
-        given = np.asarray(action, dtype=np.float64)
+        try:
+            given = np.asarray(action, dtype=np.float64)
+        except (TypeError, ValueError):
+            raise ValueError(f"action must be 3 finite numbers, got {action!r:.80}") from None
         if given.shape != (3,) or not np.isfinite(given).all():
             raise ValueError(f"action must be 3 finite numbers, got {action!r:.80}")
         push = np.clip(given, -1.0, 1.0)

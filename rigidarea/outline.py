@@ -27,7 +27,18 @@ from numpy.typing import ArrayLike
 
 from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
-from .gate import LARGEST, check_valid, checked_attribute, checked_bulges, checked_ring, positive
+from .gate import (
+    LARGEST,
+    check_valid,
+    checked_attribute,
+    checked_bulges,
+    checked_ring,
+    finite,
+    listed,
+    not_negative,
+    numbers,
+    positive,
+)
 from .simple import check_simple
 from .stand_in import stand_in
 
@@ -85,7 +96,7 @@ class Outline:
 
     def __init__(self, points: ArrayLike, holes: Iterable[ArrayLike] = ()) -> None:
         rings = [checked_ring(points, "points")]
-        rings += [checked_ring(hole, f"holes[{i}]") for i, hole in enumerate(holes)]
+        rings += [checked_ring(hole, f"holes[{i}]") for i, hole in enumerate(listed(holes, "holes"))]
         check_valid(rings)
         self._set(rings)
 
@@ -116,9 +127,7 @@ class Outline:
         Raises ValueError unless radius is positive and center finite.
         """
         radius = positive(radius, "radius")
-        x, y = (float(v) for v in center)
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(f"center must be finite (x, y), got {center!r}")
+        x, y = numbers(center, "center", 2)
         ring, arcs = curves.circle_ring((x, y), radius)
         return cls.from_curve([ring], arcs=[arcs])
 
@@ -131,7 +140,7 @@ class Outline:
         Raises ValueError as the constructor does; crossings are those of the arcs themselves (`simple.py`).
         """
         found = [checked_bulges(ring, "ring")] + [
-            checked_bulges(hole, f"holes[{i}]") for i, hole in enumerate(holes)
+            checked_bulges(hole, f"holes[{i}]") for i, hole in enumerate(listed(holes, "holes"))
         ]
         rings, arcs = [points for points, _ in found], [arcs for _, arcs in found]
         check_simple(rings, arcs, ["ring"] + [f"holes[{i}]" for i in range(len(rings) - 1)])
@@ -265,9 +274,9 @@ class Outline:
         Like `pymunk.moment_for_poly`, for concave outlines, arcs and holes too. Exact.
         Raises ValueError unless mass is finite and not negative.
         """
-        if not (math.isfinite(mass) and mass >= 0):
-            raise ValueError(f"mass must be finite and not negative, got {mass!r}")
-        x, y = self.centroid[0] + offset[0], self.centroid[1] + offset[1]
+        mass = not_negative(mass, "mass")
+        dx, dy = numbers(offset, "offset", 2)
+        x, y = self.centroid[0] + dx, self.centroid[1] + dy
         return mass * (self._gyration + x * x + y * y)
 
     @cached_property
@@ -339,15 +348,13 @@ class Outline:
 
     def translated(self, dx: float, dy: float) -> Outline:
         """A copy shifted by (dx, dy), length."""
-        return self._moved(0.0, dx, dy)
+        return self._moved(0.0, finite(dx, "dx"), finite(dy, "dy"))
 
     def rotated(self, angle: float) -> Outline:
         """A copy turned about the body's origin by `angle` (radians, counter-clockwise)."""
-        return self._moved(angle, 0.0, 0.0)
+        return self._moved(finite(angle, "angle"), 0.0, 0.0)
 
     def _moved(self, angle: float, dx: float, dy: float) -> Outline:
-        if not all(map(math.isfinite, (angle, dx, dy))):
-            raise ValueError(f"expected finite angle and shift, got angle {angle!r}, shift ({dx!r}, {dy!r})")
         c, s = math.cos(angle), math.sin(angle)
         turn = np.array([[c, s], [-s, c]])
         moved = [ring @ turn + (dx, dy) for ring in self.rings]  # by an angle of 0 the product is exact

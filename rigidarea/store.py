@@ -92,9 +92,8 @@ JOINT = record(
     [
         ("address", "u8"),
         ("kind", "u8"),  # its class, a struct of Chipmunk's of four functions
-        ("pre_solve", "u8"),  # the user's callbacks; 0: none
-        ("post_solve", "u8"),
-        ("taken", "i4"),  # 1: between the two, we run it
+        ("pre_solve", "u8"),  # the user's callback; 0: none
+        ("taken", "i4"),  # 1: since that, until the report, we run it
         ("mine", "i4"),  # 1: taken, and of the turn that is being solved
         ("a", "i4"),  # rows of its bodies; -1: not ours
         ("b", "i4"),
@@ -140,8 +139,8 @@ STATE = record(
         ("springs_at", "u8"),  # what `chipmunk.springs` has found, and our own force function
         ("spring_at", "u8"),
         ("seize_at", "u8"),
-        ("release_at", "u8"),
         ("idle_kind", "u8"),  # the class of a joint that we run
+        ("seized_kind", "u8"),  # the same, of one that Chipmunk is to prepare
         ("hidden", "u8"),  # our own constraint
         ("global_handler", "u8"),  # Chipmunk's global handler
         ("pre_solve_at", "u8"),  # our pre_solve, and the user's global one that comes before it; 0: none

@@ -60,7 +60,7 @@ def test_eccentric_lifts_a_flat_by_its_eccentricity():
 @pytest.mark.parametrize(
     ("make", "text"),
     [
-        (lambda: internal_gear(2.0, 2), "teeth must be a whole number of at least 3"),
+        (lambda: internal_gear(2.0, 2), "teeth must be a whole number from 3 to 10000"),
         (lambda: internal_gear(-1.0, 40), "module"),
         (lambda: internal_gear(2.0, 15), "outside the base circle"),
         (lambda: internal_gear(2.0, 60, dedendum=4.0), "wider than 0 at the bottom"),

@@ -9,8 +9,9 @@ from typing import Any
 
 import shapely
 
+from ..gate import not_negative, positive
 from ..outline import Outline
-from .limits import LIMITS, Limits, check, read, text
+from .limits import LIMITS, Limits, allowed, check, read, text
 from .rings import outlines_of_polygons
 
 GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
@@ -32,6 +33,8 @@ def outlines_from_geojson(
     Raises ValueError for what is no GeoJSON, for coordinates that are not finite, for polygons that cross themselves,
     and for more than `limits` allow.
     """
+    allowed(limits)
+    scale, tolerance = positive(scale, "scale"), not_negative(tolerance, "tolerance")
     if isinstance(source, dict):
         found = source
     else:

@@ -11,8 +11,9 @@ import numpy as np
 import shapely
 from numpy.typing import ArrayLike
 
+from ..gate import finite, size, truth
 from ..outline import Outline
-from .limits import LIMITS, Limits, check, read
+from .limits import LIMITS, Limits, allowed, check, read
 from .rings import curve_tolerance, outlines_of_polygons
 
 
@@ -68,18 +69,21 @@ def outlines_from_mask(
     """
     from contourpy import FillType, contour_generator
 
-    given = np.asarray(mask, dtype=np.float64)
+    allowed(limits)
+    try:
+        given = np.asarray(mask, dtype=np.float64)
+    except (TypeError, ValueError):
+        raise ValueError(f"mask must be numbers of shape (rows, columns), got {mask!r:.80}") from None
     if given.ndim != 2 or 0 in given.shape:
         raise ValueError(f"mask must have shape (rows, columns), got {given.shape}")
     check(given.size, limits.pixels, "pixels")
     if not np.isfinite(given).all():
         raise ValueError("mask must be finite, got NaN or infinity")
-    if not 0 < threshold < 1:
+    if not 0 < finite(threshold, "threshold") < 1:
         raise ValueError(f"threshold must be between 0 and 1, got {threshold!r}")
-    if not 0 < scale < np.inf:
-        raise ValueError(f"scale must be a finite number > 0, got {scale!r}")
+    size(scale, "scale"), truth(flip, "flip")
     rows, columns = given.shape
-    allowed = 0.5 * scale if tolerance is None else curve_tolerance(tolerance, (0, 0, columns, rows))
+    dropped = 0.5 * scale if tolerance is None else curve_tolerance(tolerance, (0, 0, columns, rows))
     padded = np.pad(given, 1)
     contours: Any = contour_generator(z=padded, fill_type=FillType.OuterOffset)
     points, offsets = contours.filled(threshold, max(float(padded.max()), threshold) + 1.0)
@@ -94,7 +98,7 @@ def outlines_from_mask(
         polygon = shapely.Polygon(rings[0], rings[1:])
         polygons += [part for part in _parts(polygon) if part.area >= scale**2]
     polygons.sort(key=lambda polygon: -polygon.area)
-    return outlines_of_polygons(polygons, allowed, limits)
+    return outlines_of_polygons(polygons, dropped, limits)
 
 
 def _parts(polygon: shapely.Polygon) -> list[shapely.Polygon]:

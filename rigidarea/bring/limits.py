@@ -7,6 +7,8 @@ import stat
 from pathlib import Path
 from typing import NamedTuple
 
+from ..gate import whole
+
 
 class Limits(NamedTuple):
     """What is read at most. Each is far above what a scene needs, and far below what a machine bears."""
@@ -28,7 +30,8 @@ LIMITS = Limits()
 
 def read(source: str | os.PathLike[str], limits: Limits) -> bytes:
     """A file's content. ValueError for one that is too large, or no regular file (a pipe may never end)."""
-    path = Path(source)
+    allowed(limits)
+    path = file_of(source)
     with path.open("rb") as file:
         state = os.fstat(file.fileno())
         if not stat.S_ISREG(state.st_mode):
@@ -37,6 +40,28 @@ def read(source: str | os.PathLike[str], limits: Limits) -> bytes:
     if len(data) > limits.bytes:
         raise ValueError(f"{path}: expected at most {limits.bytes} bytes, got {state.st_size}")
     return data
+
+
+def file_of(source: object) -> Path:
+    """A path; ValueError for what is none."""
+    if not isinstance(source, str | os.PathLike):
+        raise ValueError(f"expected the path of a file, got {source!r:.80}")
+    try:
+        path = Path(source)
+    except TypeError:  # bytes
+        raise ValueError(f"expected the path of a file as text, got {source!r:.80}") from None
+    if not path.name:
+        raise ValueError(f"expected the path of a file, got {source!r:.80}")
+    return path
+
+
+def allowed(limits: Limits) -> Limits:
+    """The limits; ValueError for what are none, or no whole numbers of at least 0."""
+    if not isinstance(limits, Limits):
+        raise ValueError(f"limits must be bring.Limits, got {type(limits).__name__}")
+    for name, value in limits._asdict().items():
+        whole(value, f"limits.{name}", 0)
+    return limits
 
 
 def text(data: bytes, what: str) -> str:

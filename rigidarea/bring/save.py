@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import os
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,6 +14,7 @@ from ..arcs import sweeps
 from ..contact import attached
 from ..outline import Outline
 from .joints import COMMON, JOINTS, POINT, TYPES
+from .limits import file_of
 from .scene import CONTACT, FORMAT, SPACE
 from .scene import TYPES as BODY_TYPES
 from .values import FLATTEST
@@ -24,7 +24,7 @@ _NAMES = {value: name for name, value in BODY_TYPES.items()}
 
 def save_scene(space: pymunk.Space, file: str | os.PathLike[str]) -> None:
     """Write the space to a file, .toml as TOML (needs tomli-w), everything else as JSON; see `scene_as_text`."""
-    path = Path(file)
+    path = file_of(file)
     content = scene_as_text(space, "toml" if path.suffix.lower() == ".toml" else "json")
     part = path.with_name(path.name + ".part")
     part.write_text(content, encoding="utf-8")
@@ -38,8 +38,10 @@ def scene_as_text(space: pymunk.Space, kind: str = "json") -> str:
     neither is what contacts remember (a copy or a pickle keeps that). Raises ValueError for a kind of shape or joint
     that a scene file does not have.
     """
-    if kind not in ("json", "toml"):
-        raise ValueError(f"kind must be 'json' or 'toml', got {kind!r}")
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    if not isinstance(kind, str) or kind not in ("json", "toml"):
+        raise ValueError(f"kind must be 'json' or 'toml', got {kind!r:.80}")
     told = _scene(space)
     if kind == "toml":
         import tomli_w

@@ -45,7 +45,6 @@ from __future__ import annotations
 import os
 import tomllib
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 import pymunk
@@ -55,7 +54,7 @@ from ..contact import AreaContact, attach
 from ..outline import Outline
 from .geojson import parse_json
 from .joints import COMMON, JOINTS, LENGTH, POINT
-from .limits import LIMITS, Limits, check, read, text
+from .limits import LIMITS, Limits, allowed, check, file_of, read, text
 from .rings import overlapping_boxes
 from .values import Values
 
@@ -92,12 +91,15 @@ class Scene:
 def load_scene(source: str | os.PathLike[str], limits: Limits = LIMITS) -> Scene:
     """The scene of a file: .toml is TOML, everything else JSON. ValueError says where something else was expected."""
     data = read(source, limits)
-    kind = "toml" if Path(source).suffix.lower() == ".toml" else "json"
+    kind = "toml" if file_of(source).suffix.lower() == ".toml" else "json"
     return scene_from_text(text(data, str(source)), kind, limits)
 
 
 def scene_from_text(content: str, kind: str = "json", limits: Limits = LIMITS) -> Scene:
     """The scene of a text, "json" or "toml". ValueError says where something else was expected, and what."""
+    if not isinstance(content, str):
+        raise ValueError(f"content must be a str, got {type(content).__name__}")
+    allowed(limits)
     if kind == "json":
         check(len(content), limits.bytes, "characters")
         found = parse_json(content, "scene")
@@ -366,6 +368,10 @@ class _Reader(Values):
                 values.append(
                     self.number(given[name], f"{place}.{name}", low=0.0 if sort == LENGTH else None)
                 )
+        if all(end.body_type != pymunk.Body.DYNAMIC for end in ends):
+            raise ValueError(
+                f"{place}: expected a joint of two bodies of which one is dynamic, got two that are not"
+            )
         joint = make(*ends, *values)
         if "distance" in given:
             joint.distance = self.number(given["distance"], f"{place}.distance", low=0.0)  # type: ignore[attr-defined]

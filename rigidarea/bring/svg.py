@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ..gate import truth
 from ..outline import Outline
-from .limits import LIMITS, Limits, check, read, text
+from .limits import LIMITS, Limits, allowed, check, read, text
 from .rings import Ring, curve_tolerance, outlines_of_polygons, polygons_of_rings
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ def outlines_from_svg(
     from svgelements import SVG, Shape
     from svgelements import Path as SvgPath
 
+    allowed(limits), truth(flip, "flip")
     content = text(read(source, limits._replace(bytes=min(limits.bytes, SVG_BYTES))), str(source))
     refused = REFUSED.search(content)
     if refused:

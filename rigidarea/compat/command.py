@@ -52,7 +52,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run `rigidarea compat`; exit code 1 if anything is wrong natively (the table means nothing then) or in a fuzz."""
     if arguments.what != "examples" and arguments.names:
-        raise ValueError(f"compat {arguments.what} takes no names, got {' '.join(arguments.names)}")
+        raise ValueError(
+            f"compat {arguments.what} takes no names: expected none, got {' '.join(arguments.names)}"
+        )
     if arguments.what == "tests":
         return _tests(arguments)
     if arguments.what == "fuzz":

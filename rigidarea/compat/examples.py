@@ -28,6 +28,8 @@ from .watch import Watch
 FRAMES = 300
 #: Seeds of the other native runs.
 SEEDS = (1, 2, 3, 4)
+#: Seeds of the runs over which facts of chance are counted.
+GAMES = tuple(range(8))
 #: Seconds after which a run is given up.
 TIME_LIMIT = 240.0
 
@@ -40,6 +42,8 @@ class Example(NamedTuple):
     script: tuple[Input, ...] = ()
     probe: Callable[[Sequence[pymunk.Space]], Any] | None = None
     arguments: tuple[str, ...] = ()
+    chance: tuple[str, ...] = ()
+    """Facts of chance: they are to hold with more than half of `GAMES` of random numbers, natively and attached."""
 
 
 def _line(start: tuple[float, float], end: tuple[float, float], points: int) -> list[tuple[float, float]]:
@@ -104,6 +108,10 @@ EXAMPLES: dict[str, Example] = {
     "flipper": Example(
         facts.flipper,
         (*tap(5, "b"), *(t for f in range(60, 240, 20) for t in (*tap(f, "f"), *tap(f, "j")))),
+        # The ball comes anywhere from x = 115 to 350 (with 300 and more inside the shelf), and the flippers swing by
+        # themselves: the walls' ends lie in them. Natively it is thrown up with 7 of 8 seeds, at 16 times finer steps
+        # with 6 of them, and not with the same.
+        chance=("a ball is thrown up again by",),
     ),
     "index_video": Example(facts.logo_holds),
     "matplotlib_util_demo": Example(None),
@@ -226,8 +234,11 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
             wrong.append(f"fastest body {own['fastest']:.0f}, natively {native['fastest']:.0f}")
     if own["joint_error"] > 2 * native["joint_error"] + 1:
         wrong.append(f"joints off by {own['joint_error']:.1f}, natively {native['joint_error']:.1f}")
-    if own["resting"] < native["resting"] - 0.1:
-        wrong.append(f"{own['resting']:.0%} at rest, natively {native['resting']:.0%}")
+    if native["resting"] is not None:
+        if own["resting"] is None:
+            wrong.append("nobody of those whose rest is judged is there")
+        elif own["resting"] < native["resting"] - 0.1:
+            wrong.append(f"{own['resting']:.0%} at rest, natively {native['resting']:.0%}")
     for phase, count in native["calls"].items():
         ours = own["calls"][phase]
         if abs(ours - count) > 30 and not count / 2 <= ours <= count * 2:
@@ -245,6 +256,18 @@ def widened(native: dict[str, Any], others: Sequence[dict[str, Any]]) -> dict[st
     return {**native, "box": [*low, *high], "fastest": max(run["fastest"] for run in runs)}
 
 
+def by_chance(run: dict[str, Any], games: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, Any]:
+    """The run, its facts of these names replaced: each holds if it does in more than half of the games."""
+    facts = []
+    for fact in run["facts"]:
+        if fact["name"] in names:
+            held = sum(any(f["name"] == fact["name"] and f["holds"] for f in game["facts"]) for game in games)
+            told = f"{fact['measured']}; in {held} of {len(games)} games (expected more than half)"
+            fact = {**fact, "holds": 2 * held > len(games), "measured": told}
+        facts.append(fact)
+    return {**run, "facts": facts}
+
+
 def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
     """One row of the table: an example natively and with area contact.
 
@@ -258,6 +281,13 @@ def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
     def ratio(key: str) -> float | None:
         return own[key] / native[key] if steps and own.get(key) and native.get(key) else None
 
+    if EXAMPLES[name].chance:
+        games = {
+            engine: [run_example(name, engine, frames, seed) for seed in GAMES]
+            for engine in ("pymunk", "area")
+        }
+        native = by_chance(native, games["pymunk"], EXAMPLES[name].chance)
+        own = by_chance(own, games["area"], EXAMPLES[name].chance)
     wrong = judge(native, own)
     if wrong and steps:  # a game of chance: what does pymunk do with other numbers?
         others = [run_example(name, "pymunk", frames, seed) for seed in SEEDS]

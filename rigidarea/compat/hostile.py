@@ -1,7 +1,8 @@
 """Public calls with hostile values, by the tens of thousands: each works, or is refused clearly and changes nothing.
 
-A call counts as wrong when it raises anything but ValueError, TypeError or RuntimeError (`SimulationError` is one),
-when a refusal says nothing of what was expected, when a refused call has changed the space, when one that was accepted
+A call counts as wrong when it raises anything but ValueError, OSError (a file that is not there) or RuntimeError
+(`SimulationError` is one), when a refusal does not say what was expected (Python's own "must be real number, not dict"
+does not say of what), when a refused call has changed the space, when one that was accepted
 leaves a state that is not finite without a word, and when it takes longer than `SLOW`.
 """
 
@@ -9,6 +10,7 @@ from __future__ import annotations
 
 import math
 import random
+import re
 import time
 from collections.abc import Callable
 from typing import Any
@@ -16,9 +18,15 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .. import Outline, attach, attached, overlap, overlaps, shapes
+from .. import Outline, SimulationError, attach, attached, overlap, overlaps, shapes
 from ..bring import scene_from_text
+from .surface import surface
 
+SAYS = re.compile(
+    r"\b(must|expect(ed)?|unknown|unrecognized|required|needs?|needed|invalid (choice|float value|int value))\b"
+    r"|: \w+ .* first|after the step"
+)
+"""What a refusal says one way or the other."""
 SLOW = 5.0
 """Seconds of processor time."""
 
@@ -139,6 +147,20 @@ class Trial:
         def stiffness() -> None:
             self.contact.stiffness = n()
 
+        def penetration() -> None:
+            self.contact.penetration = n()
+
+        def again() -> None:
+            self.contact.detach()
+            body = next(iter(self.space.bodies))
+            for use in (lambda: self.contact.step(1 / 60), lambda: self.contact.ask(body, 2)):
+                try:
+                    use()
+                except RuntimeError:
+                    continue
+                raise AssertionError("a detached contact was not refused")
+            self.contact = attach(self.space)
+
         def measured(outline: Outline) -> None:
             if (
                 not all(map(math.isfinite, (outline.area, *outline.centroid, *outline.bounds)))
@@ -170,6 +192,10 @@ class Trial:
             ("contact.stiffness", stiffness),
             ("contact.regions", lambda: len(self.contact.regions)),
             ("contact.energy", lambda: self.contact.energy()),
+            ("contact.penetration", penetration),
+            ("contact.ask", lambda: self.contact.ask(self.draw.choice([*self.space.bodies, n()]), n())),
+            ("contact.detach", again),
+            ("attached", lambda: attached(n())),
             ("contact.refresh", lambda: self.contact.refresh(self.draw.choice([*self.space.shapes, n()]))),
             ("Outline", lambda: measured(Outline(p(), self.draw.choice([(), [p()], n()])))),
             (
@@ -195,6 +221,7 @@ class Trial:
             ("shapes.ring", lambda: measured(shapes.ring(n(), n()))),
             ("shapes.rounded_polygon", lambda: measured(shapes.rounded_polygon(p(), n()))),
             ("scene_from_text", text),
+            *surface(self),
         ]
 
 
@@ -213,10 +240,10 @@ def fuzz(calls: int, seed: int = 0) -> list[dict[str, Any]]:
         wrong = ""
         try:
             call()
-        except (ValueError, TypeError, RuntimeError) as error:
+        except (ValueError, OSError, RuntimeError) as error:
             row["refused"] += 1
-            if len(str(error)) < 12:
-                wrong = f"says nothing: {error!r}"
+            if not isinstance(error, OSError | SimulationError) and not SAYS.search(str(error)):
+                wrong = f"does not say what was expected: {error!r}"
             elif trial.state() != before:
                 wrong = f"was refused and has changed the space: {error}"
         except Exception as error:

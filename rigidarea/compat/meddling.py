@@ -19,14 +19,14 @@ from .. import Outline, attach, attached
 
 CALLBACKS = (
     *("begin", "pre_solve", "post_solve", "separate"),
-    *("velocity_func", "position_func", "joint pre_solve", "joint post_solve", "post_step"),
+    *("velocity_func", "position_func", "joint pre_solve", "joint post_solve", "force_func", "post_step"),
 )
 #: Seconds after which one is given up.
 TIME_LIMIT = 20
 
 
 class Scene:
-    """Six boxes and discs in a heap, two of them jointed, and what a callback may get hold of."""
+    """Six boxes and discs in a heap, some of them jointed, and what a callback may get hold of."""
 
     def __init__(self, engine: str) -> None:
         self.space = space = pymunk.Space()
@@ -43,7 +43,8 @@ class Scene:
             self.bodies.append(body)
             self.shapes.append(shape)
         self.joint = pymunk.PinJoint(self.bodies[4], self.bodies[5])
-        space.add(self.joint)
+        self.spring = pymunk.DampedSpring(self.bodies[0], self.bodies[5], (0, 0), (0, 0), 40, 1, 0.1)
+        space.add(self.joint, self.spring)
         self.contact = attach(space) if engine == "area" else None
         self.calls = 0
         self.act: Callable[[Scene], Any] = lambda scene: None
@@ -68,6 +69,10 @@ class Scene:
             pymunk.Body.update_position(body, dt)
             self.called()
 
+        def force(spring: pymunk.DampedSpring, distance: float) -> float:
+            self.called()
+            return (spring.rest_length - distance) * spring.stiffness
+
         if callback in ("begin", "pre_solve", "post_solve", "separate"):
             functions: dict[str, Any] = {callback: collision}
             self.space.on_collision(1, None, **functions)
@@ -79,6 +84,8 @@ class Scene:
             self.joint.pre_solve = lambda joint, space: self.called()
         elif callback == "joint post_solve":
             self.joint.post_solve = lambda joint, space: self.called()
+        elif callback == "force_func":
+            self.spring.force_func = force
 
     def add_body(self) -> None:
         """One more, above the others."""
@@ -95,6 +102,10 @@ class Scene:
 
 
 def _detached_refuses(scene: Scene) -> None:
+    if scene.contact is not None and not scene.space._locked:  # after the step: it may
+        scene.contact.detach()
+        scene.contact = attach(scene.space)
+        return
     for use in ("detach", "step"):
         if scene.contact is not None:
             try:
@@ -104,7 +115,31 @@ def _detached_refuses(scene: Scene) -> None:
             raise AssertionError(f"{use}() within a step was not refused")
 
 
+def _ask_joints(scene: Scene) -> None:
+    """A joint asks its class before it answers: another's ends the process."""
+    for joint in (scene.joint, scene.spring):
+        if not math.isfinite(joint.impulse):
+            raise AssertionError("a joint's impulse is not finite")
+    scene.joint.distance = scene.joint.distance
+    scene.spring.rest_length = scene.spring.rest_length
+    if scene.space.iterations < 1:
+        raise AssertionError("no iterations within a step")
+
+
+def _copy(scene: Scene) -> None:
+    """A copy made there goes on. It has the same callbacks: they copy nothing while it does."""
+    act, scene.act = scene.act, lambda scene: None
+    other = scene.space.copy()
+    for _ in range(3):
+        other.step(1 / 60)
+    if not all(math.isfinite(body.position.x + body.position.y) for body in other.bodies):
+        raise AssertionError("a copy whose state is not finite")
+    scene.act = act
+
+
 def _attach_refuses(scene: Scene) -> None:
+    if not scene.space._locked:  # after the step: it may
+        return
     try:
         attach(scene.space)
     except (ValueError, RuntimeError):
@@ -119,7 +154,7 @@ def _stiffness(scene: Scene) -> None:
 
 
 def _look(scene: Scene) -> None:
-    if scene.contact is not None:
+    if scene.contact is not None and attached(scene.space) is scene.contact:
         len(scene.contact.regions)
         scene.contact.energy()
 
@@ -176,7 +211,8 @@ ACTIONS: dict[str, Callable[[Scene], Any]] = {
     "handler": lambda s: s.space.on_collision(1, 2, begin=lambda *a: None),
     "global handler": lambda s: s.space.on_collision(pre_solve=lambda *a: None),
     "velocity function": lambda s: setattr(s.bodies[3], "velocity_func", pymunk.Body.update_velocity),
-    "copy": lambda s: s.space.copy(),
+    "copy": _copy,
+    "ask joints": _ask_joints,
     "detach, step": _detached_refuses,
     "attach": _attach_refuses,
     "stiffness": _stiffness,

@@ -122,6 +122,7 @@ class Watch:
 
         `resting`: of the bodies that came SETTLING frames before the LAST ones, the share that is slower than
         REST_SPEED in those, or has not moved at all: what sleeps keeps the velocity with which it has fallen asleep.
+        None where nobody was there all the time: of nobody nothing can be said.
         """
         dynamic = np.array(self.dynamic(), np.int64)
         kept = [frame.state[np.isin(frame.numbers, dynamic)] for frame in self.frames]
@@ -136,7 +137,7 @@ class Watch:
             "finite": finite,
             "box": [*states[:, :2].min(axis=0), *states[:, :2].max(axis=0)] if len(states) else None,
             "fastest": float(speeds.max()) if len(speeds) else 0.0,
-            "resting": float(resting.mean()) if len(resting) else 1.0,
+            "resting": float(resting.mean()) if len(resting) else None,
             "joint_error": max(self.joint_errors[-LAST:], default=0.0),
             "step_ms": 1e3 * float(np.median(stepping)) if stepping else 0.0,
             "frame_ms": 1e3 * float(np.median(self.whole_cpu)) if self.whole_cpu else 0.0,

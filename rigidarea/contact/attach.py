@@ -14,6 +14,7 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout, springs
+from ..gate import not_negative
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
@@ -37,9 +38,18 @@ class SimulationError(RuntimeError):
     """A step went wrong for a reason that the message names (body and step)."""
 
 
-def _take_out(space: Any, joint: Any, body: Any, pivot: int, kept: Any) -> None:
+def _roll(constraints: int, by: int) -> None:
+    """Move Chipmunk's list of joints on by so many places. constraints: where a space keeps it."""
+    at = ffi.cast("uintptr_t *", int(ffi.cast("uintptr_t *", constraints)[0]))
+    count = ffi.cast("int *", at)[0]
+    listed = np.frombuffer(ffi.buffer(ffi.cast("void *", int(at[1])), 8 * count), np.uint64)
+    listed[:] = np.roll(listed, by)
+
+
+def _take_out(space: Any, joint: Any, body: Any, pivot: int, constraints: int, kept: Any) -> None:
     """Remove the hidden constraint from Chipmunk's space, and free it."""
     lib.cpSpaceSetUserData(space, ffi.NULL)
+    _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
     lib.cpSpaceRemoveConstraint(space, joint)
     ffi.cast("uintptr_t *", joint)[0] = pivot
     lib.cpConstraintFree(joint)
@@ -89,7 +99,6 @@ class AreaContact:
         state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
-        state["release_at"] = joints.release.address
         own = weakref.ref(self)  # C keeps no Python object alive
         self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
         state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
@@ -101,9 +110,8 @@ class AreaContact:
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
-        joint, body, pivot = self._hidden
         kept = self._classes, self._store
-        self._end = weakref.finalize(space, _take_out, space._space, joint, body, pivot, kept)
+        self._end = weakref.finalize(space, _take_out, space._space, *self._hidden, kept)
         try:
             self._register()
             if self._memory is not None:
@@ -125,10 +133,12 @@ class AreaContact:
             [
                 *(idle, idle, idle, none),
                 *(frame.silence.address, frame.solve.address, idle, none),
+                *(joints.prepared.address, idle, idle, none),
             ],
             np.uint64,
         )
         self._state["idle_kind"] = self._classes.ctypes.data
+        self._state["seized_kind"] = self._classes.ctypes.data + 64
         body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
         joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
         own = ffi.cast("uintptr_t *", joint)
@@ -137,7 +147,9 @@ class AreaContact:
         at = int(self._state["constraint_post_solve"]) // 8
         own[at] = frame.report.address
         lib.cpSpaceAddConstraint(space._space, joint)
-        self._hidden = joint, body, pivot
+        constraints = address_of(space._space) + int(self._state["space_constraints"])
+        _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
+        self._hidden = joint, body, pivot, constraints
         self._state["hidden"] = address_of(joint)
         wildcard = int(
             ffi.cast("uintptr_t", ~0)
@@ -573,7 +585,12 @@ def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
 
 
 def attached(space: pymunk.Space) -> AreaContact | None:
-    """The area contact of a space, None if it has none. Of a copied or unpickled space too."""
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
+
+    Raises ValueError for what is no space.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
     contact: AreaContact | None = space.__dict__.get(_KEY)
     return contact
 
@@ -581,21 +598,15 @@ def attached(space: pymunk.Space) -> AreaContact | None:
 # --- settings ---
 
 
-def _not_negative(value: float, name: str) -> float:
-    if not (isinstance(value, int | float | np.number) and math.isfinite(value) and value >= 0):
-        raise ValueError(f"{name} must be a finite number >= 0, got {value!r}")
-    return float(value)
-
-
 def _count(value: int, name: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value < 2**31:
-        raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+        raise ValueError(f"{name} must be a whole number >= 1, got {value!r:.80}")
     return int(value)
 
 
 def _one_of(value: str, name: str, known: Any) -> str:
-    if value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r}")
+    if not isinstance(value, str) or value not in known:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r:.80}")
     return value
 
 
@@ -639,8 +650,8 @@ def attach(
         "law": _one_of(law, "law", LAWS),
         "length": None if length is None else positive(length, "length"),
         "direction": _one_of(direction, "direction", DIRECTIONS),
-        "exponent": _not_negative(exponent, "exponent"),
-        "rest_speed": None if rest_speed is None else _not_negative(rest_speed, "rest_speed"),
+        "exponent": not_negative(exponent, "exponent"),
+        "rest_speed": None if rest_speed is None else not_negative(rest_speed, "rest_speed"),
         "integration": _one_of(integration, "integration", INTEGRATIONS),
         "flexible": flexible,
     }

@@ -76,7 +76,8 @@ from .joints import (
     APPLY_CACHED,
     PRE_STEP,
     add_impulse,
-    give_back_untaken,
+    give_back,
+    hide,
     joints_of,
     keep_impulse,
     restore_impulse,
@@ -642,19 +643,9 @@ def _undo(s: Any, tables: Tables) -> None:
             place(body)
 
 
-@callback(types.void(types.uintp, types.float64))
-def solve(constraint: int, coefficient: float) -> None:
-    """The frame, once velocities are integrated."""
-    space = _space_of(constraint)
-    if user_data(space) == 0:
-        return
-    s = state_of(space)
-    iterations = array_at(space, (1,), np.int32)
-    s.sweeps = iterations[0]
-    if s.explicit == 0:
-        iterations[0] = 0  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
-    if s.frame != np.int64(timestamp(space)) or s.failed:
-        return
+@kernel
+def _whole_frame(s: Any, space: int) -> None:
+    """The frame, and where it fails everything as it was."""
     dt = time_step(space)
     good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
     tables = load_tables(s)
@@ -668,6 +659,22 @@ def solve(constraint: int, coefficient: float) -> None:
     _finish_frame(s, tables, good)
 
 
+@callback(types.void(types.uintp, types.float64))
+def solve(constraint: int, coefficient: float) -> None:
+    """The frame, once velocities are integrated."""
+    space = _space_of(constraint)
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    iterations = array_at(space, (1,), np.int32)
+    s.sweeps = iterations[0]
+    if s.frame == np.int64(timestamp(space)) and not s.failed:
+        _whole_frame(s, space)
+    if s.explicit == 0:  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
+        iterations[0] = 0
+        hide(s)
+
+
 @callback(types.void(types.uintp, types.uintp))
 def report(constraint: int, space: int) -> None:
     """After Chipmunk's sweeps: arbiters get their contact points again, with the impulse of the frame."""
@@ -677,7 +684,9 @@ def report(constraint: int, space: int) -> None:
     array_at(space, (1,), np.int32)[0] = s.sweeps
     if s.frame != np.int64(timestamp(space)):
         return
-    give_back_untaken(s)
+    for joint in joints_of(s):
+        give_back(s, joint)
+    s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
     tables = load_tables(s)
     left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):

@@ -1,9 +1,13 @@
 """Joints are solved with the contacts, substep by substep: Chipmunk calls them once a frame, which would be too late.
 
-For the length of a frame a joint is *taken*: between the user's pre_solve and post_solve of it, its class (a struct
-of four functions) is one that does nothing, and the solve calls the functions of its own class instead, with the
-substep's time. Outside of that it is Chipmunk's as ever. Its impulse at the end is the frame's sum, so that a joint
-that is to break at a force breaks at it.
+For the length of a frame a joint is *taken*: the solve calls the functions of its class (a struct of four) with the
+substep's time, and where Chipmunk would call them the joint has a class that does nothing. It has that one only
+between two things that Chipmunk does on end, never while anything of the user's runs: pymunk's joints look at their
+class before they answer anything, and end the process if it is another's (a spring's force function asks for its rest
+length). So `seize`, after the user's pre_solve, hides the joint's class from Chipmunk's preparation, which gives it
+back (`prepared`); `hide` does at the end of the solve, which is the first thing when Chipmunk starts its joints; and
+`give_back` ends it before the first post_solve. A joint's impulse is then the frame's sum, so that one that is to
+break at a force breaks at it.
 """
 
 from __future__ import annotations
@@ -56,9 +60,18 @@ def _joint_of(s: Any, constraint: int) -> int:
     for i in range(len(joints)):
         k = (s.joint_cursor + i) % len(joints)
         if joints[k].address == constraint:
-            s.joint_cursor = k + 1
+            s.joint_cursor = k  # asked for once more, or its neighbour is next
             return k
     return -1
+
+
+@callback(types.void(types.uintp, types.float64))
+def prepared(constraint: int, dt: float) -> None:
+    """In the place of a joint's preparation: nothing is done, and the joint has its own class again."""
+    s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
+    k = _joint_of(s, constraint)
+    if k >= 0:
+        _words(constraint, 1)[0] = joints_of(s)[k].kind
 
 
 @kernel
@@ -105,11 +118,9 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
         joint = joints_of(s)[s.joint_count - 1]
         bodies = _words(address + s.constraint_a, 2)
         before = _words(address + s.constraint_pre_solve, 1)
-        after = _words(address + s.constraint_post_solve, 1)
         joint.address = address
         joint.kind = _words(address, 1)[0]
         joint.pre_solve = before[0]
-        joint.post_solve = after[0]
         joint.taken = 0
         joint.a = row_of_body(s, bodies[0])
         joint.b = row_of_body(s, bodies[1])
@@ -123,7 +134,6 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
                 joint.at = kinds[KINDS + k]
                 joint.count = kinds[2 * KINDS + k]
         before[0] = s.seize_at
-        after[0] = s.release_at
         _ask_once(s, joint)
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
             if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
@@ -159,19 +169,16 @@ def give_back(s: Any, joint: Any) -> None:
             own[0] = joint.force_func
         joint.force_at = 0
     before = _words(joint.address + s.constraint_pre_solve, 1)
-    after = _words(joint.address + s.constraint_post_solve, 1)
     if before[0] == s.seize_at:
         before[0] = joint.pre_solve
-    if after[0] == s.release_at:
-        after[0] = joint.post_solve
 
 
 @kernel
-def give_back_untaken(s: Any) -> None:
-    """The joints of bodies that have fallen asleep in this step: Chipmunk has not called them."""
+def hide(s: Any) -> None:
+    """Chipmunk is to find nothing to do where it starts its joints."""
     for joint in joints_of(s):
-        if joint.taken == 0:
-            give_back(s, joint)
+        if joint.taken:
+            _words(joint.address, 1)[0] = s.idle_kind
 
 
 @callback(types.void(types.uintp, types.uintp))
@@ -185,20 +192,7 @@ def seize(constraint: int, space: int) -> None:
     if joint.pre_solve != 0:
         _call_user(joint.pre_solve, constraint, space)
     joint.taken = 1
-    _words(constraint, 1)[0] = s.idle_kind
-
-
-@callback(types.void(types.uintp, types.uintp))
-def release(constraint: int, space: int) -> None:
-    """In the place of its post_solve: it is Chipmunk's again, then the user's."""
-    s = array_at(_user_data(space), (1,), STATE)[0]
-    k = _joint_of(s, constraint)
-    if k < 0:
-        return
-    joint = joints_of(s)[k]
-    give_back(s, joint)
-    if joint.post_solve != 0:
-        _call_user(joint.post_solve, constraint, space)
+    _words(constraint, 1)[0] = s.seized_kind
 
 
 @kernel

@@ -41,6 +41,7 @@ from rigidarea.flexible.integrate import Body, Simulation
 from rigidarea.flexible.recover import State
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.tied import Tied
+from rigidarea.gate import not_negative, positive
 from rigidarea.kernel.impact import damping_ratio
 from rigidarea.outline import Outline
 
@@ -66,10 +67,8 @@ class Assembly:
         self, k: float, *, q: float = 1.0, step: float | None = None, cache: Path | str | None = None
     ) -> None:
         for name, value in (("k", k), ("step", 1.0 if step is None else step)):
-            if not 0 < value < math.inf:
-                raise ValueError(f"{name} must be positive and finite, got {value!r}")
-        if not 0 <= q < math.inf:
-            raise ValueError(f"q must be finite and not negative, got {q!r}")
+            positive(value, name)
+        not_negative(q, "q")
         self._k, self._q, self._longest, self._cache = float(k), float(q), step, cache
         self._parts: list[tuple[pymunk.Shape, Body]] = []
         self._size = math.inf
@@ -105,6 +104,8 @@ class Assembly:
         """
         if self._space is not None:
             raise RuntimeError("part() on an attached assembly: add parts before attach()")
+        if not isinstance(shape, pymunk.Shape):
+            raise ValueError(f"shape must be a pymunk.Shape, got {type(shape).__name__}")
         body = shape.body
         if body is None or body.body_type == pymunk.Body.STATIC:
             raise ValueError("expected the shape of a dynamic or kinematic body, got one of a static body")

@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import build
 from rigidarea.flexible.cache import arrays
+from rigidarea.flexible.check import check_elastic
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
+from rigidarea.gate import finite, not_negative, numbers, positive
 from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
@@ -53,12 +55,11 @@ def elastic_body(
     coordinates goes at angle 0, as given by the rings. Raises ValueError for bad settings, see ``resample``,
     ``triangulate`` and ``reduce``, and for a size that asks for more nodes than fit into memory.
     """
-    if level not in LEVELS:
+    if not isinstance(level, str) or level not in LEVELS:
         raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
-    if refine < 1:
-        raise ValueError(f"refine must be at least 1, got {refine}")
-    if not (isinstance(sides, int) and sides >= 1):
-        raise ValueError(f"sides must be a whole number of at least 1, got {sides!r}")
+    counts = {"modes": modes, "refine": refine, "sides": sides}
+    check_elastic(rings, material, contact_rings, {"hub": hub, "clamped": clamped}, counts)
+    positive(size, "size"), not_negative(growth, "growth")
     _check_size(rings, size, contact_rings if level != "rigid" else ())
     nodes = [resample(r, size, sides) for r in rings]
 
@@ -131,6 +132,13 @@ def outline_body(
 
     Raises ValueError where it has, where a body that yields has no ``mesh`` (length), and as ``elastic_body`` does.
     """
+    if not isinstance(outline, Outline):
+        raise ValueError(f"outline must be an Outline, got {type(outline).__name__}")
+    if not isinstance(level, str) or level not in LEVELS:
+        raise ValueError(f"level must be one of {LEVELS}, got {level!r}")
+    check_elastic(outline.polygon_rings, material, contact, {}, {"modes": modes, "refine": refine})
+    (x, y), angle = numbers(at, "at", 2), finite(angle, "angle")
+    at, damping = (x, y), not_negative(damping, "damping")
     if level != "rigid":
         if mesh is None:
             raise ValueError(

@@ -30,10 +30,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.body import outline_body
+from rigidarea.flexible.check import check_settings
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
 from rigidarea.flexible.joints import Joint
 from rigidarea.flexible.recover import State, recover
+from rigidarea.gate import finite, not_negative, numbers
 from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
@@ -46,7 +48,7 @@ class Mechanism:
 
     k: contact stiffness, force per overlap area. gravity (2,). rho: spectral radius at infinity of the scheme, below 1
     with pivots or drives. contact: "area" or "sts" (then ``reach``, the deepest penetration looked at). cache: a
-    directory for meshes and reductions.
+    directory for meshes and reductions. All methods raise ValueError for settings out of range.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class Mechanism:
         reach: float = 0.0,
         cache: Path | str | None = None,
     ) -> None:
+        check_settings(k, 1.0, contact, reach, 0.0, rho, gravity)
         self._settings: dict[str, Any] = {
             "k": k,
             "gravity": gravity,
@@ -103,12 +106,14 @@ class Mechanism:
             outline, material, level, mesh, contact=contact, hub=hub, clamp=clamp, modes=modes, refine=refine,
             damping=damping, at=at, angle=angle, cache=self._cache,
         )  # fmt: skip
-        made.velocity = velocity
+        made.velocity = numbers(velocity, "velocity", 3)  # type: ignore[assignment]
         self._bodies.append(made)
         return len(self._bodies) - 1
 
     def ground(self, outline: Outline, at: tuple[float, float] = (0.0, 0.0), angle: float = 0.0) -> int:
         """Adds a rigid body that never moves; returns its number."""
+        if not isinstance(outline, Outline):
+            raise ValueError(f"outline must be an Outline, got {type(outline).__name__}")
         rings = range(len(outline.rings))
         made = outline_body(
             outline, Material(1.0, 0.0, 1.0), "rigid", None, contact=rings, at=at, angle=angle
@@ -117,13 +122,14 @@ class Mechanism:
         return len(self._bodies) - 1
 
     def _own(self, body: int) -> Body:
-        if not 0 <= body < len(self._bodies):
-            raise ValueError(f"expected a body from 0 to {len(self._bodies) - 1}, got {body}")
+        if not isinstance(body, int | np.integer) or not 0 <= body < len(self._bodies):
+            raise ValueError(f"expected a body from 0 to {len(self._bodies) - 1}, got {body!r:.80}")
         return self._bodies[body]
 
     def pivot(self, body: int, at: tuple[float, float]) -> None:
         """Pins the body's hub to a world point by a revolute joint; a body without a hub ring at the point under it."""
         b = self._own(body)
+        at = numbers(at, "at", 2)  # type: ignore[assignment]
         if b.shape is None or b.shape.hub is None:
             b.hub = self._local(body, at)
         b.anchor = at
@@ -149,6 +155,9 @@ class Mechanism:
         """A joint between places that the bodies have now; its number in ``Record.joints``."""
         turned = self._own(b).angle - (0.0 if a is None else self._own(a).angle)
         keys = {"angle": turned, **keys}
+        for name in ("rest", "stiffness", "damping"):
+            if name in keys:
+                keys[name] = not_negative(keys[name], name)
         self._joints.append(
             Joint(kind, -1 if a is None else a, b, self._local(a, at_a), self._local(b, at_b), **keys)
         )
@@ -159,17 +168,20 @@ class Mechanism:
 
         Returns the joint's number in ``Record.joints``, as ``slider``, ``weld`` and ``spring`` do.
         """
+        at = numbers(at, "at", 2)  # type: ignore[assignment]
         return self._join("revolute", to, body, at, at)
 
     def slider(self, body: int, axis: tuple[float, float], to: int | None = None) -> int:
         """Lets a body move along ``axis`` (a direction, world; it turns with ``to``) and nowhere else, nor turn."""
         centre = self._own(body).position
+        axis = numbers(axis, "axis", 2)  # type: ignore[assignment]
         c, s = (1.0, 0.0) if to is None else (np.cos(self._own(to).angle), np.sin(self._own(to).angle))
         local = (float(c * axis[0] + s * axis[1]), float(-s * axis[0] + c * axis[1]))
         return self._join("slider", to, body, centre, centre, axis=local)
 
     def weld(self, body: int, at: tuple[float, float], to: int | None = None) -> int:
         """Holds a body's frame to another one, or the ground; force and moment are recorded at ``at``."""
+        at = numbers(at, "at", 2)  # type: ignore[assignment]
         return self._join("weld", to, body, at, at)
 
     def spring(
@@ -187,6 +199,7 @@ class Mechanism:
 
         stiffness: force/length; damping: force/velocity; rest: length without force, None: as it is now.
         """
+        at, other_end = numbers(at, "at", 2), numbers(other_end, "other_end", 2)  # type: ignore[assignment]
         length = float(np.hypot(at[0] - other_end[0], at[1] - other_end[1]))
         return self._join(
             "spring", to, body, other_end, at, stiffness=stiffness, damping=damping,
@@ -196,18 +209,19 @@ class Mechanism:
     def drive(self, body: int, speed: float, ramp: float = 0.0) -> None:
         """Prescribes the hub's angular velocity: from 0, linearly over ``ramp``, to ``speed``."""
         b = self._own(body)
-        b.drive = (b.angle, speed, ramp)
+        b.drive = (b.angle, finite(speed, "speed"), not_negative(ramp, "ramp"))
         if ramp == 0.0:
             b.velocity = (b.velocity[0], b.velocity[1], speed)
 
     def load(self, body: int, torque: float = 0.0, damper: float = 0.0) -> None:
         """A constant torque on the hub, and a damper (moment over angular velocity) between hub and ground."""
         b = self._own(body)
-        b.torque, b.damper = torque, damper
+        b.torque, b.damper = finite(torque, "torque"), not_negative(damper, "damper")
 
     def contact(self, a: int, b: int, friction: float = 0.0, restitution: float = 1.0) -> None:
         """Lets two bodies touch; forces are recorded on ``b``. The laws of friction and damping: ``resist``."""
         self._own(a), self._own(b)
+        friction, restitution = not_negative(friction, "friction"), not_negative(restitution, "restitution")
         self._pairs.append((a, b))
         self._held.append((friction, restitution))
 

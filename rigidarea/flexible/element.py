@@ -13,6 +13,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from rigidarea.flexible.mesh import Mesh
+from rigidarea.gate import finite, positive
 
 Array = NDArray[np.float64]
 
@@ -32,12 +33,11 @@ class Material:
     plane: str = "stress"
 
     def __post_init__(self) -> None:
-        if not -1.0 < self.poisson < 0.5:
-            raise ValueError(f"Poisson's ratio must lie in (-1, 0.5), got {self.poisson}")
+        if not -1.0 < finite(self.poisson, "poisson") < 0.5:
+            raise ValueError(f"poisson, Poisson's ratio, must lie in (-1, 0.5), got {self.poisson}")
         for name in ("young", "density", "thickness"):
-            if not 0.0 < getattr(self, name) < np.inf:
-                raise ValueError(f"{name} must be positive and finite, got {getattr(self, name)}")
-        if self.plane not in ("stress", "strain"):
+            positive(getattr(self, name), name)
+        if not isinstance(self.plane, str) or self.plane not in ("stress", "strain"):
             raise ValueError(f"plane must be 'stress' or 'strain', got {self.plane!r}")
 
     def elasticity(self) -> Array:

@@ -24,10 +24,12 @@ from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.start import start
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 from rigidarea.flexible.watch import watch
+from rigidarea.gate import positive, whole
 from rigidarea.kernel.impact import damping_ratio
 
 Array = NDArray[np.float64]
 
+MOST_STEPS = 10**9  # a run of more would take days, and its record more memory than there is
 CHUNK = 5000  # steps a compiled call: a Python signal waits at most this long
 ROOM = 120  # loaded FE nodes of all contacts at once, to begin with; doubled when they are more. (Rows of 128 would all
 # fall on the same few lines of the processor's cache.)
@@ -258,10 +260,12 @@ class Simulation:
         body went beyond linear elasticity. What was computed until then, or until an
         interrupt, is in ``self.record``.
         """
-        if not (0 < h < np.inf and 0 < duration < np.inf):
-            raise ValueError(f"duration and h must be positive and finite, got {duration} and {h}")
-        if not (isinstance(every, int | np.integer) and every >= 1):
-            raise ValueError(f"every must be a whole number of at least 1, got {every!r}")
+        positive(duration, "duration"), positive(h, "h")
+        every = whole(every, "every", 1)
+        if duration / h > MOST_STEPS:
+            raise ValueError(
+                f"h must be at least {duration / MOST_STEPS:.4g} for a duration of {duration:g}, got {h:g}"
+            )
         steps = round(duration / h)
         n, m, p = len(self.bodies), len(self.state.q), len(self.pairs)
         out = np.zeros(
@@ -296,6 +300,11 @@ class Simulation:
             )
         if code < 0:
             raise RuntimeError(f"step {done} (t = {self.time:.6g}, h = {h:g}, {self._trouble(code)}")
+        if not (np.isfinite(self.state.x).all() and np.isfinite(self.state.v).all()):
+            raise RuntimeError(
+                f"the state of the bodies is not finite at t = {self.time:.6g}, h = {h:g}: expected forces, stiffnesses"
+                " and speeds whose products are numbers"
+            )
         spin = np.abs(self.record.v[:, :, 2]).max(0, initial=0.0)
         watch(self.bodies, self.system.size, self._buffers.most, spin)
         return self.record

@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pymunk
 
-from ..contact import AreaContact, attach, attached
-from ..outline import positive
+from ..contact import AreaContact, SimulationError, attach, attached
+from ..gate import positive, truth, whole
 from . import costs, elastic
 from . import estimates as est
 from .curves import FACETS
@@ -89,6 +89,7 @@ class Plan:
 
         keep: level and outlines stay, and nothing gets coarser: what can be changed between frames without a jump.
         """
+        truth(keep, "keep")
         given = dict(self.overrides.get(None, {}))
         sampled = dict(self.sampling)
         if keep:
@@ -327,8 +328,13 @@ class Plan:
         return self._assembled[1]
 
     def step(self, dt: float | None = None, frames: int = 1) -> None:
-        """Frames (of `frame`, unless dt says otherwise), in as many substeps as planned. After `apply`."""
-        dt = self.frame if dt is None else dt
+        """Frames (of `frame`, unless dt says otherwise), in as many substeps as planned. After `apply`.
+
+        Raises ValueError for arguments out of range, RuntimeError before `apply`, SimulationError where a body's state
+        stops being finite.
+        """
+        dt = self.frame if dt is None else positive(dt, "dt")
+        whole(frames, "frames", 1)
         contact = attached(self.space)
         if self.level == "pymunk":
             for _ in range(frames * self.steps):
@@ -337,6 +343,9 @@ class Plan:
             raise RuntimeError("expected a plan that is applied: call apply() first")
         else:
             contact.step(dt, frames, steps=self.steps)
+        for i, body in enumerate(self.space.bodies):  # Chipmunk's own step says nothing of it
+            if not math.isfinite(sum(body.position) + body.angle + sum(body.velocity)):
+                raise SimulationError(f"the state of bodies[{i}] is not finite after dt = {dt:g}")
 
     def watch(self, adapt: bool = False) -> Watch:
         """What stands beside the plan while it runs: see `Watch`."""
@@ -442,6 +451,8 @@ def plan(
     """
     if not isinstance(space, pymunk.Space):
         raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    if not isinstance(materials, Mapping | None):
+        raise ValueError(f"materials must be a mapping by pymunk.Body, got {type(materials).__name__}")
     for body in materials or {}:
         if not isinstance(body, pymunk.Body):
             raise ValueError(f"materials must be given by pymunk.Body, got {type(body).__name__}")

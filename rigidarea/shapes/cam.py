@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from functools import partial
 
 import numpy as np
 
-from ..outline import Outline, circle_points, positive
+from ..gate import finite, not_negative, positive
+from ..outline import Outline, circle_points
 
 
 def eccentric(
@@ -20,9 +20,8 @@ def eccentric(
     Raises ValueError for lengths out of range and a bore that leaves the disc.
     """
     positive(radius, "radius")
-    if not (math.isfinite(bore) and bore >= 0):
-        raise ValueError(f"bore must be finite and not negative, got {bore!r}")
-    if not 0 <= eccentricity < radius - bore:
+    not_negative(bore, "bore")
+    if not 0 <= finite(eccentricity, "eccentricity") < radius - bore:
         raise ValueError(
             f"eccentricity must lie in [0, radius − bore = {radius - bore:.6g}), got {eccentricity!r}"
         )
@@ -49,7 +48,7 @@ def flat_follower(
     positive(length, "length")
     positive(height, "height")
     back = height if overhang is None else positive(overhang, "overhang")
-    if not (math.isfinite(bore) and 0 <= bore < min(height / 2, back, length)):
+    if not (0 <= finite(bore, "bore") < min(height / 2, back, length)):
         raise ValueError(
             f"bore must lie in [0, {min(height / 2, back, length):.6g}), inside the lever, got {bore!r}"
         )

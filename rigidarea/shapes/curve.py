@@ -12,6 +12,8 @@ Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Parameters (n,) -> points (n, 2)."""
 
 _FINE = 512  # steps in which curvature is measured
+MOST = 10**6  # chords of one curve: beyond, the outline would take gigabytes
+MOST_TEETH = 10_000  # of a gear: more than any has, and its outline is still some ten megabytes
 _WITHIN = np.arange(1, 8) / 8  # where, between a chord's ends, its distance from the curve is measured
 
 
@@ -23,10 +25,13 @@ def sample_curve(
     No chord's sagitta exceeds `tolerance` (length) and no chord is longer than `spacing` (length), if
     given. A chord of length ds on curvature κ has sagitta κ ds²/8, so chords of equal sagitta are spread
     with density sqrt(κ/(8·tolerance)) along the curve; the count is then raised until the sagittas,
-    measured, obey.
+    measured, obey. Raises ValueError for what would take more than MOST chords.
     """
     fine = np.linspace(first, last, _FINE + 1)
     count = _ideal_count(curve(fine), tolerance, spacing)
+    if not count[-1] <= MOST:
+        given = f"tolerance {tolerance:.3g}" + ("" if spacing is None else f", spacing {spacing:.3g}")
+        raise ValueError(f"expected a tolerance and spacing of at most {MOST} chords a curve, got {given}")
     chords = max(1, math.ceil(count[-1]))
     while True:
         chosen = np.interp(np.linspace(0, count[-1], chords + 1), count, fine)

@@ -17,8 +17,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..outline import Outline, circle_points, positive
-from .curve import sample_curve
+from ..gate import finite, not_negative, positive, size, whole
+from ..outline import Outline, circle_points
+from .curve import MOST_TEETH, sample_curve
 
 STANDARD_RACK_TIP_RADIUS = 0.38
 """Rounding of the rack's tip in modules, ISO 53 profile A."""
@@ -58,18 +59,24 @@ def involute_gear(
     below the tip circle, rack tips without width, an undercut that leaves no flank or cuts teeth off, a
     bore that reaches the root circle.
     """
-    if not (isinstance(teeth, int | np.integer) and teeth >= 3):
-        raise ValueError(f"teeth must be a whole number of at least 3, got {teeth!r}")
-    positive(module, "module")
-    if not 0 < pressure_angle < math.pi / 4:
+    whole(teeth, "teeth", 3, MOST_TEETH)
+    size(module, "module")
+    if not 0 < finite(pressure_angle, "pressure_angle") < math.pi / 4:
         raise ValueError(f"pressure_angle must lie between 0 and π/4 radians, got {pressure_angle!r}")
     positive(addendum, "addendum")
     positive(dedendum, "dedendum")
     for name, value in (("backlash", backlash), ("bore", bore)):
-        if not (math.isfinite(value) and value >= 0):
-            raise ValueError(f"{name} must be finite and not negative, got {value!r}")
-    if not math.isfinite(profile_shift):
-        raise ValueError(f"profile_shift must be finite, got {profile_shift!r}")
+        not_negative(value, name)
+    finite(profile_shift, "profile_shift")
+    if rack_tip_radius is not None:
+        not_negative(rack_tip_radius, "rack_tip_radius")
+    for name, value in (
+        ("addendum", addendum),
+        ("dedendum", dedendum),
+        ("profile_shift", abs(profile_shift)),
+    ):
+        if value > teeth:  # in modules: two pitch radii
+            raise ValueError(f"{name} must be at most {teeth} modules for {teeth} teeth, got {value:.6g}")
     tolerance_length = 1e-3 * module if tolerance is None else positive(tolerance, "tolerance")
     if spacing is not None:
         positive(spacing, "spacing")

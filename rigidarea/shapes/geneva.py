@@ -14,7 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..arcs import circle_ring
-from ..outline import Outline, positive
+from ..gate import not_negative, positive, size, whole
+from ..outline import Outline
 
 
 class Geneva(NamedTuple):
@@ -83,14 +84,13 @@ def geneva(
     other, into the bore or past the wheel's centre, locking arcs that cut slots, and a driver's disc that
     the wheel leaves no room for.
     """
-    if not (isinstance(slots, int | np.integer) and 3 <= slots <= 12):
-        raise ValueError(f"slots must be a whole number from 3 to 12, got {slots!r}")
-    c, pin_radius = positive(center_distance, "center_distance"), positive(pin_diameter, "pin_diameter") / 2
+    whole(slots, "slots", 3, 12)
+    c, pin_radius = size(center_distance, "center_distance"), size(pin_diameter, "pin_diameter") / 2
     if locking_clearance is None:
         locking_clearance = clearance
     for name, value in (("clearance", clearance), ("locking_clearance", locking_clearance), ("bore", bore)):
-        if not (math.isfinite(value) and value >= 0):
-            raise ValueError(f"{name} must be finite and not negative, got {value!r}")
+        if not_negative(value, name) > c:
+            raise ValueError(f"{name} must be below center_distance = {c:.6g}, got {value:.6g}")
     if tolerance is not None:
         positive(tolerance, "tolerance")
 
@@ -109,8 +109,7 @@ def geneva(
         raise ValueError(f"bore must end before the slots, below {bottom - half_width:.6g}, got {bore!r}")
 
     reach = r - half_width  # from the driver's centre, abreast of the slot's mouth, to the mouth's corner
-    if locking_radius is None:
-        locking_radius = 0.8 * reach
+    locking_radius = 0.8 * reach if locking_radius is None else size(locking_radius, "locking_radius")
     lowest, highest = c - wheel_radius, reach - locking_clearance
     if not lowest < locking_radius < highest:
         raise ValueError(

@@ -12,8 +12,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..outline import Outline, circle_points, positive
-from .curve import sample_curve
+from ..gate import finite, not_negative, positive, size, whole
+from ..outline import Outline, circle_points
+from .curve import MOST_TEETH, sample_curve
 
 
 def internal_gear(
@@ -42,15 +43,15 @@ def internal_gear(
     Raises ValueError, with the number concerned, for parameters out of range, tips below the base circle, and teeth or
     spaces that come to a point.
     """
-    if not (isinstance(teeth, int | np.integer) and teeth >= 3):
-        raise ValueError(f"teeth must be a whole number of at least 3, got {teeth!r}")
-    positive(module, "module")
-    if not 0 < pressure_angle < math.pi / 4:
+    whole(teeth, "teeth", 3, MOST_TEETH)
+    size(module, "module")
+    if not 0 < finite(pressure_angle, "pressure_angle") < math.pi / 4:
         raise ValueError(f"pressure_angle must lie between 0 and π/4 radians, got {pressure_angle!r}")
     for name, value in (("addendum", addendum), ("dedendum", dedendum), ("rim", rim)):
         positive(value, name)
-    if not (math.isfinite(backlash) and backlash >= 0):
-        raise ValueError(f"backlash must be finite and not negative, got {backlash!r}")
+        if value > teeth:  # in modules: two pitch radii
+            raise ValueError(f"{name} must be at most {teeth} modules for {teeth} teeth, got {value:.6g}")
+    not_negative(backlash, "backlash")
     sagitta = 1e-3 * module if tolerance is None else positive(tolerance, "tolerance")
 
     pitch = module * teeth / 2

@@ -10,7 +10,8 @@ import pymunk.examples
 import pytest
 
 from rigidarea.compat import command
-from rigidarea.compat.examples import EXAMPLES, STEPPING, compare, judge, run_example, widened
+from rigidarea.compat.examples import EXAMPLES, STEPPING, by_chance, compare, judge, run_example, widened
+from rigidarea.compat.facts import cradle_swings, stays_in_scene
 from rigidarea.compat.watch import Frame, Watch
 
 pytest.importorskip("pygame")
@@ -21,7 +22,6 @@ FAST = ("basic_test", "constraints", "damped_rotary_spring_pointer", "platformer
 #: Does not behave as meant. Whoever mends one takes it out.
 BROKEN: set[str] = {
     "arrows",  # both stick, but the second where it is chance whether the first is in its way
-    "flipper",  # the ball goes another way, and out between the flippers
 }
 
 
@@ -86,6 +86,7 @@ def calm() -> dict:
         ({"box": [0, -600, 300, 400]}, "600 outside the native run's box of 500"),
         ({"fastest": 1000.0}, "fastest body 1000, natively 400"),
         ({"joint_error": 2.5}, "joints off by 2.5, natively 0.5"),
+        ({"resting": None}, "nobody of those"),
         ({"resting": 0.7}, "70% at rest, natively 90%"),
         (
             {"calls": {"begin": 10, "pre_solve": 900, "post_solve": 0, "separate": 10}},
@@ -101,6 +102,61 @@ def test_the_judge_sees(change, message):
     assert judge(calm(), calm()) == []
     (said,) = judge(calm(), {**copy.deepcopy(calm()), **change})
     assert message in said
+
+
+def game(holds):
+    return {
+        "facts": [
+            {"name": "thrown", "holds": holds, "measured": "3"},
+            {"name": "stays", "holds": True, "measured": "1"},
+        ]
+    }
+
+
+def test_a_fact_of_chance_holds_in_more_than_half_of_the_games():
+    for run in (game(True), game(False)):
+        most, half, none = (
+            by_chance(run, [game(i < n) for i in range(8)], ["thrown"])["facts"] for n in (5, 4, 0)
+        )
+        assert most[0]["holds"] and not half[0]["holds"] and not none[0]["holds"]
+        assert "5 of 8" in most[0]["measured"] and half[1] == run["facts"][1]
+    died = {"error": "died", "facts": []}
+    assert not by_chance(game(True), [game(True)] * 4 + [died] * 4, ["thrown"])["facts"][0]["holds"]
+
+
+@pytest.mark.parametrize("x", [-1, 11, math.nan])
+def test_to_stay_in_a_scene_somebody_has_to_be_there(x):
+    facts = stays_in_scene((0, 0), (10, 10))
+    assert all(fact.holds for fact in facts(watched([[5, 5]])))
+    assert not all(fact.holds for fact in facts(watched([[x, 5]])))
+    assert not all(fact.holds for fact in facts(watched([])))
+    assert not all(fact.holds for fact in stays_in_scene((0, 0), (10, 10), 2)(watched([[5, 5]])))
+
+
+def watched(places):
+    """A watch of one frame with bodies at these places."""
+    state = np.zeros((len(places), 6))
+    if places:
+        state[:, :2] = places
+    numbers = list(range(len(places)))
+    return SimpleNamespace(frames=[Frame(np.array(numbers, np.int64), state)], dynamic=lambda: numbers)
+
+
+def test_a_cradle_whose_first_ball_is_only_drawn_aside_does_not_swing():
+    """The first is let go from afar and stays where it has struck; the last swings out: half of what was meant."""
+    t = np.arange(60)
+    first = np.where(t < 20, 100.0 + 10 * t, 300.0)
+    back = np.where(t > 45, 300.0 - 10 * (t - 45), first)
+    last = np.where(t > 20, 500.0 + 10 * np.minimum(t - 20, 15), 500.0)
+
+    def facts(path):
+        paths = [np.column_stack((t, x, t, t, t, t, t)) for x in (path, last)]
+        return cradle_swings(
+            SimpleNamespace(dynamic=lambda: [0, 1], path=lambda n: paths[n], joint_errors=[0.1])
+        )
+
+    assert [fact.holds for fact in facts(first)] == [True, False, True]
+    assert [fact.holds for fact in facts(back)] == [True, True, True]
 
 
 def test_what_a_judge_forgives():

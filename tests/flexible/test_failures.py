@@ -155,7 +155,7 @@ def test_more_loads_than_there_is_room_for():
         ({"position": (0.0, np.inf)}, "body 0: position must be 2 finite numbers"),
         ({"velocity": (0.0, 0.0)}, "body 0: velocity must be 3 finite numbers"),
         ({"damping": -0.1}, "body 0: damping must be finite and not negative"),
-        ({"torque": np.nan}, "body 0: torque must be finite"),
+        ({"torque": np.nan}, "body 0: torque must be a finite number"),
         ({"frequency": np.ones(2)}, "body 0: expected frequency of shape"),
     ],
 )
