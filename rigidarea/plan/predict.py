@@ -98,7 +98,9 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         told.append(Cause("pile", float(error), bodies[f.pile.body], text))
     if f.blow:
         extent = float(f.seen.extent[f.blow.body])
-        w = math.sqrt(g / (p * extent))
+        w = math.sqrt(
+            g / (p * max(f.struck, 1.0) * extent)
+        )  # the bed is as stiff as the lighter one lets it be
         deep = float(est.blow_depth(f.blow.value, w, h))
         text = f"a blow presses it in by {deep:.1e} of its size"
         told.append(Cause("blow", min(LOST, deep), bodies[f.blow.body], text))
