@@ -33,7 +33,8 @@ class Facts:
     tower: int  # layers of the highest pile
     wanted: float  # sweeps of Chipmunk's with which its loads are found
     shared: bool  # whether a body of it lies on two
-    struck: float  # mass of what falls on another over that of the other, the largest; 1 at least
+    struck: float  # mass of what falls on another over that of the other, the largest; 0 where nothing does
+    heavier: float  # mass of what lies or falls on another over that of the other, the largest; 1 at least
     flat: (
         Worst | None
     )  # how many times its depth a flush body sinks: what it carries, how near its base's edge it stands
@@ -46,6 +47,7 @@ class Facts:
     rough: bool  # whether there is friction
     column: int  # bodies in a row that may buckle: a tower's layers, or the stones of an arch
     landing: Worst | None  # 1/v at the first touch of a body that falls (time/length)
+    blow: Worst | None  # v/extent of a body that falls and stays (1/time)
     bounce: Worst | None  # 1/v of the last bounce (time/length), of a body that falls
     elastic_bounce: bool  # e = 1: what is off comes back
     largest: float  # largest extent of what moves (length)
@@ -67,13 +69,13 @@ class Facts:
     @property
     def least_sweeps(self) -> int:
         """With fewer sweeps its loads are not found."""
-        several = self.piled and self.shared and (self.tower > 1 or self.leaning is not None)
+        several = self.piled and (self.tower > 1 or (self.shared and self.leaning is not None))
         return est.LEAST_PILE_SWEEPS if several else est.LEAST_SWEEPS
 
     @property
     def least_steps(self) -> int:
-        """With fewer substeps it may fall."""
-        return est.LEAST_PILE_STEPS if self.tower > 2 else 1
+        """With fewer substeps it may fall, or be let go."""
+        return est.LEAST_PILE_STEPS if self.tower > 2 or self.heavier > est.MOST_HEAVIER else 1
 
     @property
     def seams(self) -> bool:
@@ -145,7 +147,8 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         tower=tower,
         wanted=float(est.sweeps_wanted(float(tower), max(heavier, 1.0))),
         shared=shared,
-        struck=falls_on,
+        struck=falls_on if lands_on_free.any() else 0.0,
+        heavier=heavier,
         flat=_worst(carried, free & polygon & ~corners & (g > 0.0)),
         rounded=_worst(np.where((friction > 0.0) & slips, 1.0, 0.0), free & ~polygon & (g > 0.0)),
         corner=corner,
@@ -156,6 +159,7 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
         rough=bool(friction[free].max(initial=0.0) > 0.0),
         column=max(tower, min(int((oblique & held & piled).sum()), 2 * tower)),
         landing=_worst(1.0 / np.maximum(speed, 1e-300), (speed > 0.0) & free),
+        blow=_worst(speed / extent, (drops > 0.0) & (elasticity == 0.0) & free & polygon),
         bounce=_worst(1.0 / last, bounces),
         elastic_bounce=bool(bounces.any() and e[bounces].min() > 0.999),
         largest=float(seen.extent[free].max(initial=0.0)),
@@ -340,9 +344,9 @@ def _teeth(seen: Survey, frame: float) -> tuple[float, int]:
 def _driven(seen: Survey, many: bool) -> tuple[float, int]:
     """The fastest spin among pairs with a concave outline that something drives, times its lever (1/time); the shape.
 
-    Gears from about a dozen teeth up hand over while another pair still bears (contact ratio above one), and bear as
-    far from the pitch point as a tooth is wide; slots, cams and hooks (not many) begin from nothing each time,
-    anywhere.
+    Two gears from about a dozen teeth up hand over while another pair still bears (contact ratio above one), and bear
+    as far from the pitch point as a tooth is wide; slots, cams and hooks (not many, or against a pin: a wheel of six
+    slots has six hollows for the lock beside them) begin from nothing each time, anywhere.
     """
     fastest, which = 0.0, -1
     for i, j in seen.pairs[seen.concave[seen.pairs].any(axis=1)]:
@@ -352,7 +356,8 @@ def _driven(seen: Survey, many: bool) -> tuple[float, int]:
         if spin <= 0.0:
             continue
         outlines = [seen.shapes[k].outline for k in (i, j) if seen.concave[k]]  # type: ignore[attr-defined]
-        if (min(map(pockets, outlines)) >= MANY_TEETH) != many:
+        mesh = len(outlines) == 2 and min(map(pockets, outlines)) >= MANY_TEETH
+        if mesh != many:
             continue
         lever = 1.0
         if many:  # with that of the pair before and of the pair after, which are met a substep late

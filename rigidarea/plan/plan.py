@@ -173,7 +173,8 @@ class Plan:
         bends = any(choice.level in ELASTIC for choice in self.elastic)
         native = level == "pymunk" or (level is None and not bends and _native_will_do(found, self.stiffness))
         if native:
-            slop = given.get("penetration", SLOP * self.tolerance / found.tower)
+            share = SLOP / (est.TOPPLE if found.corner else 1.0)
+            slop = given.get("penetration", share * self.tolerance / found.tower)
             native_sweeps = (given["sweeps"],) if "sweeps" in given else SWEEPS if piled else SWEEPS[:1]
             out += [Setting("pymunk", n, m, slop) for n in steps for m in native_sweeps]
         return out

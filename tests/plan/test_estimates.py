@@ -44,6 +44,31 @@ def test_impact_depth_is_an_energy_balance():
     assert est.impact_depth(speed, mass, k, chord) == pytest.approx(deepest, rel=1e-12)
 
 
+@pytest.mark.parametrize("phase", [0.05, 0.3, 1.0, 4.0, 100.0])
+def test_blow_depth_bounds_a_mass_on_a_spring(phase):
+    """Backward Euler itself, from the touch on: no deeper, and close where it is soft or stiff."""
+    speed, h = 3.0, 1 / 120
+    w = phase / h
+    place, rate, deepest = 0.0, speed, 0.0
+    for _ in range(200):
+        rate = (rate - h * w * w * place) / (1.0 + (w * h) ** 2)
+        place += h * rate
+        deepest = max(deepest, place)
+    told = est.blow_depth(speed, w, h)
+    assert deepest <= told * (1 + 1e-12)
+    assert told <= math.sqrt(2.0) * deepest  # at w h = 1 the most: 1/sqrt(2) for its 1/2
+    if phase > 50.0:
+        assert told == pytest.approx(deepest, rel=1e-3)
+        weight = G / w**2  # how deep its weight would rest
+        assert told / weight == pytest.approx(speed / (G * h), rel=1e-3)
+
+
+def test_blow_depth_of_a_soft_contact_is_an_energy_balance():
+    speed, mass, k, chord = 3.0, 2.0, 4e3, 0.7
+    w = est.contact_frequency(k, chord, mass)
+    assert est.blow_depth(speed, w, 1e-6) == pytest.approx(est.impact_depth(speed, mass, k, chord), rel=1e-6)
+
+
 def test_a_corner_sinks_by_the_root():
     for p in (1e-2, 1e-4, 1e-6):
         corner = ra.Outline([(-1, -1), (1, -1), (1, 1), (-1, 1)])
@@ -275,8 +300,32 @@ def test_sweeps_of_a_chain():
         x, after = x + a * d, r - a * q
         d, r = after + (after @ after) / (r @ r) * d, after
     assert k <= est.sweeps_wanted(n, 1.0) <= 6 * n  # a chain of its own is exact after n: a pile is many
-    assert est.sweeps_ours(n, shared=False) < k  # ours are exact on it
+    assert (
+        est.sweeps_ours(n, shared=False) == 0 < k
+    )  # ours are exact on it: the next substep has nothing left to do
+    assert est.sweeps_ours(n, shared=False, struck=1.0) < k  # a blow's load is new
     assert est.sweeps_ours(n, shared=True) == est.sweeps_wanted(n, 1.0)
+
+
+def test_ten_sweeps_find_a_towers_loads_in_one_substep():
+    """Ten boxes: so many sweeps as the search takes leave the beds' own depth; half as many do not."""
+    p = 1e-7
+    bed = 10 * p * 10  # ten faces, no deeper than what the lowest carries
+    sunk = {}
+    for sweeps in (est.LEAST_PILE_SWEEPS, est.LEAST_SWEEPS):
+        space = pymunk.Space()
+        space.gravity, space.iterations = (0, -G), sweeps
+        space.add(pymunk.Segment(space.static_body, (-50, 0), (50, 0), 0))
+        bodies = []
+        for i in range(10):
+            body = pymunk.Body(1.0, 1.0 / 6.0)
+            body.position = 0, 0.5 + i
+            space.add(body, pymunk.Poly.create_box(body, (1, 1)))
+            bodies.append(body)
+        ra.attach(space, penetration=p).step(1 / 60, 60, steps=1)
+        sunk[sweeps] = max(i + 0.5 - body.position.y for i, body in enumerate(bodies))
+    assert sunk[est.LEAST_PILE_SWEEPS] <= bed
+    assert sunk[est.LEAST_SWEEPS] > 100 * bed
 
 
 def test_a_pile_sags_by_the_time_its_loads_take():

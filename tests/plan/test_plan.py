@@ -8,6 +8,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.plan import elastic
+from rigidarea.plan import estimates as est
 from rigidarea.plan.facts import facts
 from rigidarea.plan.predict import Setting, causes, total
 from rigidarea.plan.survey import survey
@@ -135,6 +136,45 @@ def test_what_comes_off_an_arc_is_seen_beforehand():
     assert total(found, Setting("rigid", 8, 5, 1e-6)) < 0.001
 
 
+def test_a_pin_in_a_slot_is_no_gear():
+    """A Geneva wheel has twelve hollows, six of them for the lock: it begins from nothing with each slot."""
+    from rigidarea.plan.validate import space_of
+    from rigidarea.study.scene import get_scene
+
+    scene = get_scene("geneva")
+    found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
+    assert found.driven[0] == 0.0 and found.slots[0] == pytest.approx(math.pi)
+    scene = get_scene("gears")
+    found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
+    assert found.driven[0] > 0.0 and found.slots[0] == 0.0
+
+
+def test_what_is_heavy_on_light_wants_two_substeps():
+    for ratio, steps in ((50.0, 1), (1000.0, 2)):
+        space = pymunk.Space()
+        space.gravity = 0, -G
+        ground(space)
+        for x in (-0.75, 0.75):
+            box(space, (x, 0.5))
+        box(space, (0.05, 1.5), (2.5, 1.0), mass=ratio)
+        made = ra.plan(space, 0.1).override(level="rigid")
+        assert made.steps == steps and made.sweeps == est.LEAST_PILE_SWEEPS
+
+
+def test_a_blow_asks_for_a_stiffer_bed_than_its_weight():
+    """Dropped from ten sides: v/(g h) times as deep as it would lie, where the bed is stiff."""
+    space, _ = stack(1)
+    box(space, (0, 11.5))
+    found = facts(survey(space), 1 / 60, 2.0)
+    speed, p, h = math.sqrt(2 * G * 10.0), 1e-6, 1 / 60
+    blow = next(cause for cause in causes(found, Setting("rigid", 1, 10, p)) if cause.name == "blow")
+    assert blow.error == pytest.approx(p * speed / (G * h), rel=1e-2)
+    resting, _ = stack(2)
+    assert "blow" not in {
+        c.name for c in causes(facts(survey(resting), 1 / 60, 2.0), Setting("rigid", 1, 10, p))
+    }
+
+
 def test_what_starts_overlapped_and_meets_nothing():
     """Chipmunk takes two free boxes apart without a speed that stays: one step a frame will do, given the time."""
     from rigidarea.plan.validate import space_of
@@ -156,6 +196,13 @@ def test_more_is_never_worse():
     found = facts(survey(space), 1 / 60, 5.0)
     errors = [total(found, Setting("rigid", n, 10, 1e-5)) for n in (2, 3, 4, 8, 16)]
     assert errors == sorted(errors, reverse=True) and errors[0] > errors[-1]
+    errors = [total(found, Setting("rigid", 2, m, 1e-5)) for m in (10, 20, 40)]
+    assert errors == sorted(errors, reverse=True)  # a tower's loads are found by the first ten
+    space, _ = stack(0)
+    for row in range(6):
+        for i in range(6 - row):
+            box(space, (i + 0.5 * row, row + 0.5))
+    found = facts(survey(space), 1 / 60, 5.0)
     errors = [total(found, Setting("rigid", 2, m, 1e-5)) for m in (10, 20, 40)]
     assert errors == sorted(errors, reverse=True) and errors[0] > errors[-1]
 
