@@ -143,10 +143,11 @@ An example behaves *as meant* if two to five facts written down from reading it 
 the tower stands, the arrow sticks, the ball stays in the court; all hold natively), and if beside the native run
 nothing is raised or printed on standard error, no body is farther out than the native run's box by its diagonal,
 none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
-off than twice natively plus a pixel, of the bodies that came two seconds before the end as many rest (up to a tenth;
-who sleeps rests), and callbacks come as often (up to a factor of two). Where one is farther out or faster, native
-runs with four other seeds count as well: games of chance have no one course. Times are processor time, median over
-frames: `space.step` alone, and the example's whole frame with its drawing.
+off than twice natively plus a pixel, of the bodies that came two seconds before the end as many rest (up to a
+tenth; who sleeps rests), and callbacks come as often (up to a factor of two). Where one is farther out or faster,
+native runs with four other seeds count as well: games of chance have no one course. Facts of chance (whether a
+flipper meets the ball) are to hold in more than half of eight games, natively and attached. Times are processor
+time, median over frames: `space.step` alone, and the example's whole frame with its drawing.
 
 {_sentence(summary(rows))}
 """

@@ -112,7 +112,8 @@ def _brought(trial: Trial) -> Calls:
     def saved() -> None:
         for shape in trial.space.shapes:
             shape.friction = draw.choice((0.5, 1e300))
-        bring.save_scene(trial.space, draw.choice((Path(_folder().name) / "saved.json", n())))
+        with contextlib.chdir(_folder().name):  # "2" is a good name of a file
+            bring.save_scene(trial.space, draw.choice((Path("saved.json"), n())))
 
     none, drawn = Path(_folder().name) / "none", {"scale": 1.0, "tolerance": 0.1, "limits": bring.LIMITS}
     return [
