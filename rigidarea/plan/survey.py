@@ -340,3 +340,43 @@ def support(seen: Survey) -> tuple[Ints, Array, float, bool]:
     heavier = float((seen.mass[upper[light]] / seen.mass[lower[light]]).max(initial=1.0))
     shared = any(free[u] and len(set(under)) > 1 for u, under in enumerate(below))
     return np.array(deep), np.array(carried), heavier, shared
+
+
+def bases(seen: Survey) -> tuple[Array, Array]:
+    """Of a tower's bodies, where what each carries presses on what it stands on: (margin, width of the base (length)).
+
+    margin: of half the base the part between the load's line of action and its edge (1: in the middle; 0 or less: it
+    tips); 1 where nothing is known: what stands on nothing, or on two, or where gravity is not along an axis. The base
+    is where its box and that of what lies below share.
+    """
+    n = len(seen.bodies)
+    margin, width = np.ones(n), np.full(n, math.inf)
+    axis = 1 if abs(seen.gravity[1]) >= abs(seen.gravity[0]) else 0
+    if seen.g == 0.0 or seen.gravity[1 - axis] != 0.0:
+        return margin, width
+    touching = seen.gaps <= TOUCH * seen.thickness[seen.pairs].min(axis=1, initial=math.inf)
+    up = 1.0 if seen.gravity[axis] < 0.0 else -1.0
+    middle = up * 0.5 * (seen.boxes[:, axis] + seen.boxes[:, axis + 2])
+    middle[~seen.moves[seen.owner]] = -math.inf
+    standing: dict[int, list[tuple[int, float, float]]] = {}
+    for i, j in seen.pairs[touching].tolist():
+        u, lo = (i, j) if middle[i] > middle[j] else (j, i)
+        left = max(seen.boxes[u, 1 - axis], seen.boxes[lo, 1 - axis])
+        right = min(seen.boxes[u, 3 - axis], seen.boxes[lo, 3 - axis])
+        if right > left:
+            standing.setdefault(int(seen.owner[u]), []).append((int(seen.owner[lo]), left, right))
+    load = np.where(seen.moves, seen.mass, 0.0)
+    moment = load * [body.local_to_world(body.center_of_gravity)[1 - axis] for body in seen.bodies]
+    height = np.full(n, -math.inf)
+    np.maximum.at(height, seen.owner, middle)
+    for u in sorted(standing, key=lambda body: -height[body]):
+        below = {lo for lo, _, _ in standing[u]}
+        if len(below) > 1 or not seen.moves[u]:
+            continue
+        (lo,) = below
+        left, right = min(base[1] for base in standing[u]), max(base[2] for base in standing[u])
+        width[u] = right - left
+        margin[u] = 1.0 - abs(2.0 * moment[u] / load[u] - left - right) / width[u]
+        load[lo] += load[u]
+        moment[lo] += moment[u]
+    return margin, width
