@@ -346,8 +346,8 @@ def bases(seen: Survey) -> tuple[Array, Array]:
     """Of a tower's bodies, where what each carries presses on what it stands on: (margin, width of the base (length)).
 
     margin: of half the base the part between the load's line of action and its edge (1: in the middle; 0 or less: it
-    tips); 1 where nothing is known: what stands on nothing, or on two, or where gravity is not along an axis. The base
-    is where its box and that of what lies below share.
+    tips); 1 where nothing is known: what stands on nothing, or on two, or where gravity is not along an axis. A body's
+    weight is in the middle of its boxes, its base what its box shares with that of what lies below.
     """
     n = len(seen.bodies)
     margin, width = np.ones(n), np.full(n, math.inf)
@@ -355,28 +355,36 @@ def bases(seen: Survey) -> tuple[Array, Array]:
     if seen.g == 0.0 or seen.gravity[1 - axis] != 0.0:
         return margin, width
     touching = seen.gaps <= TOUCH * seen.thickness[seen.pairs].min(axis=1, initial=math.inf)
-    up = 1.0 if seen.gravity[axis] < 0.0 else -1.0
-    middle = up * 0.5 * (seen.boxes[:, axis] + seen.boxes[:, axis + 2])
-    middle[~seen.moves[seen.owner]] = -math.inf
+    free, owner, boxes = seen.moves, seen.owner, seen.boxes
+    shapes = np.maximum(np.bincount(owner, minlength=n), 1)
+    low, high = (np.bincount(owner, boxes[:, i], minlength=n) / shapes for i in (axis, axis + 2))
+    height = np.where(free, -np.sign(seen.gravity[axis]) * (low + high), -math.inf)
+    at = np.bincount(owner, 0.5 * (boxes[:, 1 - axis] + boxes[:, 3 - axis]), minlength=n) / shapes
+    i, j = seen.pairs[touching].T
+    left = np.maximum(boxes[i, 1 - axis], boxes[j, 1 - axis])
+    right = np.minimum(boxes[i, 3 - axis], boxes[j, 3 - axis])
+    a, b = owner[i], owner[j]
+    upper, lower = np.where(height[a] > height[b], (a, b), (b, a))
+    on = (right > left) & free[upper]
+    left, right, upper, lower = left[on], right[on], upper[on], lower[on]
+    off = np.maximum(
+        np.abs(at[upper] - 0.5 * (left + right)), np.abs(at[lower] - 0.5 * (left + right)) * free[lower]
+    )
+    if not (off > 1e-9 * (right - left)).any():
+        return margin, width  # all in the middle
     standing: dict[int, list[tuple[int, float, float]]] = {}
-    for i, j in seen.pairs[touching].tolist():
-        u, lo = (i, j) if middle[i] > middle[j] else (j, i)
-        left = max(seen.boxes[u, 1 - axis], seen.boxes[lo, 1 - axis])
-        right = min(seen.boxes[u, 3 - axis], seen.boxes[lo, 3 - axis])
-        if right > left:
-            standing.setdefault(int(seen.owner[u]), []).append((int(seen.owner[lo]), left, right))
-    load = np.where(seen.moves, seen.mass, 0.0)
-    moment = load * [body.local_to_world(body.center_of_gravity)[1 - axis] for body in seen.bodies]
-    height = np.full(n, -math.inf)
-    np.maximum.at(height, seen.owner, middle)
+    for u, *base in zip(upper.tolist(), lower.tolist(), left.tolist(), right.tolist()):
+        standing.setdefault(u, []).append(tuple(base))
+    load = np.where(free, seen.mass, 0.0)
+    moment = load * at
     for u in sorted(standing, key=lambda body: -height[body]):
         below = {lo for lo, _, _ in standing[u]}
-        if len(below) > 1 or not seen.moves[u]:
+        if len(below) > 1:
             continue
         (lo,) = below
-        left, right = min(base[1] for base in standing[u]), max(base[2] for base in standing[u])
-        width[u] = right - left
-        margin[u] = 1.0 - abs(2.0 * moment[u] / load[u] - left - right) / width[u]
+        first, last = min(base[1] for base in standing[u]), max(base[2] for base in standing[u])
+        width[u] = last - first
+        margin[u] = 1.0 - abs(2.0 * moment[u] / load[u] - first - last) / width[u]
         load[lo] += load[u]
         moment[lo] += moment[u]
     return margin, width
