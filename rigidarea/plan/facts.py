@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import estimates as est
 from .curves import MANY_TEETH, Facet, facets_of, pockets, tooth, tooth_lever
-from .survey import TOUCH, Array, Survey, support
+from .survey import TOUCH, Array, Survey, bases, support
 
 
 class Worst(NamedTuple):
@@ -124,10 +124,15 @@ def facts(seen: Survey, frame: float, time: float) -> Facts:
     e = np.minimum(elasticity, 1.0) ** 2  # of a pair the product; the other side's is not known yet
     bounces = (speed > 0.0) & (e > 0.0) & free & (g > 0.0)
     last: Array = est.last_speed(np.where(bounces, speed, 1.0), max(g, 1e-300), e, time)
+    slender = seen.reach / extent
+    if tower > 1 and not shared:  # a load beside the middle leans on its base's edge, upright as it may stand
+        beside, width = bases(seen)
+        nearer = (beside > 0.0) & (beside < margin) & ~oblique
+        margin, slender = np.where(nearer, beside, margin), np.where(nearer, seen.reach / width, slender)
     carried = (
         np.maximum(np.maximum(layers, ratio), np.where(piled, heavier, 1.0))
         * np.where(crossings > 1.0, est.SEAM * crossings, 1.0)
-        * est.leaning(np.maximum(margin, 1e-3), seen.reach / extent)
+        * est.leaning(np.maximum(margin, 1e-3), slender)
     )
     held = partners > 1  # by its neighbours: it leans, and does not fall over
     leans = corners & (~upright | held)

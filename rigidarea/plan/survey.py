@@ -340,3 +340,51 @@ def support(seen: Survey) -> tuple[Ints, Array, float, bool]:
     heavier = float((seen.mass[upper[light]] / seen.mass[lower[light]]).max(initial=1.0))
     shared = any(free[u] and len(set(under)) > 1 for u, under in enumerate(below))
     return np.array(deep), np.array(carried), heavier, shared
+
+
+def bases(seen: Survey) -> tuple[Array, Array]:
+    """Of a tower's bodies, where what each carries presses on what it stands on: (margin, width of the base (length)).
+
+    margin: of half the base the part between the load's line of action and its edge (1: in the middle; 0 or less: it
+    tips); 1 where nothing is known: what stands on nothing, or on two, or where gravity is not along an axis. A body's
+    weight is in the middle of its boxes, its base what its box shares with that of what lies below.
+    """
+    n = len(seen.bodies)
+    margin, width = np.ones(n), np.full(n, math.inf)
+    axis = 1 if abs(seen.gravity[1]) >= abs(seen.gravity[0]) else 0
+    if seen.g == 0.0 or seen.gravity[1 - axis] != 0.0:
+        return margin, width
+    touching = seen.gaps <= TOUCH * seen.thickness[seen.pairs].min(axis=1, initial=math.inf)
+    free, owner, boxes = seen.moves, seen.owner, seen.boxes
+    shapes = np.maximum(np.bincount(owner, minlength=n), 1)
+    low, high = (np.bincount(owner, boxes[:, i], minlength=n) / shapes for i in (axis, axis + 2))
+    height = np.where(free, -np.sign(seen.gravity[axis]) * (low + high), -math.inf)
+    at = np.bincount(owner, 0.5 * (boxes[:, 1 - axis] + boxes[:, 3 - axis]), minlength=n) / shapes
+    i, j = seen.pairs[touching].T
+    left = np.maximum(boxes[i, 1 - axis], boxes[j, 1 - axis])
+    right = np.minimum(boxes[i, 3 - axis], boxes[j, 3 - axis])
+    a, b = owner[i], owner[j]
+    upper, lower = np.where(height[a] > height[b], (a, b), (b, a))
+    on = (right > left) & free[upper]
+    left, right, upper, lower = left[on], right[on], upper[on], lower[on]
+    off = np.maximum(
+        np.abs(at[upper] - 0.5 * (left + right)), np.abs(at[lower] - 0.5 * (left + right)) * free[lower]
+    )
+    if not (off > 1e-9 * (right - left)).any():
+        return margin, width  # all in the middle
+    standing: dict[int, list[tuple[int, float, float]]] = {}
+    for u, *base in zip(upper.tolist(), lower.tolist(), left.tolist(), right.tolist()):
+        standing.setdefault(u, []).append(tuple(base))
+    load = np.where(free, seen.mass, 0.0)
+    moment = load * at
+    for u in sorted(standing, key=lambda body: -height[body]):
+        below = {lo for lo, _, _ in standing[u]}
+        if len(below) > 1:
+            continue
+        (lo,) = below
+        first, last = min(base[1] for base in standing[u]), max(base[2] for base in standing[u])
+        width[u] = last - first
+        margin[u] = 1.0 - abs(2.0 * moment[u] / load[u] - first - last) / width[u]
+        load[lo] += load[u]
+        moment[lo] += moment[u]
+    return margin, width

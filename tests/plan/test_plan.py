@@ -11,7 +11,7 @@ from rigidarea.plan import elastic
 from rigidarea.plan import estimates as est
 from rigidarea.plan.facts import facts
 from rigidarea.plan.predict import Setting, causes, total
-from rigidarea.plan.survey import survey
+from rigidarea.plan.survey import bases, survey
 
 G = 9.81
 
@@ -65,6 +65,25 @@ def test_layers_and_loads():
     assert layers[:6].tolist() == [1, 2, 3, 4, 5, 6]
     assert load[:6] == pytest.approx([45, 44, 43, 42, 41, 40])
     assert heavier == 40
+
+
+def test_where_a_load_presses_on_its_base():
+    """Books over an edge, each 0.9 of the classical overhang: by statics the load of n of them lies 0.1 of half a
+    book inside the edge of what is below."""
+    space = pymunk.Space()
+    space.gravity = 0, -G
+    table = pymunk.Poly(space.static_body, [(-10, -1), (0, -1), (0, 0), (-10, 0)])
+    space.add(table)
+    edge, count = 0.0, 4
+    for i in range(count):
+        edge += 0.9 / (2 * (count - i))
+        box(space, (edge - 0.5, 0.2 * i + 0.1), (1.0, 0.2))
+    margin, width = bases(survey(space))
+    overlap = 1.0 - 0.9 / (2 * np.array([4, 3, 2, 1]))
+    assert width[:count] == pytest.approx(overlap)
+    assert margin[:count] == pytest.approx(0.05 / (overlap / 2))
+    straight, _ = stack(3)
+    assert bases(survey(straight))[0][:3] == pytest.approx(1.0)
 
 
 def test_a_load_is_shared():
