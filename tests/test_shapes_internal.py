@@ -8,6 +8,7 @@ import shapely
 from shapely import affinity
 
 from rigidarea.shapes import eccentric, flat_follower, internal_gear, involute_gear
+from rigidarea.shapes.curve import sample_curve
 
 
 def test_spaces_are_the_external_gears_teeth():
@@ -72,3 +73,12 @@ def test_eccentric_lifts_a_flat_by_its_eccentricity():
 def test_bad_shapes(make, text):
     with pytest.raises(ValueError, match=text):
         make()
+
+
+@pytest.mark.parametrize("tolerance", [1e-14, 1e-300])
+def test_a_tolerance_below_rounding_is_refused(tolerance):
+    """Chords of which no number can be seen to obey; a curve that stands still has none to fail."""
+    with pytest.raises(ValueError, match="above the points' rounding"):
+        internal_gear(1.0, 40, tolerance=tolerance)
+    still = sample_curve(lambda t: np.ones((len(t), 2)), 0.0, 1.0, 1e-3)
+    assert len(still) == 2

@@ -14,6 +14,7 @@ Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 _FINE = 512  # steps in which curvature is measured
 MOST = 10**6  # chords of one curve: beyond, the outline would take gigabytes
 MOST_TEETH = 10_000  # of a gear: more than any has, and its outline is still some ten megabytes
+_ROUNDING = 16 * np.finfo(float).eps  # of a coordinate; a sagitta is not known better
 _WITHIN = np.arange(1, 8) / 8  # where, between a chord's ends, its distance from the curve is measured
 
 
@@ -28,12 +29,14 @@ def sample_curve(
     measured, obey. Raises ValueError for what would take more than MOST chords.
     """
     fine = np.linspace(first, last, _FINE + 1)
-    count = _ideal_count(curve(fine), tolerance, spacing)
-    if not count[-1] <= MOST:
-        given = f"tolerance {tolerance:.3g}" + ("" if spacing is None else f", spacing {spacing:.3g}")
-        raise ValueError(f"expected a tolerance and spacing of at most {MOST} chords a curve, got {given}")
-    chords = max(1, math.ceil(count[-1]))
-    while True:
+    seen = curve(fine)
+    count = _ideal_count(seen, tolerance, spacing)
+    given = f"tolerance {tolerance:.3g}" + ("" if spacing is None else f", spacing {spacing:.3g}")
+    rounding = _ROUNDING * float(np.abs(seen).max())
+    if not tolerance > rounding:
+        raise ValueError(f"expected a tolerance above the points' rounding, {rounding:.3g}, got {given}")
+    chords = max(1, math.ceil(count[-1])) if count[-1] <= MOST else MOST + 1
+    while chords <= MOST:
         chosen = np.interp(np.linspace(0, count[-1], chords + 1), count, fine)
         chosen[0], chosen[-1] = first, last  # (where the curve is straight, the count stands still)
         points = curve(chosen)
@@ -42,6 +45,7 @@ def sample_curve(
         ):
             return points
         chords += 1 + chords // 100
+    raise ValueError(f"expected a tolerance and spacing of at most {MOST} chords a curve, got {given}")
 
 
 def _ideal_count(points: NDArray[np.float64], tolerance: float, spacing: float | None) -> NDArray[np.float64]:
@@ -62,4 +66,8 @@ def _sagitta(curve: Curve, chosen: NDArray[np.float64], points: NDArray[np.float
     away = curve(between.ravel()).reshape(*between.shape, 2) - points[:-1, None]
     along = np.diff(points, axis=0)[:, None]
     cross = along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
-    return float(np.max(np.abs(cross) / np.hypot(along[..., 0], along[..., 1])))
+    length = np.hypot(along[..., 0], along[..., 1])
+    away_from_point = np.hypot(away[..., 0], away[..., 1])
+    return float(
+        np.max(np.where(length > 0.0, np.abs(cross) / np.where(length > 0.0, length, 1.0), away_from_point))
+    )
