@@ -118,5 +118,5 @@ def test_bad_body():
     mat = Material(1e9, 0.3, 1000.0)
     with pytest.raises(ValueError, match="level must be one of"):
         elastic_body([circle(1.0, 100)], 0.3, mat, "soft")
-    with pytest.raises(ValueError, match="hub ring 1 has no nodes"):
+    with pytest.raises(ValueError, match="hub: a ring must be a whole number from 0 to 0, got 1"):
         elastic_body([circle(1.0, 100)], 0.3, mat, hub=1)
