@@ -110,7 +110,7 @@ def bodies(
     root: float = ROOT,
     refine: int = REFINE,
     modes: int = 40,
-    sides: int = 1,
+    sides: int = 2,
     cache: Path | None = None,
 ) -> tuple[tuple[Body, Mesh], tuple[Body, Mesh]]:
     """Pinion and wheel, teeth centred in mesh at rest, and their meshes."""

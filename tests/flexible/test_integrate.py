@@ -120,3 +120,5 @@ def test_bad_body():
         elastic_body([circle(1.0, 100)], 0.3, mat, "soft")
     with pytest.raises(ValueError, match="hub ring 1 has no nodes"):
         elastic_body([circle(1.0, 100)], 0.3, mat, hub=1)
+    with pytest.raises(ValueError, match="contact ring 1 has no nodes"):
+        elastic_body([circle(1.0, 100)], 0.3, mat, contact_rings=(0, 1))
