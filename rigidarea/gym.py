@@ -65,7 +65,7 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         friction: float = 0.2,
         max_steps: int = 300,
     ) -> None:
-        if render_mode not in (None, "rgb_array"):
+        if not (render_mode is None or (isinstance(render_mode, str) and render_mode == "rgb_array")):
             raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
         if not (isinstance(clearance, int | float) and 0 < clearance < PEG[0]):
             raise ValueError(f"clearance must be between 0 and {PEG[0]:g}, got {clearance!r}")

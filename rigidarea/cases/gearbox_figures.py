@@ -206,7 +206,9 @@ def _displacements(out: Path, sim: Simulation, meshes: tuple[Mesh, Mesh], region
     ax.grid(False)
     sides = (("viridis", "left"), ("plasma", "right"))
     for i, ((colours, side), mesh) in enumerate(zip(sides, meshes, strict=True)):
-        u = displacement(mesh, sim.works[i].node_load[: len(mesh.rings[0])])
+        loads = np.zeros((len(mesh.rings[0]), 2))
+        loads[mesh.rings[2]] = sim.works[i].node_load  # of the ring's nodes, those that contacts load
+        u = displacement(mesh, loads)
         centre = mesh.points[0] - sim.boundaries[i].points[0]
         p = figures.placed(mesh.points - centre, sim.state.x[i])
         size = 1e6 * np.hypot(*u.T)

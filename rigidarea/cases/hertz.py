@@ -102,7 +102,7 @@ def discs(division: int, cache: Path | None = None) -> tuple[Boundary, Boundary,
         ring = graded_ring(half_width(0.5 * RADIUS) / division, shift, top)
         mesh = triangulate([ring], growth=0.12, max_size=1.0)
         body = reduce(mesh, Material(YOUNG, POISSON, 1.0, 1.0, "strain"), cache=cache)
-        bodies.append(build([ring - body.centre], flexibility=body.flexibility))
+        bodies.append(build([ring - body.centre], flexibility=body.how_it_yields))
         nodes = len(mesh.points)
     return bodies[0], bodies[1], nodes
 
@@ -117,7 +117,7 @@ def pressed(
         mesh = triangulate([ring], growth=0.12, max_size=1.0)
         material = Material(YOUNG, POISSON, 1.0, 1.0, "strain")
         reduced = reduce(mesh, material, cache=cache)
-        boundary = build([ring - reduced.centre], flexibility=reduced.flexibility)
+        boundary = build([ring - reduced.centre], flexibility=reduced.how_it_yields)
         made.append((Shape(mesh, material, (0,), None, None, reduced), boundary))
     (shape_a, a), (shape_b, b) = made
     solution = solve(a, (0, 0, 0), b, (0, 2 * RADIUS - approach, 0), STIFF, (0.0, 1.0))

@@ -14,6 +14,7 @@ import numpy as np
 from numba import config
 from numpy.typing import NDArray
 
+from rigidarea.flexible.blocks import WIDE
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.kernel.jit import kernel
 from rigidarea.kernel.memory import array_at as compiled_array_at
@@ -21,8 +22,8 @@ from rigidarea.kernel.memory import array_at as compiled_array_at
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SIZES = 8  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses,
-# coordinates of ``tension``
+SIZES = 11  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses,
+# coordinates of ``tension``, pieces of the flexibility, rows of their paths, terms beside them
 WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
 COUPLING = WORK + len(Work._fields)
 GEOMETRIC = COUPLING + 1
@@ -57,7 +58,7 @@ def table(
                 raise ValueError(f"{name} must be contiguous, got strides {array.strides}")
         row[:SIZES] = (
             len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s),
-            b.soft.shape[1],
+            b.soft.shape[1], len(b.ready), len(b.path), b.relief_left.shape[1],
         )  # fmt: skip
         row[SIZES:] = [array.ctypes.data for array in arrays]
     return out
@@ -68,6 +69,8 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
     """Body i's boundary."""
     row = bodies[i]
     n, f, t, m, c, s, r = row[0], row[1], row[2], row[3], row[4], row[5], row[7]
+    p, v, k = row[8], row[9], row[10]
+    own = c if p > 0 else 0
     return Boundary(
         array_at(row[SIZES], (n, 2), np.float64),
         array_at(row[SIZES + 1], (n,), np.int64),
@@ -88,6 +91,12 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
         array_at(row[SIZES + 16], (2 * f + 3, r), np.float64),
         array_at(row[SIZES + 17], (r,), np.float64),
         array_at(row[SIZES + 18], (3 if r > 0 else 0, r, r), np.float64),
+        array_at(row[SIZES + 19], (p, p), np.bool_),
+        array_at(row[SIZES + 20], (p + 1,), np.int64),
+        array_at(row[SIZES + 21], (v,), np.int64),
+        array_at(row[SIZES + 22], (v, WIDE), np.float64),
+        array_at(row[SIZES + 23], (own, k), np.float64),
+        array_at(row[SIZES + 24], (own, k), np.float64),
     )
 
 

@@ -13,6 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.flexible.blocks import NODES, Pieces, fill, fill_all, no_pieces, sparse
+from rigidarea.kernel.jit import kernel
+
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
@@ -29,7 +32,9 @@ class Boundary(NamedTuple):
     rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
     not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
     them beyond the modes (time² × length), or (0,). soft (2 f + 3, r), soft_stretch (r,), tension (3, r, r): of a
-    compliant body that may spin, see ``tension``; r = 0 if there is none.
+    compliant body that may spin, see ``tension``; r = 0 if there is none. ready (p, p), start, path, value,
+    relief_left, relief_right: of a flexibility that is made block by block, when it is used, see ``blocks`` and
+    ``complete``; p = 0 if it is whole.
     """
 
     points: Array
@@ -51,6 +56,12 @@ class Boundary(NamedTuple):
     soft: Array
     soft_stretch: Array
     tension: Array
+    ready: NDArray[np.bool_]
+    start: Ints
+    path: Ints
+    value: Array
+    relief_left: Array
+    relief_right: Array
 
 
 class Work(NamedTuple):
@@ -94,12 +105,13 @@ def build(
     rings: list[Array],
     carriers: tuple[Ints, Ints, Array] | None = None,
     modes: Array | None = None,
-    flexibility: Array | None = None,
+    flexibility: Array | Pieces | None = None,
     swell: Array | None = None,
     soft: tuple[Array, Array, Array] | None = None,
 ) -> Boundary:
     """A boundary from rings of contact points; without ``carriers`` (low, high, share) each point is its own node.
 
+    flexibility: whole, or the pieces that it is made of when it is used.
     soft: the last three of ``Boundary``. FE nodes that no point lies on keep the body's origin as their place.
     """
     points = np.ascontiguousarray(np.vstack(rings), float)
@@ -175,6 +187,10 @@ def build(
         if soft is None or len(soft[1]) == 0
         else soft
     )
+    pieces, ready = no_pieces(), np.zeros((0, 0), bool)
+    if isinstance(flexibility, Pieces):
+        pieces = flexibility
+        flexibility, ready = sparse(pieces)
     return Boundary(
         points, nxt, prv, ring,
         np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
@@ -182,7 +198,24 @@ def build(
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
         nodes, np.zeros(0) if swell is None else np.ascontiguousarray(swell, float),
         np.ascontiguousarray(psi, float), np.ascontiguousarray(h, float), np.ascontiguousarray(tension, float),
+        ready, *pieces,
     )  # fmt: skip
+
+
+def complete(b: Boundary) -> Boundary:
+    """``b``, every block of its flexibility ready: for who reads it outside of the kernels."""
+    if len(b.ready):
+        fill_all(b.flexibility, b.ready, Pieces(*b[-5:]))
+    return b
+
+
+@kernel
+def make_ready(b: Boundary, node: int, first: int, end: int) -> None:
+    """Makes the flexibility between an FE node and the nodes ``first`` … ``end`` - 1, where it is not ready."""
+    i = node // NODES
+    for j in range(first // NODES, (end - 1) // NODES + 1):
+        if not b.ready[i, j]:
+            fill(b.flexibility, b.ready, b.start, b.path, b.value, b.relief_left, b.relief_right, i, j)
 
 
 def workspace(b: Boundary) -> Work:

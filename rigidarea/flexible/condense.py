@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import boundary_at, work_at
-from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.boundary import Boundary, Work, make_ready
 from rigidarea.flexible.dense import dot, eliminate
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
@@ -249,6 +249,8 @@ def _own(b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual
                 continue
             moved = 0.0
             if static:
+                if len(b.ready) > 0:
+                    make_ready(b, s.node[i], s.node[j], s.node[j] + 1)
                 u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
                 top, low = b.flexibility[row], b.flexibility[row + 1]
                 moved = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)

@@ -23,6 +23,7 @@ Array = NDArray[np.float64]
 BAND = 1.3  # ratio of lattice spacings of neighbouring bands of the graded size field
 BOUNDARY_GAP = 0.62  # seeds keep this part of the local size from the boundary: its edges stay Delaunay
 SEED_GAP = 0.72  # and this part of it from the seeds of finer bands
+BATCH = 20_000  # lattice points looked at together: more cost memory, a hundred numbers each
 ROUNDS = 6  # of smoothing; more gains less than a degree
 MIN_ANGLE = 5.0  # degrees; below, the interpolation error of a triangle is more than ten times a good one's
 CORNER = np.radians(30.0)  # a vertex that turns by more is a corner, kept as a node
@@ -195,7 +196,7 @@ def _seeds(
 ) -> Array:  # fmt: skip
     """Lattice points of all bands, the finest first; ``middle`` (e, 2) and ``length`` (e,) of the boundary edges."""
     x0, y0, x1, y1 = polygon.bounds
-    kept = np.empty((0, 2))
+    kept, tree = np.empty((0, 2)), cKDTree(middle)
     finest = spacing = float(length.min())
     while spacing < max(x1 - x0, y1 - y0):
         # Only points near edges finer than this band belong to it: h = length + growth × distance < BAND × spacing
@@ -205,18 +206,26 @@ def _seeds(
         high = np.minimum((middle[own] + reach).max(0), [x1, y1])
         rows = np.arange(low[1] + 0.5 * spacing, high[1], spacing * np.sqrt(0.75))
         cols = np.arange(low[0] + 0.5 * spacing, high[0], spacing)
-        lattice = np.stack(np.meshgrid(cols, rows), -1)
-        lattice[1::2, :, 0] += 0.5 * spacing
-        lattice = lattice.reshape(-1, 2)
-        lattice = lattice[shapely.contains_xy(polygon, lattice[:, 0], lattice[:, 1])]
-        if len(lattice):
-            h, gap = size_and_gap(lattice)
-            lower = 0.0 if spacing == finest else spacing * (1 - 1e-9)
-            mine = (h >= lower) & (h < spacing * BAND * (1 - 1e-9)) & (gap > BOUNDARY_GAP * h)
-            lattice = lattice[mine]
-            if len(kept) and len(lattice):
-                lattice = lattice[cKDTree(kept).query(lattice)[0] > SEED_GAP * spacing]
-            kept = np.vstack([kept, lattice])
+        lower = 0.0 if spacing == finest else spacing * (1 - 1e-9)
+        # whose size is at least the finest edge's, grown over the distance to the nearest
+        far = (BAND * spacing - finest) / growth if growth > 0 else np.inf
+        found = [np.empty((0, 2))]
+        many = max(1, BATCH // max(1, len(cols)))
+        for first in range(0, len(rows), many):
+            lattice = np.stack(np.meshgrid(cols, rows[first : first + many]), -1)
+            lattice[(1 - first % 2) :: 2, :, 0] += 0.5 * spacing
+            lattice = lattice.reshape(-1, 2)
+            lattice = lattice[tree.query(lattice, distance_upper_bound=far)[0] < far]
+            lattice = lattice[shapely.contains_xy(polygon, lattice[:, 0], lattice[:, 1])]
+            if len(lattice):
+                h, gap = size_and_gap(lattice)
+                found.append(
+                    lattice[(h >= lower) & (h < spacing * BAND * (1 - 1e-9)) & (gap > BOUNDARY_GAP * h)]
+                )
+        lattice = np.vstack(found)
+        if len(kept) and len(lattice):
+            lattice = lattice[cKDTree(kept).query(lattice)[0] > SEED_GAP * spacing]
+        kept = np.vstack([kept, lattice])
         spacing *= BAND
     return kept
 

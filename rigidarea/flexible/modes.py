@@ -23,9 +23,10 @@ import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
+from rigidarea.flexible.blocks import WIDE, Pieces, no_pieces, spans, whole
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
-from rigidarea.flexible.factor import needed, substitute
+from rigidarea.flexible.factor import factorise, forward, substitute, trace
 from rigidarea.flexible.mesh import Mesh
 
 Array = NDArray[np.float64]
@@ -33,7 +34,7 @@ Ints = NDArray[np.int64]
 
 SOFT = 8  # modes of a compliant body that spin stiffens: a beam's tip at half its first frequency yields as with 24, to
 # 0.1 % (tests/flexible/test_spin.py)
-BLOCK = 32  # right-hand sides solved at once: more cost memory, and time as they leave the processor cache
+WHOLE = 3000  # rows of a flexibility that is multiplied out at once: 72 MB
 
 
 @dataclass(frozen=True)
@@ -47,7 +48,8 @@ class Reduced:
     stiffness of the stress by those forces, and by a unit force on the hub along x and y; (0, m, m) for a clamped body
     and without modes. slowest: the first elastic angular frequency, 0 for a rigid body. soft (i, r), soft_stretch (r,),
     tension (3, r, r): modes, stretch and geometric stiffness of the first r = SOFT modes over their frequencies, of a
-    compliant body that is not clamped (``tension``); else r = 0.
+    compliant body that is not clamped (``tension``); else r = 0. pieces: what the flexibility of an interface of more
+    than WHOLE rows is made of; ``flexibility`` is then (0, 0).
     """
 
     mass: float
@@ -64,6 +66,12 @@ class Reduced:
     soft: Array
     soft_stretch: Array
     tension: Array
+    pieces: Pieces
+
+    @property
+    def how_it_yields(self) -> Array | Pieces:
+        """The flexibility, or its pieces."""
+        return self.pieces if len(self.pieces.path) else self.flexibility
 
 
 def reduce(
@@ -88,16 +96,19 @@ def reduce(
             raise ValueError(f"{name} ring {ring} has no nodes; the mesh has rings 0 … {len(mesh.rings) - 1}")
     if modes > 2 * len(mesh.points) - 3:
         raise ValueError(f"modes must be at most {2 * len(mesh.points) - 3} for this mesh, got {modes}")
-    names = [f.name for f in fields(Reduced)]
+    names = [f.name for f in fields(Reduced) if f.name != "pieces"]
 
     def build() -> dict[str, NDArray]:
         body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible, smooth)
-        return {name: np.asarray(getattr(body, name)) for name in names}
+        return {name: np.asarray(getattr(body, name)) for name in names} | body.pieces._asdict()
 
     settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible, smooth)
-    found = arrays(cache, settings, (mesh.points, mesh.triangles, *mesh.rings), names, build)
+    found = arrays(
+        cache, settings, (mesh.points, mesh.triangles, *mesh.rings), [*names, *Pieces._fields], build
+    )
+    pieces = Pieces(*(found.pop(name) for name in Pieces._fields))
     mass, inertia, slowest = (float(found.pop(name)) for name in ("mass", "inertia", "slowest"))
-    return Reduced(mass, inertia, slowest=slowest, **found)
+    return Reduced(mass, inertia, slowest=slowest, pieces=pieces, **found)
 
 
 def rigid_modes(points: Array, mass: Array) -> tuple[Array, Array, float]:
@@ -136,16 +147,7 @@ class Flexibility:
         self.root = np.repeat(mass, 2) ** 0.5
         self._rigid, self._momentum = rigid, self.root[:, None] ** 2 * rigid
         self._free = np.setdiff1d(np.arange(k.shape[0]), held)
-        factors = spl.splu(
-            k[self._free][:, self._free].tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0,
-            options={"SymmetricMode": True},
-        )  # fmt: skip
-        self._row, self._column = factors.perm_r, factors.perm_c
-        self._factors = tuple(
-            part
-            for f in (factors.L.tocsc(), factors.U.tocsc())
-            for part in (f.indptr.astype(np.int64), f.indices.astype(np.int64), f.data)
-        )
+        self._factors = factorise(k[self._free][:, self._free].tocsc())
 
     def __call__(self, loads: Array) -> Array:
         """Displacements (2 n, c) under ``loads`` (2 n, c).
@@ -154,42 +156,50 @@ class Flexibility:
         so little work on a busy machine; SuperLU's ``solve`` calls it as well, for one column after another.
         """
         loads = loads - np.einsum("ir,rc->ic", self._momentum, np.einsum("ir,ic->rc", self._rigid, loads))
-        u = self._supported(loads, np.ones(len(self._free), bool))
+        u = self._supported(loads)
         return u - np.einsum("ir,rc->ic", self._rigid, np.einsum("ir,ic->rc", self._momentum, u))
 
-    def _supported(self, loads: Array, wanted: NDArray[np.bool_]) -> Array:
-        """K⁺ times ``loads`` (2 n, c), where ``wanted``, see ``substitute``."""
+    def _supported(self, loads: Array) -> Array:
+        """K⁺ times ``loads`` (2 n, c)."""
+        f = self._factors
         x = np.empty((len(self._free), loads.shape[1]))
-        x[self._row] = loads[self._free]
-        substitute(*self._factors, wanted, x)
+        x[f.place] = loads[self._free]
+        substitute(f.start, f.row, f.value, f.diagonal, x)
         u = np.zeros(loads.shape)
-        u[self._free] = x[self._column]
+        u[self._free] = x[f.place]
         return u
 
-    def between(self, rows: sp.csc_array) -> Array:
-        """rowsᵀ C rows (i, i), for the displacements and loads of few nodes, ``rows`` (2 n, i).
+    def between(self, rows: sp.csc_array, phi: Array, omega: Array) -> Pieces:
+        """rowsᵀ C rows (i, i), less the modes ``phi`` (2 n, m) of frequencies ``omega``, as ``blocks`` has it.
 
-        With W = K⁺ M R and S = Rᵀ M W, C = K⁺ − W Rᵀ − R Wᵀ + R S Rᵀ: so that the loads that are solved for stay those
-        of single nodes, and only their own displacements are needed.
+        rows (2 n, i): loads on nodes, the last three a hub's. With W = K⁺ M R and S = Rᵀ M W, C = K⁺ − W Rᵀ − R Wᵀ +
+        R S Rᵀ: so that the loads that are solved for stay those of single nodes.
         """
-        w = self._supported(self._momentum, np.ones(len(self._free), bool))
+        f = self._factors
+        w = self._supported(self._momentum)
         s = np.einsum("ir,ic->rc", self._momentum, w)
-        at, moved = np.asarray(rows.T @ self._rigid), np.asarray(rows.T @ w)
-        asked = np.zeros(rows.shape[0], bool)
-        asked[rows.indices] = True
-        wanted = np.zeros(len(self._free), bool)
-        wanted[self._column] = asked[self._free]
-        upper = sp.csc_array((self._factors[5], self._factors[4], self._factors[3])).tocsr()
-        needed(upper.indptr.astype(np.int64), upper.indices.astype(np.int64), wanted)
-        count, transposed = rows.shape[1], rows.T.tocsr()
-        c = np.empty((count, count))
-        for first in range(0, count, BLOCK):
-            part = slice(first, first + BLOCK)
-            c[:, part] = transposed @ self._supported(rows[:, part].toarray(), wanted)
-            c[:, part] += np.einsum("ir,cr->ic", at @ s - moved, at[part]) - np.einsum(
-                "ir,cr->ic", at, moved[part]
-            )
-        return c
+        at, moved, modes = (np.asarray(rows.T @ x) for x in (self._rigid, w, phi))
+        loads = rows[self._free].tocoo()
+        place, parts, paths = f.place[loads.row], [], []
+        for low, high in spans(rows.shape[1]):
+            mine = np.flatnonzero((loads.col >= low) & (loads.col < high))
+            on = np.zeros(len(self._free), bool)
+            on[place[mine]] = True
+            trace(f.start, f.row, on)
+            parts.append((place[mine], loads.col[mine] - low, loads.data[mine]))
+            paths.append(np.flatnonzero(on))
+        start = np.cumsum([0, *map(len, paths)])
+        value, where = np.zeros((start[-1], WIDE)), np.zeros(len(self._free), np.int64)
+        for (row, column, load), path, first in zip(parts, paths, start[:-1], strict=True):
+            x = value[first : first + len(path)]
+            where[path] = np.arange(len(path))
+            x[where[row], column] = load
+            forward(f.start, f.row, f.value, path, where, x)
+            x /= f.diagonal[path, None] ** 0.5
+        return Pieces(
+            start, np.concatenate(paths), value, np.hstack([at @ s - moved, -at, -modes / omega**2]),
+            np.hstack([at, moved, modes]),
+        )  # fmt: skip
 
     def modes(self, count: int) -> tuple[Array, Array]:
         """The first ``count`` elastic modes (2 n, count), mass-orthonormal, and their angular frequencies (count,).
@@ -238,7 +248,7 @@ def _reduce(
     if not flexible:
         return Reduced(float(mass.sum()), inertia, centre, np.zeros(0), np.zeros((f + 3, 0)), np.zeros((0, 0)),
                        np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), 0.0, np.zeros((f + 3, 0)),
-                       np.zeros(0), np.zeros((0, 0, 0)))  # fmt: skip
+                       np.zeros(0), np.zeros((0, 0, 0)), no_pieces())  # fmt: skip
     # interface displacements = rowsᵀ u, loads on the nodes = rows f
     pick = (2 * nodes[:, None] + np.arange(2)).ravel()
     hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
@@ -249,12 +259,6 @@ def _reduce(
     slowest = first_omega[0]
     phi, omega = first_modes[:, :modes], first_omega[:modes]
     at = np.asarray(rows.T @ phi)
-    c = response.between(rows)
-    for first in range(0, f + 3, BLOCK):
-        part = slice(first, first + BLOCK)
-        c[:, part] -= (at / omega**2) @ at[part].T
-        c[part, part] = 0.5 * (c[part, part] + c[part, part].T)
-        c[part, :first] = c[:first, part].T  # symmetric to the last bit, with no second matrix in memory
     m2 = np.repeat(mass, 2)
     turned = np.stack([-phi[1::2], phi[0::2]], 1).reshape(phi.shape)  # J φ
     spin = m2 * (mesh.points - centre).ravel()
@@ -264,8 +268,13 @@ def _reduce(
     if clamped is None:
         tense = response(np.column_stack([spin, hubs[:, :2]]))
         swell = rows.T @ tense[:, 0] - (at / omega**2) @ stretch
-        tensions = [geometric_stiffness(mesh, material, stress(mesh, material, u, smooth)) for u in tense.T]
-        stiffer = np.array([first_modes.T @ (s @ first_modes) for s in tensions])
+        stiffer = np.array(
+            [
+                first_modes.T
+                @ (geometric_stiffness(mesh, material, stress(mesh, material, u, smooth)) @ first_modes)
+                for u in tense.T
+            ]
+        )
         if modes:
             geometric = stiffer
         else:
@@ -273,7 +282,10 @@ def _reduce(
             soft_stretch = spin @ first_modes / first_omega
             stiffer[0] -= np.eye(len(first_omega))
             tension = stiffer / np.outer(first_omega, first_omega)
+    pieces, c = response.between(rows, phi, omega), np.zeros((0, 0))
+    if f + 3 <= WHOLE:
+        pieces, c = no_pieces(), whole(pieces)
     return Reduced(
         float(mass.sum()), inertia, centre, omega, at, c, phi.T @ (m2[:, None] * turned), stretch, swell, geometric,
-        float(slowest), soft, soft_stretch, tension,
+        float(slowest), soft, soft_stretch, tension, pieces,
     )  # fmt: skip

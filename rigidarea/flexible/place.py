@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.boundary import Boundary, Work, make_ready
 from rigidarea.flexible.dense import dot
 from rigidarea.kernel.jit import entry, kernel
 
@@ -33,6 +33,8 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
         flexibility, load, loaded = b.flexibility, w.node_load, w.loaded
         for k in range(loaded[-1]):
             j = loaded[k]
+            if len(b.ready) > 0:
+                make_ready(b, j, first, end)
             fx, fy = load[j, 0], load[j, 1]
             row_x = flexibility[2 * j, 2 * first : 2 * end]
             row_y = flexibility[2 * j + 1, 2 * first : 2 * end]

@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal
-from rigidarea.flexible.boundary import Boundary, workspace
+from rigidarea.flexible.boundary import Boundary, complete, workspace
 from rigidarea.flexible.region import arcs, find_regions
 
 Array = NDArray[np.float64]
@@ -61,6 +61,7 @@ def solve(
     neglects the tangential ones, which are of the order of the strain). tolerance: relative change of the loads.
     Raises RuntimeError, with the residual, if ``limit`` evaluations do not suffice.
     """
+    a, b = complete(a), complete(b)
     wa, wb = workspace(a), workspace(b)
     s = nodal.scratch(len(a.points) + len(b.points))
     pa, pb = (np.array([p[0], p[1], np.cos(p[2]), np.sin(p[2])]) for p in (pose_a, pose_b))
@@ -182,6 +183,7 @@ def hub_fixed(b: Boundary, hub: Array | tuple[float, float]) -> Boundary:
     the hub, C = C_bb − C_bh Tᵀ − T C_hb + T C_hh Tᵀ. ``hub`` (2,): its centre in the body frame; the FE nodes are
     taken from the contact points that lie on them.
     """
+    b = complete(b)
     own = np.flatnonzero(b.share == 0.0)
     points = np.zeros(((len(b.modes) - 3) // 2, 2))
     points[b.low[own]] = b.points[own]

@@ -202,7 +202,7 @@ def beam_body(mesh: Any, material: Any, modes: int, contact_rings: Sequence[int]
     from ..flexible.modes import reduce
 
     r = reduce(mesh, material, contact_rings, clamped=1, modes=modes)
-    boundary = build([mesh.points[mesh.rings[0]] - r.centre], None, r.modes, r.flexibility)
+    boundary = build([mesh.points[mesh.rings[0]] - r.centre], None, r.modes, r.how_it_yields)
     return Body(
         boundary, r.mass, r.inertia, (float(r.centre[0]), float(r.centre[1])), 0.0, r.frequency, r.coupling, r.stretch,
         fixed=True, **keys,

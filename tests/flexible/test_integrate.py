@@ -120,3 +120,5 @@ def test_bad_body():
         elastic_body([circle(1.0, 100)], 0.3, mat, "soft")
     with pytest.raises(ValueError, match="hub: a ring must be a whole number from 0 to 0, got 1"):
         elastic_body([circle(1.0, 100)], 0.3, mat, hub=1)
+    with pytest.raises(ValueError, match="contact: a ring must be a whole number from 0 to 0, got 1"):
+        elastic_body([circle(1.0, 100)], 0.3, mat, contact_rings=(0, 1))

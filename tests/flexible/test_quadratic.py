@@ -117,7 +117,10 @@ def land(points):
 
 @pytest.mark.slow
 def test_a_tooth_pushed_at_its_tip():
-    """Compliance of a pinion's tooth under even shear on its tip, hub held: 0.6 mm beside T6 of 0.15 mm."""
+    """Compliance of a pinion's tooth under even shear on its tip, hub held: the default at 0.6 mm beside T6 of 0.15 mm.
+
+    The load is spread over the tip's land on both sides, so that no indentation of a single node is in either.
+    """
     pinion, _ = gb.outlines()
     values = {}
     for fine in (3e-4, 1.5e-4):
@@ -136,18 +139,18 @@ def test_a_tooth_pushed_at_its_tip():
     print("T6:", values)
     assert values[3e-4] == pytest.approx(exact, rel=5e-3)  # a quarter of what is allowed below
     found = {}
-    for sides in (1, 2):
-        body, _ = elastic_body(pinion.rings, 6e-4, gb.STEEL, "compliant", hub=1, sides=sides)
+    for name, keys in (("default", {}), ("one side", dict(sides=1, growth=0.2))):
+        body, _ = elastic_body(pinion.rings, 6e-4, gb.STEEL, "compliant", hub=1, **keys)
         b = hub_fixed(body.boundary, body.hub)
         at = np.flatnonzero(land(b.points + 0.0))
         at = at[np.argsort(b.points[at, 1])]
         long = np.hypot(*np.diff(b.points[at], axis=0).T)
         load = np.zeros(len(b.flexibility))
         load[2 * at + 1] = 0.5 * (np.append(long, 0.0) + np.append(0.0, long)) / long.sum()
-        found[sides] = float(load @ b.flexibility @ load) / exact
-    print("T3, 0.6 mm, over T6 of 0.15 mm, by sides:", found)
-    assert found[1] == pytest.approx(1.0, abs=0.06)
-    assert found[2] == pytest.approx(1.0, abs=0.02)
+        found[name] = float(load @ b.flexibility @ load) / exact
+    print("T3, 0.6 mm, over T6 of 0.15 mm:", found)
+    assert found["one side"] == pytest.approx(1.0, abs=0.06)
+    assert found["default"] == pytest.approx(1.0, abs=0.02)
 
 
 def boundary(gear, parts=4, points=4):
