@@ -27,7 +27,10 @@ def outlines_of_polygons(
     made = []
     for i, polygon in enumerate(polygons):
         if not shapely.is_valid(polygon):
-            raise ValueError(f"polygon {i}: {shapely.is_valid_reason(polygon)}")
+            reason = shapely.is_valid_reason(polygon)
+            raise ValueError(
+                f"polygon {i}: {reason}; expected rings that neither cross themselves nor each other"
+            )
         thin = shapely.simplify(polygon, tolerance, preserve_topology=True) if tolerance > 0 else polygon
         made.append(
             Outline.from_shapely(thin if isinstance(thin, shapely.Polygon) and not thin.is_empty else polygon)

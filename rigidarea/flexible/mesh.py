@@ -127,7 +127,7 @@ def triangulate(rings: Sequence[Array], growth: float = 0.2, max_size: float | N
     rings = [np.ascontiguousarray(r, float) for r in rings]
     polygon = shapely.Polygon(rings[0], rings[1:])
     if not polygon.is_valid:
-        raise ValueError(f"rings must bound a valid region: {shapely.is_valid_reason(polygon)}")
+        raise ValueError(f"rings must bound a valid region, got: {shapely.is_valid_reason(polygon)}")
     boundary = np.vstack(rings)
     index, start = [], 0
     for r in rings:
