@@ -83,6 +83,6 @@ MOVED = 0.003
 SETTLED = 5e-3
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
-CALM = 0.02
+CALM = 0.2
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3
