@@ -409,8 +409,6 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
         moved = sweep(tables, k % 2 == 0)
         if jointed:
             _joints(s, tables, APPLY, h)
-        if k + 1 == _relaxing(whole) and moved > small:  # something heavy, that sweeps take long to stop
-            search_together(tables, whole // SEARCH_SWEEPS)
         if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
             break
     end_relaxing(tables, h)

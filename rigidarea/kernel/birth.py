@@ -106,28 +106,33 @@ def size_of(body: Any) -> float:
     return body.extent if body.mobile else np.inf
 
 
+@kernel(forceinline=True)
+def _bounced(law: Law, pair: Any, r: Any) -> bool:
+    """Whether a region is what a bounce has left of itself: two who overlap still, and bear nothing."""
+    free = r.mode == REST and r.first_speed > 0.0 and r.l1 + r.l2 == 0.0
+    return bool(free and pair.elasticity > 0.0 and law.followed < math.inf)
+
+
 @kernel
 def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     """Whether two have bounced and part, overlapping still: sent back they bounce anew, a substep later."""
-    if r.mode != REST or pair.elasticity == 0.0 or r.l1 + r.l2 > 0.0 or law.followed == math.inf:
+    if r.born or not _bounced(law, pair, r):
         return False
     u = closing(r, a, b, 0.0)
-    inverse = inverse_mass(r, a, b)
     stiffness = region_stiffness(law, r.stiffness, r.chord)
-    return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse, h))
+    return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse_mass(r, a, b), h))
 
 
 @kernel
 def hit(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now.
 
-    Or bounces, and was about to part.
+    Or so fast that it bounces, where a bounce is what was before.
     """
     u = closing(r, a, b, 1.0)
-    if u > 0.0 and pair.elasticity > 0.0 and r.l1 + r.l2 == 0.0 and law.followed < math.inf:
+    if u > 0.0 and _bounced(law, pair, r):
         stiffness = region_stiffness(law, r.stiffness, r.chord)
-        gain = (closing(r, a, b, 0.0) - u) / h
-        if u > _slow(law, gain, stiffness * inverse_mass(r, a, b), h):
+        if u > _slow(law, (closing(r, a, b, 0.0) - u) / h, stiffness * inverse_mass(r, a, b), h):
             return True
     if law.followed == math.inf or u * h <= max(r.depth, HIT * min(size_of(a), size_of(b))):
         return False

@@ -25,6 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .birth import flies_off
 from .constants import HIT, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
@@ -263,6 +264,20 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 2:
             row.l1 *= 0.5
             row.l2 = row.l1
+    elif flies_off(law, pair, r, a, b, h):
+        gamma = 1.0 / inverse
+        force = 0.0
+        row.t1 = HIT * least_extent(a, b) / h
+        row.t2 = row.t1
+        row.alpha = 0.0
+        row.alpha_t = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        row.tt = surface
+        r.spring = 0.0
+        row.l1 = 0.0
+        row.l2 = 0.0
+        row.lt = 0.0
     elif r.mode == IMPACT:
         row.ends = 1
         row.e1 = 0.0

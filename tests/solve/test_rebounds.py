@@ -87,6 +87,21 @@ def gas(steps, seconds, count=60, engine=ENGINE):
     return float(np.median(last)) / start
 
 
+@pytest.mark.parametrize("steps", [2, 4, None])
+def test_a_wall_that_sends_a_disc_back_at_another_gives_nothing(steps):
+    """e = 1: one bounces off the other, off a wall right after it, while both overlap still, and off the other again."""
+    world = World(stiffness=1e5, elasticity=1.0)
+    world.block(11.2, -2, 13.2, 13.2)
+    world.disc((10.67699665996267, 5.137357300279784), velocity=(2.1785076865533872, 0.9945662320245403))
+    world.disc((9.671904711756119, 4.9193455629303), velocity=(3.589452241812492, 2.5096200150039722))
+    start = world.kinetic()
+    world.run(0.1, steps)
+    assert world.kinetic() == pytest.approx(
+        start, rel=2e-3
+    )  # what contacts that steps follow keep is e within 0.002
+    assert all(b.velocity.x < 0 for b in world.bodies)
+
+
 @pytest.mark.parametrize("seconds", [5, pytest.param(60, marks=pytest.mark.slow)])
 @pytest.mark.parametrize("steps", [4, None])
 def test_a_gas_of_elastic_discs_keeps_its_energy(steps, seconds):
