@@ -60,8 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
     frames = arguments.frames or (None if arguments.window else FRAMES)
     host = Host(arguments.engine, frames, headless=not arguments.window)
     with contextlib.ExitStack() as stack:
-        if not arguments.window and sys.stderr.isatty():
-            stack.enter_context(alive(host, script))
+        if not arguments.window:
+            stack.enter_context(frames_told(host, script))
         movie = None
         if arguments.film:
             from .filming import Filming
@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 @contextlib.contextmanager
-def alive(host: Host, script: Path, seconds: float = 1.0) -> Iterator[None]:
+def frames_told(host: Host, script: Path, seconds: float = 1.0) -> Iterator[None]:
     """Say on standard error what runs, and as often as that at which frame it is; nothing while code is compiled."""
     print(f"rigidarea run: {script}, {host.engine}", file=sys.stderr, flush=True)
     over = threading.Event()
