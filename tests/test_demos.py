@@ -156,9 +156,6 @@ def test_platformer_obeys_the_game():
     assert player.position.y < 0.6  # and dropped to the ground again
 
 
-@pytest.mark.xfail(
-    reason="pieces stay 0.1 m deep in each other; k grows on them: energy 460 times the scale", strict=True
-)
 def test_bowl_keeps_every_piece():
     run = run_through("bowl")
     row = run.row()

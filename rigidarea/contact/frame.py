@@ -64,6 +64,7 @@ from ..kernel.tables import (
     NEAR,
     ROWS,
     SUBSTEP,
+    TOOTHED,
     TURN,
     Tables,
     pairs_in_use,
@@ -408,6 +409,8 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
         moved = sweep(tables, k % 2 == 0)
         if jointed:
             _joints(s, tables, APPLY, h)
+        if k + 1 == _relaxing(whole) and moved > small:  # something heavy, that sweeps take long to stop
+            search_together(tables, whole // SEARCH_SWEEPS)
         if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
             break
     end_relaxing(tables, h)
@@ -570,7 +573,14 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     s.contacts = 0
     if not _start(s, space, load_tables(s)):
         return False
-    n = demand(load_pool(s), load_tables(s), load_law(s), dt, s.substeps, s.steps_given == 0)
+    tables = load_tables(s)
+    if (
+        tables.counters[ANEW] and tables.counters[TOOTHED] > 0
+    ):  # teeth ask for substeps before the first one looks
+        tables.counters[TURN] = 0
+        if not _find_near(s, space, dt, dt):
+            return False
+    n = demand(load_pool(s), load_tables(s), load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     tables = load_tables(s)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
     for joint in joints_of(s):

@@ -107,9 +107,28 @@ def size_of(body: Any) -> float:
 
 
 @kernel
-def hit(law: Law, r: Any, a: Any, b: Any, h: float) -> bool:
-    """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now."""
+def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether two have bounced and part, overlapping still: sent back they bounce anew, a substep later."""
+    if r.mode != REST or pair.elasticity == 0.0 or r.l1 + r.l2 > 0.0 or law.followed == math.inf:
+        return False
+    u = closing(r, a, b, 0.0)
+    inverse = inverse_mass(r, a, b)
+    stiffness = region_stiffness(law, r.stiffness, r.chord)
+    return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse, h))
+
+
+@kernel
+def hit(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now.
+
+    Or bounces, and was about to part.
+    """
     u = closing(r, a, b, 1.0)
+    if u > 0.0 and pair.elasticity > 0.0 and r.l1 + r.l2 == 0.0 and law.followed < math.inf:
+        stiffness = region_stiffness(law, r.stiffness, r.chord)
+        gain = (closing(r, a, b, 0.0) - u) / h
+        if u > _slow(law, gain, stiffness * inverse_mass(r, a, b), h):
+            return True
     if law.followed == math.inf or u * h <= max(r.depth, HIT * min(size_of(a), size_of(b))):
         return False
     pushed = max(

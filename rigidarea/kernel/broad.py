@@ -7,6 +7,7 @@ low x, which hardly changes from search to search, so that insertion sort takes 
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from .constants import MARGIN
@@ -20,6 +21,7 @@ from .tables import (
     NEAR,
     SEARCH,
     SHAPES,
+    TOOTHED,
     TURN,
     Tables,
     end_pair,
@@ -194,7 +196,8 @@ def passes(one: Any, other: Any) -> bool:
 
 @entry
 def extents(pool: Pool, tables: Tables) -> None:
-    """Every body's smallest extent and its reach, from its shapes'."""
+    """Every body's smallest extent and its reach, from its shapes'; how many of these are toothed."""
+    tables.counters[TOOTHED] = 0
     for i in range(tables.counters[BODIES]):
         tables.bodies[i].extent = 0.0
         tables.bodies[i].reach = 0.0
@@ -204,4 +207,5 @@ def extents(pool: Pool, tables: Tables) -> None:
             body = tables.bodies[shape.body]
             body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)
             head = pool.heads[shape.outline]
+            tables.counters[TOOTHED] += head.mouth < math.inf
             body.reach = max(body.reach, abs(head.x) + abs(head.y) + shape.half_x + shape.half_y)

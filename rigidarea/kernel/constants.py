@@ -46,8 +46,9 @@ HIT = 0.05
 STEP = 4.0
 #: Cosine of the angle by which such a region's direction turns as it grows.
 TURNS = 0.7
-#: Fraction of the chord on which a concave outline lies (of a gear: a tooth's) that it may move by in a substep.
-FEATURE = 0.1
+#: Fraction of the width of an outline's slots by which others may move past it in a substep. Gears hand over smoothly
+#: up to 0.1 of a tooth, by which they go past each other by a quarter of a slot (`tests/solve/test_teeth.py`).
+FEATURE = 0.15
 #: Room around a shape's box, as a fraction of its size, before pairs are searched again.
 MARGIN = 0.1
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
@@ -82,6 +83,6 @@ MOVED = 0.003
 SETTLED = 5e-3
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
-CALM = 0.02
+CALM = 0.2
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

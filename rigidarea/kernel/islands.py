@@ -12,25 +12,73 @@ Near is what a search has found for the whole frame. A blow within it may carry 
 from __future__ import annotations
 
 import math
+from typing import Any
 
+from .clearance import clearance
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .jit import kernel
+from .motion import earlier, pose_of
+from .place import seen_from
 from .pool import Pool
+from .sides import shown_sides
 from .solve import arrange, bound, line_up, turn_of
-from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TURN, TURNED, Law, Tables
+from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TOOTHED, TURN, TURNED, Law, Tables
+from .work import Work
 
 #: More substeps than any turn has.
 FINEST = 1 << 30
 
 
 @kernel
-def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) -> int:
+def _past_teeth(pool: Pool, tables: Tables, work: Work, pair: Any, dt: float) -> int:
+    """Substeps of a frame of dt in each of which two outlines pass each other by a FEATURE of a slot's width at most.
+
+    1 where they come no nearer than that within the frame.
+    """
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    mouth = min(pool.heads[sa.outline].mouth, pool.heads[sb.outline].mouth)
+    left = max(sa.left, sb.left)
+    right = min(sa.right, sb.right)
+    bottom = max(sa.bottom, sb.bottom)
+    top = min(sa.top, sb.top)
+    if mouth == math.inf or left > right or bottom > top:
+        return 1
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    # At (x, y) one goes past the other at (dx - w y, dy + w x): fastest at a corner of what the two boxes share.
+    w = b.w - a.w
+    dx = b.vx - a.vx + b.w * b.y - a.w * a.y
+    dy = b.vy - a.vy - b.w * b.x + a.w * a.x
+    way = dt * math.hypot(
+        max(abs(dx - w * bottom), abs(dx - w * top)), max(abs(dy + w * left), abs(dy + w * right))
+    )
+    room = FEATURE * mouth
+    n = int(min(way / room, float(MOST_SUBSTEPS - 1))) + 1
+    if n == 1 or pair.head >= 0:
+        return n
+    ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
+    part_gone = 0.0
+    for _ in range(n):  # conservative advancement (Mirtich 1996): on by what nothing can have covered
+        rel = seen_from(
+            pool.heads[ia], earlier(a, -part_gone * dt), pool.heads[ib], earlier(b, -part_gone * dt)
+        )
+        gap = clearance(pool, ia, pool, ib, rel, room + way, work)
+        if gap <= room:
+            return n
+        part_gone += (gap - room) / way
+        if part_gone >= 1.0:
+            return 1
+    return n
+
+
+@kernel
+def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, free: bool) -> int:
     """How many substeps each body wants in a frame of dt; the most that any does.
 
     n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
     and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
-    (`meet`); teeth, slots and hooks move under a contact that is there already, by no more than a FEATURE of the chord
-    on which such an outline lies.
+    (`meet`); teeth, slots and hooks move under a contact that is there already.
     """
     most = 1 if free else n
     slow = CALM * law.gravity * dt
@@ -44,29 +92,16 @@ def demand(pool: Pool, tables: Tables, law: Law, dt: float, n: int, free: bool) 
         if body.kind != FIXED:
             body.wants = max(body.wants, body.asked)
             most = max(most, body.wants)
-    if not free:
+    if not free or tables.counters[TOOTHED] == 0:
         return most
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i]]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        if sa.left > sb.right or sb.left > sa.right or sa.bottom > sb.top or sb.bottom > sa.top:
-            continue
-        face = math.inf
-        for shape in (sa, sb):
-            head = pool.heads[shape.outline]
-            if not head.convex and not head.disc:
-                face = min(face, head.face)
-        if face == math.inf:
-            continue
-        a = tables.bodies[sa.body]
-        b = tables.bodies[sb.body]
-        way = math.hypot(a.vx - b.vx, a.vy - b.vy)
-        way += abs(a.w) * max(sa.half_x, sa.half_y) + abs(b.w) * max(sb.half_x, sb.half_y)
-        wants = int(min(max(1.0, way * dt / (FEATURE * face)), float(MOST_SUBSTEPS))) + 1
-        a.wants = max(a.wants, wants)
-        b.wants = max(b.wants, wants)
-        most = max(most, wants)
+        wants = _past_teeth(pool, tables, work, pair, dt)
+        if wants > 1:
+            for shape in (pair.a, pair.b):
+                body = tables.bodies[tables.shapes[shape].body]
+                body.wants = max(body.wants, wants)
+            most = max(most, wants)
     return most
 
 

@@ -258,7 +258,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.spring = 0.0
             region.tangent_stiffness = 0.0
             region.back = 0.0
-        elif (region.mode != IMPACT and hit(law, region, a, b, h)) or (
+        elif (region.mode != IMPACT and hit(law, pair, region, a, b, h)) or (
             region.mode == NEARING and arrives(region, a, b, h)
         ):
             region.born = 1  # hit at a speed of which its present overlap says nothing

@@ -14,7 +14,13 @@ from numba.np import arrayobj
 
 
 def record(fields: Any) -> np.dtype:
-    """An aligned record type whose fields are attributes, in machine code and in Python."""
+    """An aligned record type whose fields are attributes, in machine code and in Python.
+
+    Raises ValueError for a field named as something that every record of numpy's has: in Python that would be read.
+    """
+    taken = [name for name, *_ in fields if hasattr(np.record, name)]
+    if taken:
+        raise ValueError(f"fields must have names that numpy.record leaves free, got {', '.join(taken)}")
     return np.dtype((np.record, np.dtype(fields, align=True)))
 
 

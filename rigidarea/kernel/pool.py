@@ -19,6 +19,7 @@ import numpy as np
 
 from .jit import njit
 from .memory import record
+from .teeth import mouth_of
 
 #: Edges to a leaf. More: fewer boxes tested, more edge pairs; 4 was fastest on gears and on 64-gons.
 LEAF = 4
@@ -40,7 +41,7 @@ HEAD = record(
         ("radius", "f8"),  # about that middle (length)
         ("area", "f8"),  # (length^2)
         ("face", "f8"),  # longest chord that a straight edge cuts off at a shallow depth (length)
-        ("face_arm", "f8"),  # its distance from the centroid, along itself (length)
+        ("mouth", "f8"),  # width of the slots between its teeth (length); infinity: it has none
     ],
 )
 
@@ -128,8 +129,8 @@ def _boxes(points: np.ndarray, following: np.ndarray, arcs: np.ndarray) -> tuple
 
 
 @njit
-def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
-    """(chord, arm) for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (design 2.3).
+def _face(points: np.ndarray, x: float, y: float) -> float:
+    """The chord for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (design 2.3).
 
     A straight edge pressed `FACE_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
     stiffness is k chord, its leverage on a free body the arm of its middle about the centroid (x, y). Directions are
@@ -141,7 +142,6 @@ def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
     step = max(1, n // 64)
     best = -1.0
     best_chord = 0.0
-    best_arm = 0.0
     cuts = np.empty(n + 1)
     for start in range(0, n, step):
         end = (start + step) % n
@@ -176,8 +176,7 @@ def _face(points: np.ndarray, x: float, y: float) -> tuple[float, float]:
             if rank > best:
                 best = rank
                 best_chord = chord
-                best_arm = abs(arm)
-    return best_chord, best_arm
+    return best_chord
 
 
 @njit
@@ -213,7 +212,7 @@ def _convex(points: np.ndarray, arcs: np.ndarray) -> bool:
 
 @njit
 def _chords(points: np.ndarray, arcs: np.ndarray) -> np.ndarray:
-    """A ring with each of its arcs as 32 chords: what `_face` needs of it."""
+    """A ring with each of its arcs as 32 chords: what `_face` and `mouth_of` need of it."""
     n = len(points)
     out = np.empty((32 * n, 2))
     m = 0
@@ -281,12 +280,18 @@ def _prepare(
     if disc:
         radius = arcs[0, 2]
     boxes, leaves = _boxes(points, following, arcs)
-    outer = points[: starts[1]]
     convex = len(starts) == 2 and n <= MOST_WALKED and _convex(points, arcs)
-    if bent > 0:
-        outer = _chords(outer, arcs[: starts[1]])
-    face, arm = _face(outer, x, y)
-    return following, ring_of, boxes, (leaves, convex, bent, disc, radius, face, arm)
+    face = 0.0
+    mouth = math.inf
+    for r in range(len(starts) - 1):
+        ring = points[starts[r] : starts[r + 1]]
+        if bent > 0:
+            ring = _chords(ring, arcs[starts[r] : starts[r + 1]])
+        if r == 0:
+            face = _face(ring, x, y)
+        if not convex:
+            mouth = min(mouth, mouth_of(ring))
+    return following, ring_of, boxes, (leaves, convex, bent, disc, radius, face, mouth)
 
 
 def pack(outlines: Sequence[HasRings]) -> Pool:
@@ -315,7 +320,7 @@ def pack(outlines: Sequence[HasRings]) -> Pool:
             arcs[:, :2] -= np.where(arcs[:, 2:3] == 0, 0.0, middle)
         x, y = outline.centroid
         following, ring_of, boxes, numbers = _prepare(points, arcs, starts, x - middle[0], y - middle[1])
-        names = ("leaves", "convex", "arcs", "disc", "radius", "face", "face_arm")
+        names = ("leaves", "convex", "arcs", "disc", "radius", "face", "mouth")
         for name, number in zip(names, numbers):
             head[name] = number
         head["point"], head["ring"], head["box"] = n_points, n_rings, n_boxes

@@ -79,7 +79,10 @@ ROW = record(
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
         ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
-        ("put", "i4"),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
+        (
+            "jammed",
+            "i4",
+        ),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
         ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
     ]
 )
@@ -212,7 +215,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.shift = 0.0
     row.theta = 0.0
     row.slid = 0.0
-    row.put = 0
+    row.jammed = 0
     row.friction = pair.friction
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
@@ -293,7 +296,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             c = max(c, slowest)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
-        row.put = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
+        row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
         row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
         gamma = h * c * row.alpha
         force = h * elastic
@@ -421,7 +424,7 @@ def stiffen(row: Any) -> bool:
     row.was1 = row.l1
     row.was2 = row.l2
     row.was_t = row.lt
-    if row.put:  # it bears what it must, and held overlapped by a joint it presses nobody
+    if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
         row.f1 = 0.0
         row.f2 = 0.0
         return bool(row.l1 + row.l2 > 0.0)

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .apart import find_axis, gap_along
+from .birth import flies_off
 from .broad import search, somebody_left
 from .constants import LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
@@ -280,6 +281,12 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     r = pair.head
     while r != until:
         region = tables.regions[r]
+        if flies_off(law, pair, region, tables.bodies[first], tables.bodies[second], h):
+            region.force = 0.0
+            region.friction = 0.0
+            region.step = h
+            r = region.next
+            continue
         if counters[ROWS] == len(tables.rows):
             return False
         row = tables.rows[counters[ROWS]]
