@@ -136,9 +136,10 @@ def leave_nothing_to_llvm() -> None:
     Else LLVM, which comes last, takes apart what it has compiled: 2 to 3 s after the last word, for memory that the
     system has back at once anyway. Without glibc nothing is changed.
     """
-    libc = ctypes.CDLL(None) if sys.platform.startswith("linux") else None
-    if hasattr(libc, "on_exit"):
-        libc.on_exit(libc._exit, None)
+    if sys.platform.startswith("linux"):
+        libc = ctypes.CDLL(None)
+        if hasattr(libc, "on_exit"):
+            libc.on_exit(libc._exit, None)
 
 
 if __name__ == "__main__":

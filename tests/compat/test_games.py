@@ -357,7 +357,7 @@ def test_no_bounce_gives_back_more_than_it_was_given():
 
 
 def test_a_blow_through_another_arrives_in_one_frame():
-    """A beam of 28 that falls on a disc of 5 on the floor: its momentum, which natively comes over four frames and more.
+    """A beam of 28 that falls on a disc of 5 on the floor: its momentum, natively in several frames.
 
     What a game counts as damage (`total_impulse` above a threshold) is then met more easily: docs/from-pymunk.md.
     """
