@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -60,6 +61,14 @@ def whole(value: int, name: str, low: int, high: int | None = None) -> int:
         wanted = f"of at least {low}" if high is None else f"from {low} to {high}"
         raise ValueError(f"{name} must be a whole number {wanted}, got {value!r:.80}")
     return int(value)
+
+
+def one_of(value: str, name: str, known: Iterable[str]) -> str:
+    """The value, one of the words known; ValueError with its name and all of them for anything else."""
+    words = tuple(known)
+    if not isinstance(value, str) or value not in words:
+        raise ValueError(f"{name} must be one of {', '.join(map(repr, words))}, got {value!r:.80}")
+    return value
 
 
 def numbers(values: Any, name: str, count: int) -> tuple[float, ...]:

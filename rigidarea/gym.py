@@ -18,6 +18,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 
 from .contact import attach
+from .gate import not_negative, whole
 from .outline import Outline
 
 PEG = (2.0, 6.0)
@@ -69,12 +70,9 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
             raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
         if not (isinstance(clearance, int | float) and 0 < clearance < PEG[0]):
             raise ValueError(f"clearance must be between 0 and {PEG[0]:g}, got {clearance!r}")
-        if not (isinstance(friction, int | float) and 0 <= friction < math.inf):
-            raise ValueError(f"friction must be a finite number >= 0, got {friction!r}")
-        if isinstance(max_steps, bool) or not isinstance(max_steps, int) or max_steps < 1:
-            raise ValueError(f"max_steps must be a whole number >= 1, got {max_steps!r}")
         self.render_mode = render_mode
-        self.clearance, self.friction, self.max_steps = float(clearance), float(friction), max_steps
+        self.clearance, self.friction = float(clearance), not_negative(friction, "friction")
+        self.max_steps = whole(max_steps, "max_steps", 1)
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
         # the episode ends at the reach, but speed has no bound of its own
         self.observation_space = spaces.Box(-np.inf, np.inf, (7,), np.float32)

@@ -112,6 +112,14 @@ def output_arguments(parser: argparse.ArgumentParser, out: Path) -> None:
     )
 
 
+def at_least_one(text: str) -> int:
+    """An argument that counts something; argparse.ArgumentTypeError for what is no whole number of at least 1."""
+    value = int(text) if text.isdecimal() else 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, got {text!r}")
+    return value
+
+
 def lines(results: Any) -> list[str]:
     """Results for reading: a mapping as a line an entry, rows as a table."""
     if isinstance(results, Mapping):

@@ -88,8 +88,8 @@ def test_render_shows_the_peg():
     [
         ({"render_mode": "human"}, "render_mode must be None or 'rgb_array', got 'human'"),
         ({"clearance": 0}, "clearance must be between 0 and 2, got 0"),
-        ({"friction": -1}, "friction must be a finite number >= 0, got -1"),
-        ({"max_steps": 0}, "max_steps must be a whole number >= 1, got 0"),
+        ({"friction": -1}, "friction must be finite and not negative, got -1"),
+        ({"max_steps": 0}, "max_steps must be a whole number of at least 1, got 0"),
     ],
 )
 def test_bad_settings_are_refused(arguments, message):

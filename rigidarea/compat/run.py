@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ..report import envelope, lines, output_arguments, write_json
+from ..report import at_least_one, envelope, lines, output_arguments, write_json
 from .host import ENGINES, Host
 
 #: Frames of a headless run that says no number.
@@ -32,7 +32,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default="area",
         help="area contact (default), or pymunk's own, for comparison",
     )
-    add("--frames", type=_count, metavar="N", help=f"end after N frames (default: headless {FRAMES})")
+    add("--frames", type=at_least_one, metavar="N", help=f"end after N frames (default: headless {FRAMES})")
     add(
         "--film",
         type=Path,
@@ -41,13 +41,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add("--window", action="store_true", help="let the program open its own window, in real time")
     output_arguments(parser, Path("out") / "run")
-
-
-def _count(text: str) -> int:
-    value = int(text) if text.isdecimal() else 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, got {text!r}")
-    return value
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -60,8 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
     frames = arguments.frames or (None if arguments.window else FRAMES)
     host = Host(arguments.engine, frames, headless=not arguments.window)
     with contextlib.ExitStack() as stack:
-        if not arguments.window and sys.stderr.isatty():
-            stack.enter_context(alive(host, script))
+        if not arguments.window:
+            stack.enter_context(frames_told(host, script))
         movie = None
         if arguments.film:
             from .filming import Filming
@@ -95,7 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 @contextlib.contextmanager
-def alive(host: Host, script: Path, seconds: float = 1.0) -> Iterator[None]:
+def frames_told(host: Host, script: Path, seconds: float = 1.0) -> Iterator[None]:
     """Say on standard error what runs, and as often as that at which frame it is; nothing while code is compiled."""
     print(f"rigidarea run: {script}, {host.engine}", file=sys.stderr, flush=True)
     over = threading.Event()

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from .attach import AreaContact, SimulationError, attach, attached
+from .attach import AreaContact, SimulationError, attach
 from .report import REGIONS
+from .space import attached
 
 __all__ = ["REGIONS", "AreaContact", "SimulationError", "attach", "attached"]

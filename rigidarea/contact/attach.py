@@ -14,13 +14,14 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout, springs
-from ..gate import not_negative
+from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import Outline, positive
 from ..store import Store
 from .memory import Memory, recall, remember
 from .report import regions_of, total_energy
+from .space import KEY, attached, attached_class
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
@@ -104,8 +105,8 @@ class AreaContact:
         state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
         self._space = space
         self._plain = type(space)
-        space.__class__ = _attached(self._plain)
-        space.__dict__[_KEY] = self
+        space.__class__ = attached_class(self._plain)
+        space.__dict__[KEY] = self
         self._rouse = ffi.cast("void (*)(void *, double)", record.rouse.address)
         self._hide(space)
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
@@ -185,7 +186,7 @@ class AreaContact:
             if int(function[at]) == int(self._state["hold_at"]):
                 function[at] = own
         space.__class__ = self._plain
-        del space.__dict__[_KEY]
+        del space.__dict__[KEY]
         self._space = None
 
     # --- shapes ---
@@ -344,7 +345,7 @@ class AreaContact:
         stops being finite; all bodies are then as they were before that frame.
         """
         positive(dt, "dt")
-        _count(frames, "frames")
+        whole(frames, "frames", 1, 2**31 - 1)
         space = self.space
         if space._locked:
             raise RuntimeError("step() within a step: call it after the step")
@@ -353,7 +354,7 @@ class AreaContact:
         if tolerance is not None:
             positive(tolerance, "tolerance")
         if steps is not None:
-            _count(steps, "steps")
+            whole(steps, "steps", 1, 2**31 - 1)
         self._state["substeps"], self._state["steps_given"] = steps or SUBSTEPS, steps is not None
         self._state["tolerance"] = tolerance or 0.0
         try:
@@ -383,9 +384,7 @@ class AreaContact:
         if not isinstance(body, pymunk.Body) or body.space is not self.space:
             raise ValueError(f"body must be one of the space's, got {body!r:.80}")
         if steps is not None:
-            _count(steps, "steps")
-            if steps > MOST_SUBSTEPS:
-                raise ValueError(f"expected steps <= {MOST_SUBSTEPS}, got {steps}")
+            whole(steps, "steps", 1, MOST_SUBSTEPS)
         row = self._store.body(address_of(body._body))
         self._store.tables.bodies[row]["asked"] = steps or 0
         self._store.sync()  # the table may have grown
@@ -530,84 +529,7 @@ def _moves(shape: pymunk.Shape) -> bool:
     return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor
 
 
-# --- an attached space's class: its own, and copies of it take their contact along ---
-
-_KEY = "_area_contact"  # where a space keeps its contact: they go together, and pymunk does not pickle it
-_classes: dict[Any, type] = {}
-
-
-def _attached(plain: Any) -> type:
-    if plain not in _classes:
-
-        def reduce(self: Any, protocol: Any) -> Any:
-            contact = self.__dict__[_KEY]
-            self.__class__ = plain
-            try:
-                made = self.__reduce_ex__(protocol)
-            finally:
-                self.__class__ = _classes[plain]
-            return _copy, (made, contact)
-
-        def step(self: Any, dt: float) -> None:
-            self.__dict__[_KEY]._flexed(dt, lambda: plain.step(self, dt))
-
-        def reindex_static(self: Any) -> None:
-            plain.reindex_static(self)
-            self.__dict__[_KEY]._reread(s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC)
-
-        def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
-            plain.reindex_shape(self, shape)
-            self.__dict__[_KEY]._reread([shape])
-
-        def reindex_shapes_for_body(self: Any, body: pymunk.Body) -> None:
-            plain.reindex_shapes_for_body(self, body)
-            self.__dict__[_KEY]._reread(body.shapes)
-
-        def _add_shape(self: Any, shape: pymunk.Shape) -> None:
-            plain._add_shape(self, shape)
-            self.__dict__[_KEY]._came(shape)
-
-        own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
-        for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
-            method.__doc__ = getattr(plain, method.__name__).__doc__
-            own[method.__name__] = method
-        _classes[plain] = type(plain.__name__, (plain,), own)
-        _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
-    return _classes[plain]
-
-
-def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
-    build, arguments, state = made[:3]
-    space = build(*arguments)
-    space.__setstate__(state)
-    contact._install(space)
-    return space
-
-
-def attached(space: pymunk.Space) -> AreaContact | None:
-    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
-
-    Raises ValueError for what is no space.
-    """
-    if not isinstance(space, pymunk.Space):
-        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
-    contact: AreaContact | None = space.__dict__.get(_KEY)
-    return contact
-
-
 # --- settings ---
-
-
-def _count(value: int, name: str) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer) or not 1 <= value < 2**31:
-        raise ValueError(f"{name} must be a whole number >= 1, got {value!r:.80}")
-    return int(value)
-
-
-def _one_of(value: str, name: str, known: Any) -> str:
-    if not isinstance(value, str) or value not in known:
-        raise ValueError(f"{name} must be one of {', '.join(map(repr, known))}, got {value!r:.80}")
-    return value
 
 
 def attach(
@@ -647,12 +569,12 @@ def attach(
     settings = {
         "stiffness": None if stiffness is None else positive(stiffness, "stiffness"),
         "penetration": positive(penetration, "penetration"),
-        "law": _one_of(law, "law", LAWS),
+        "law": one_of(law, "law", LAWS),
         "length": None if length is None else positive(length, "length"),
-        "direction": _one_of(direction, "direction", DIRECTIONS),
+        "direction": one_of(direction, "direction", DIRECTIONS),
         "exponent": not_negative(exponent, "exponent"),
         "rest_speed": None if rest_speed is None else not_negative(rest_speed, "rest_speed"),
-        "integration": _one_of(integration, "integration", INTEGRATIONS),
+        "integration": one_of(integration, "integration", INTEGRATIONS),
         "flexible": flexible,
     }
     if flexible is not None and not all(hasattr(flexible, name) for name in ("enter", "leave", "step")):

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..gallery import ENGINES, NAMES, Run, load
-from ..report import align, envelope, output_arguments, write_json
+from ..report import align, at_least_one, envelope, output_arguments, write_json
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -28,17 +28,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--engine", choices=ENGINES, default="area", help="area contact (default), or Chipmunk's own response"
     )
-    add("--frames", type=_count, metavar="N", help="frames of each scene (default: as the scene says)")
+    add("--frames", type=at_least_one, metavar="N", help="frames of each scene (default: as the scene says)")
     add("--window", action="store_true", help="open a window instead: drag bodies, space pauses, Esc closes")
     add("--no-film", action="store_true", help="stills only")
     output_arguments(parser, Path("out") / "gallery")
-
-
-def _count(text: str) -> int:
-    value = int(text) if text.isdecimal() else 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, got {text!r}")
-    return value
 
 
 def run(arguments: argparse.Namespace) -> int:

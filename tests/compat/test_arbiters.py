@@ -191,3 +191,59 @@ def test_what_pre_solve_sets_is_obeyed(seed, what):
             space.step(DT)
         ends.append([*body.position, body.angle, *body.velocity])
     assert ends[0] == pytest.approx(ends[1], rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("turn", [-0.4, 0.2, 0.5])
+def test_a_normal_set_in_pre_solve_is_obeyed(turn):
+    """As pymunk's breakout steers its ball: it is reflected by the normal that the paddle's callback says."""
+    speeds = []
+    for engine in ("pymunk", "area"):
+        space = pymunk.Space()
+        paddle = pymunk.Segment(space.static_body, (-50, 0), (50, 0), 8)
+        paddle.elasticity, paddle.friction, paddle.collision_type = 1, 0, 1
+        ball = pymunk.Body(1, math.inf)
+        ball.position, ball.velocity = (0, 60), (0, -400)
+        shape = pymunk.Circle(ball, 5)
+        shape.elasticity, shape.friction, shape.collision_type = 1, 0, 2
+        space.add(paddle, ball, shape)
+
+        def steer(arbiter, space, data):
+            points = arbiter.contact_point_set
+            points.normal = pymunk.Vec2d(0, 1).rotated(turn)
+            arbiter.contact_point_set = points
+
+        space.on_collision(1, 2, pre_solve=steer)
+        if engine == "area":
+            ra.attach(space)
+        for _ in range(12):
+            space.step(DT)
+        speeds.append(ball.velocity)
+    expected = pymunk.Vec2d(0, 400).rotated(2 * turn)
+    assert (speeds[0] - expected).length < 4  # pymunk itself, in a step
+    assert (speeds[1] - expected).length < 4
+
+
+class Drawn(pymunk.SpaceDebugDrawOptions):
+    """What `debug_draw` draws of contacts."""
+
+    def __init__(self):
+        super().__init__()
+        self.flags = pymunk.SpaceDebugDrawOptions.DRAW_COLLISION_POINTS
+        self.segments = []
+
+    def draw_segment(self, a, b, color):
+        self.segments.append((*a, *b))
+
+
+@pytest.mark.parametrize("seed", SEEDS)
+def test_contact_points_are_drawn_where_pymunk_draws_them(seed):
+    drawn = []
+    for engine in ("pymunk", "area"):
+        space, *_ = landed(seed, engine)
+        space.step(1e-9)  # hardly anything has moved
+        options = Drawn()
+        space.debug_draw(options)
+        drawn.append(sorted(options.segments))
+    assert len(drawn[0]) == len(drawn[1]) > 0
+    for native, own in zip(*drawn):
+        assert own == pytest.approx(native, abs=1e-6)

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from rigidarea.__main__ import main
-from rigidarea.compat.run import alive
+from rigidarea.compat.run import frames_told
 
 ROOT = Path(__file__).parents[2]
 
@@ -136,7 +136,7 @@ def test_it_shows_that_it_is_alive(capsys):
     """What runs, at once; then at which frame it is, as long as that grows."""
     host = SimpleNamespace(engine="area", frame=0)
     said = ""
-    with alive(host, Path("game.py"), seconds=0.01):
+    with frames_told(host, Path("game.py"), seconds=0.01):
         assert capsys.readouterr().err == "rigidarea run: game.py, area\n"
         host.frame = 7
         deadline = time.monotonic() + 20

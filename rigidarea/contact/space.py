@@ -1,0 +1,74 @@
+"""An attached space's class: its own, so that its contact hears of it, and copies of it take their contact along."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import pymunk
+
+if TYPE_CHECKING:
+    from .attach import AreaContact
+
+#: Where a space keeps its contact: they go together, and pymunk does not pickle it.
+KEY = "_area_contact"
+_classes: dict[Any, type] = {}
+
+
+def attached_class(plain: Any) -> type:
+    """The class of attached spaces of the class `plain`: the same name, made once."""
+    if plain not in _classes:
+
+        def reduce(self: Any, protocol: Any) -> Any:
+            contact = self.__dict__[KEY]
+            self.__class__ = plain
+            try:
+                made = self.__reduce_ex__(protocol)
+            finally:
+                self.__class__ = _classes[plain]
+            return _copy, (made, contact)
+
+        def step(self: Any, dt: float) -> None:
+            self.__dict__[KEY]._flexed(dt, lambda: plain.step(self, dt))
+
+        def reindex_static(self: Any) -> None:
+            plain.reindex_static(self)
+            self.__dict__[KEY]._reread(s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC)
+
+        def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
+            plain.reindex_shape(self, shape)
+            self.__dict__[KEY]._reread([shape])
+
+        def reindex_shapes_for_body(self: Any, body: pymunk.Body) -> None:
+            plain.reindex_shapes_for_body(self, body)
+            self.__dict__[KEY]._reread(body.shapes)
+
+        def _add_shape(self: Any, shape: pymunk.Shape) -> None:
+            plain._add_shape(self, shape)
+            self.__dict__[KEY]._came(shape)
+
+        own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
+            method.__doc__ = getattr(plain, method.__name__).__doc__
+            own[method.__name__] = method
+        _classes[plain] = type(plain.__name__, (plain,), own)
+        _classes[plain].__module__, _classes[plain].__qualname__ = plain.__module__, plain.__qualname__
+    return _classes[plain]
+
+
+def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
+    build, arguments, state = made[:3]
+    space = build(*arguments)
+    space.__setstate__(state)
+    contact._install(space)
+    return space
+
+
+def attached(space: pymunk.Space) -> AreaContact | None:
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
+
+    Raises ValueError for what is no space.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    contact: AreaContact | None = space.__dict__.get(KEY)
+    return contact
