@@ -86,7 +86,8 @@ class Work(NamedTuple):
     slot_region: Ints  # (f,) that wrote it
     given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
     given_load: Array  # (f, 2) and by what, in their order
-    tight: NDArray[np.bool_]  # (1,) whether spin or the hub's force change the flexibility, see ``tension``
+    # (2,) whether spin or the hub's force change, in this step, the flexibility and the modes' stiffness, see ``tension``
+    tight: NDArray[np.bool_]
     yielding: Array  # (r, 2 r) D in its right half
     drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
 
@@ -226,6 +227,6 @@ def workspace(b: Boundary) -> Work:
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
-        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(1, bool), np.zeros((r, 2 * r)),
+        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(2, bool), np.zeros((r, 2 * r)),
         np.zeros((3, r)),
     )  # fmt: skip

@@ -180,6 +180,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         w = work_at(bodies, b)
         w.spin[0] = state.v[b, 2] ** 2
         tighten(boundary_at(bodies, b), w)
+        w.tight[1] = not slack(sy.tense[b], w.spin[0], w.hub_load[0], w.hub_load[1])
         for i in range(sy.first[b], sy.first[b + 1]):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - sy.first[b]] = 1.0 / stiffness
@@ -212,7 +213,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             lo, hi = sy.first[b], sy.first[b + 1]
             hub = hub_of(body, w, sy, buf, state, b)
             stiff = geometric_at(bodies, b)
-            if slack(sy.tense[b], w.spin[0], w.hub_load[0], w.hub_load[1]):
+            if not w.tight[1]:
                 stiff = stiff[:0]
             moment = inertia_forces(
                 sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), stiff, w.hub_load[0],
