@@ -124,7 +124,7 @@ def work_at(bodies: Ints, i: int) -> Work:
         array_at(row[WORK + 15], (f,), np.int64),
         array_at(row[WORK + 16], (f + 1,), np.int64),
         array_at(row[WORK + 17], (f, 2), np.float64),
-        array_at(row[WORK + 18], (1,), np.bool_),
+        array_at(row[WORK + 18], (2,), np.bool_),
         array_at(row[WORK + 19], (r, 2 * r), np.float64),
         array_at(row[WORK + 20], (3, r), np.float64),
     )

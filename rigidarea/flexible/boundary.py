@@ -19,6 +19,7 @@ from rigidarea.kernel.jit import kernel
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+BOUNDLESS = np.array([0.0, 0.0, 1.0, 0.0, 1e300, 1e300])  # the box of several rings: never apart
 LEAF = 3  # edges a leaf: fewer make the tree deeper, more test more edge pairs
 
 
@@ -27,7 +28,7 @@ class Boundary(NamedTuple):
 
     points (n, 2); next, previous, ring (n,); low, high (n,) FE boundary nodes of the carrying edge and share (n,) in
     [0, 1), the weight of ``high``; centre (t, 2), radius (t,), left, right (t,) the tree (a leaf has left < 0 and
-    holds edges right … right - left - 1); box (t, 6) of a leaf, along its chord: centre, direction, half length and
+    holds edges right … right - left - 1); box (t, 6) of each, along its chord: centre, direction, half length and
     half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
     rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
     not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
@@ -85,7 +86,8 @@ class Work(NamedTuple):
     slot_region: Ints  # (f,) that wrote it
     given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
     given_load: Array  # (f, 2) and by what, in their order
-    tight: NDArray[np.bool_]  # (1,) whether spin or the hub's force change the flexibility, see ``tension``
+    # (2,) whether spin or the hub's force change, in this step, the flexibility and the modes' stiffness, see ``tension``
+    tight: NDArray[np.bool_]
     yielding: Array  # (r, 2 r) D in its right half
     drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
 
@@ -163,7 +165,7 @@ def build(
         radius.append(
             float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b]))
         )
-        box.append(np.zeros(6))
+        box.append(BOUNDLESS)
         left.append(a)
         right.append(b)
         roots.append(len(centre) - 1)
@@ -225,6 +227,6 @@ def workspace(b: Boundary) -> Work:
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
-        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(1, bool), np.zeros((r, 2 * r)),
+        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(2, bool), np.zeros((r, 2 * r)),
         np.zeros((3, r)),
     )  # fmt: skip

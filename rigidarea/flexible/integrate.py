@@ -23,6 +23,7 @@ from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.start import start
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
+from rigidarea.flexible.tension import tense
 from rigidarea.flexible.watch import watch
 from rigidarea.gate import positive, whole
 from rigidarea.kernel.impact import damping_ratio
@@ -180,7 +181,7 @@ class Simulation:
             column([np.linalg.norm(b.boundary.points, axis=1).max() for b in bodies]),
             np.concatenate([np.hypot(b.boundary.modes[:-3:2], b.boundary.modes[1:-3:2]).max(0) for b in bodies]),
             column([(0.0, 0.0) if b.fixed else (1 / b.mass, 1 / b.inertia) for b in bodies]),
-            held[0], np.array([damping_ratio(e) for e in held[1]]),
+            held[0], np.array([tense(b) for b in bodies]), np.array([damping_ratio(e) for e in held[1]]),
             np.array([j.row() for j in self.joints], JOINT),
         )  # fmt: skip
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)

@@ -25,10 +25,12 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
     Nodes that lie together are moved together: a load moves them by one piece of a row of C, which is symmetric.
     """
     w.displacement_stamp[first:end] = stamp
-    u = w.displacement[first:end].reshape(2 * (end - first))
-    u[:] = 0.0
-    for i in range(len(u) if b.modes.shape[1] > 0 else 0):
-        u[i] = dot(b.modes[2 * first + i], modal)
+    u, n = w.displacement[first:end], end - first
+    for i in range(n):
+        u[i, 0] = u[i, 1] = 0.0
+        if b.modes.shape[1] > 0:
+            u[i, 0] = dot(b.modes[2 * (first + i)], modal)
+            u[i, 1] = dot(b.modes[2 * (first + i) + 1], modal)
     if b.flexibility.shape[0] > 0:
         flexibility, load, loaded = b.flexibility, w.node_load, w.loaded
         for k in range(loaded[-1]):
@@ -38,21 +40,25 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
             fx, fy = load[j, 0], load[j, 1]
             row_x = flexibility[2 * j, 2 * first : 2 * end]
             row_y = flexibility[2 * j + 1, 2 * first : 2 * end]
-            for i in range(len(u)):
-                u[i] += row_x[i] * fx + row_y[i] * fy
+            for i in range(n):
+                u[i, 0] += row_x[2 * i] * fx + row_y[2 * i] * fy
+                u[i, 1] += row_x[2 * i + 1] * fx + row_y[2 * i + 1] * fy
         for k in range(3):
             f = w.hub_load[k]
             if f != 0.0:
                 row = flexibility[len(flexibility) - 3 + k, 2 * first : 2 * end]
-                for i in range(len(u)):
-                    u[i] += row[i] * f
+                for i in range(n):
+                    u[i, 0] += row[2 * i] * f
+                    u[i, 1] += row[2 * i + 1] * f
     if len(b.swell) > 0 and w.spin[0] != 0.0:
         row, f = b.swell[2 * first : 2 * end], w.spin[0]
-        for i in range(len(u)):
-            u[i] += row[i] * f
+        for i in range(n):
+            u[i, 0] += row[2 * i] * f
+            u[i, 1] += row[2 * i + 1] * f
     if w.tight[0]:
-        for i in range(len(u)):
-            u[i] += dot(b.soft[2 * first + i], w.drawn[0])
+        for i in range(n):
+            u[i, 0] += dot(b.soft[2 * (first + i)], w.drawn[0])
+            u[i, 1] += dot(b.soft[2 * (first + i) + 1], w.drawn[0])
 
 
 @kernel

@@ -46,10 +46,10 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
     for b in range(count):
         lo, hi = sy.first[b], sy.first[b + 1]
         j, v, g, stiff = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b), geometric_at(bodies, b)
-        q = state.q[lo:hi]
+        q, tight = state.q[lo:hi], len(stiff) > 0 and work_at(bodies, b).tight[1]
         for i in range(hi - lo):
             speed = state.dq[lo + i]
-            if len(stiff) > 0:
+            if tight:
                 j -= q[i] * dot(stiff[0, i], q)
             j += 2.0 * sy.stretch[lo + i] * q[i] + q[i] ** 2
             kinetic += 0.5 * speed**2 + v * dot(g[i], q) * speed

@@ -1,8 +1,8 @@
 """The search: which leaves of two bodies' trees may touch.
 
-Circles do not mind rotation, so the trees are built once, in the body frames. Two leaves whose circles are near are
+Circles do not mind rotation, so the trees are built once, in the body frames. Two branches whose circles are near are
 looked at again as boxes along their chords (separating axes, S. Gottschalk et al., OBBTree, 1996,
-doi:10.1145/237170.237244): a leaf of a smooth boundary is far longer than thick.
+doi:10.1145/237170.237244): a piece of a smooth boundary is far longer than thick.
 """
 
 from __future__ import annotations
@@ -54,11 +54,9 @@ def look(
             fx, fy = b.centre[j, 0] - at[0], b.centre[j, 1] - at[1]
             allowed += turn * (np.sqrt(fx * fx + fy * fy) + b.radius[j])
         reach = a.radius[i] + b.radius[j] + allowed
-        if ex * ex + ey * ey > reach * reach:
+        if ex * ex + ey * ey > reach * reach or _apart(a.box, i, b.box, j, c, sn, tx, ty, allowed):
             continue
         if a.left[i] < 0 and b.left[j] < 0:
-            if _apart(a.box, i, b.box, j, c, sn, tx, ty, allowed):
-                continue
             if count == len(out):
                 return MANY
             out[count, 0] = i

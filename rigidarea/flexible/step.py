@@ -26,7 +26,7 @@ from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_nodes
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
-from rigidarea.flexible.tension import tighten
+from rigidarea.flexible.tension import slack, tighten
 from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
@@ -180,6 +180,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         w = work_at(bodies, b)
         w.spin[0] = state.v[b, 2] ** 2
         tighten(boundary_at(bodies, b), w)
+        w.tight[1] = not slack(sy.tense[b], w.spin[0], w.hub_load[0], w.hub_load[1])
         for i in range(sy.first[b], sy.first[b + 1]):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - sy.first[b]] = 1.0 / stiffness
@@ -211,8 +212,11 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             body, w = boundary_at(bodies, b), work_at(bodies, b)
             lo, hi = sy.first[b], sy.first[b + 1]
             hub = hub_of(body, w, sy, buf, state, b)
+            stiff = geometric_at(bodies, b)
+            if not w.tight[1]:
+                stiff = stiff[:0]
             moment = inertia_forces(
-                sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), geometric_at(bodies, b), w.hub_load[0],
+                sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), stiff, w.hub_load[0],
                 w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
                 buf.modal_residual[lo:hi], buf.modes,
             )  # fmt: skip

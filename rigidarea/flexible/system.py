@@ -35,6 +35,9 @@ class System(NamedTuple):
     amplitude: Array  # (m,) largest displacement of the boundary in each mode
     inverse: Array  # (b, 2) inverse mass and moment of inertia, 0 where a body does not yield to forces
     friction: Array  # (p,) coefficient of each pair
+    tense: (
+        Array  # (b, 3) largest part of the modes' stiffness that unit spin (squared) and hub force (x, y) add
+    )
     ratio: Array  # (p,) damping ratio of its contacts
     joints: NDArray[np.void]  # (j,) rows of ``joints.JOINT``
 

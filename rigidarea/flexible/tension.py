@@ -16,6 +16,8 @@ D is that of the spin and the hub's force at the step's start: within a step the
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -37,14 +39,34 @@ def matrix(tension: Array, spin: float, fx: float, fy: float, out: Array) -> boo
     r = tension.shape[1]
     most = 0.0
     for i in range(r):
-        for j in range(r):
+        for j in range(i + 1):  # they are symmetric
             g = spin * tension[0, i, j] + fx * tension[1, i, j] + fy * tension[2, i, j]
             most = max(most, abs(g))
-            out[i, j], out[i, r + j] = g, -g
+            out[i, j] = out[j, i] = g
+    if most <= SLACK:
+        return False
+    for i in range(r):
+        for j in range(r):
+            out[i, r + j] = -out[i, j]
         out[i, i] += 1.0
-    if most > SLACK:
-        eliminate(out, r, r)
-    return most > SLACK
+    eliminate(out, r, r)
+    return True
+
+
+def tense(body: Any) -> Array:
+    """Of a modal body (``integrate.Body``): the largest entry (3,) of S, S_x and S_y over the frequencies of its modes;
+    zeros where it has none."""
+    if body.geometric is None or body.geometric.size == 0:
+        return np.zeros(3)
+    omega = np.asarray(body.frequency, float)
+    return np.asarray(np.abs(body.geometric / np.outer(omega, omega)).max((1, 2)))
+
+
+@kernel
+def slack(most: Array, spin: float, fx: float, fy: float) -> bool:
+    """Whether tension by spin (squared angular velocity) and the hub's force is less than SLACK of a modal body's
+    stiffness; most (3,): see ``tense``."""
+    return spin * most[0] + abs(fx) * most[1] + abs(fy) * most[2] < SLACK
 
 
 @kernel
