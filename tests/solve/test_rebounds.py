@@ -89,7 +89,7 @@ def gas(steps, seconds, count=60, engine=ENGINE):
 
 @pytest.mark.parametrize("steps", [2, 4, None])
 def test_a_wall_that_sends_a_disc_back_at_another_gives_nothing(steps):
-    """e = 1: one bounces off the other, off a wall right after it, while both overlap still, and off the other again."""
+    """e = 1: one bounces off the other, then off a wall while both overlap still, and off the other again."""
     world = World(stiffness=1e5, elasticity=1.0)
     world.block(11.2, -2, 13.2, 13.2)
     world.disc((10.67699665996267, 5.137357300279784), velocity=(2.1785076865533872, 0.9945662320245403))
