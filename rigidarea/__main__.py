@@ -10,6 +10,7 @@ import contextlib
 import ctypes
 import os
 import sys
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -110,7 +111,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     # a program, or a window, has words of its own, or none
     quiet = not own or arguments.command == "run" or getattr(arguments, "window", False)
     try:
-        with contextlib.nullcontext() if quiet else alive():
+        with contextlib.nullcontext() if quiet else alive(since=time.process_time()):  # since it was started
             code = arguments.run(arguments)
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] == "rigidarea":

@@ -14,16 +14,17 @@ SILENCE = 1.5
 
 
 @contextlib.contextmanager
-def alive(silence: float = SILENCE) -> Iterator[None]:
+def alive(silence: float = SILENCE, since: float = 0.0) -> Iterator[None]:
     """Within, dots are put on standard error as often as nothing has been said for `silence` seconds.
 
+    since: for how long nothing has been said already (s).
     What is written by way of `sys.stdout` and `sys.stderr` counts; what comes after dots begins a line of its own.
     """
     before = sys.stdout, sys.stderr
     if before[1] is None:  # nobody can be told
         yield
         return
-    hush = _Hush(before[1], silence)
+    hush = _Hush(before[1], silence, since)
     sys.stdout, sys.stderr = (stream and _Heard(stream, hush) for stream in before)  # type: ignore[assignment]
     teller = threading.Thread(target=hush.watch, daemon=True)
     teller.start()
@@ -39,16 +40,16 @@ def alive(silence: float = SILENCE) -> Iterator[None]:
 class _Hush:
     """When something was last said, and the dots since."""
 
-    def __init__(self, stream: Any, silence: float) -> None:
+    def __init__(self, stream: Any, silence: float, since: float) -> None:
         self.over = threading.Event()
         self._stream, self._silence = stream, silence
-        self._last = time.monotonic()
+        self._last = time.monotonic() - since
         self._line_open = self._own_line = False
         self._lock = threading.Lock()
 
     def watch(self) -> None:
         """Until it is over."""
-        while not self.over.wait(self._silence / 8):
+        while not self.over.wait(min(0.2, self._silence / 8)):
             with self._lock:
                 if time.monotonic() - self._last >= self._silence:
                     self._own_line = self._own_line or not self._line_open

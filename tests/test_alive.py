@@ -68,6 +68,15 @@ def test_who_speaks_is_not_interrupted(monkeypatch):
     assert stream.getvalue() == ""
 
 
+def test_silence_before_counts(monkeypatch):
+    monkeypatch.setattr(sys, "stderr", io.StringIO())
+    with alive(3600.0, since=3600.0):
+        deadline = time.monotonic() + 20
+        while not sys.stderr.getvalue() and time.monotonic() < deadline:
+            time.sleep(0.01)
+        assert sys.stderr.getvalue() == "."
+
+
 def test_nobody_to_tell(monkeypatch):
     monkeypatch.setattr(sys, "stderr", None)
     with alive(0.01):
