@@ -179,11 +179,12 @@ def _arbiter() -> dict[str, int]:
         "arbiter_count": "count",
         "arbiter_contacts": "contacts",
         "arbiter_normal": "n",
+        "arbiter_handlers": "handlerAB",
         "arbiter_process": "processCollision",
         "arbiter_state": "state",
     }
     found = {name: int(ffi.offsetof("struct cpArbiter", field)) for name, field in arbiter.items()}
-    for pair in (("a", "b"), ("body_a", "body_b")):  # B's pointer follows A's
+    for pair in (("a", "b"), ("body_a", "body_b"), ("handlerAB", "handlerBA")):  # B's pointer follows A's
         at, after = (int(ffi.offsetof("struct cpArbiter", field)) for field in pair)
         if after != at + 8:
             raise LayoutError(f"arbiter {pair[0]}: B's pointer does not follow A's")
@@ -242,6 +243,13 @@ def kinds_of_joints() -> tuple[int, ...]:
         places.append(at)
         counts.append(n)
     return *kinds, *places, *counts
+
+
+def normal_of(arbiter: int) -> tuple[float, float]:
+    """The normal of the arbiter at that address as Chipmunk finds it, whatever a callback has made of it."""
+    own = ffi.cast("struct cpArbiter *", arbiter)
+    normal = lib.cpShapesCollide(own.a, own.b).normal
+    return normal.x, normal.y
 
 
 def centre_of(body: pymunk.Body) -> np.ndarray:
@@ -312,6 +320,7 @@ def _space_and_constraint() -> dict[str, int]:
     handler(space, pre_solve=lambda *arguments: None)
     own = space._handlers[None, None]._handler
     found["handler_pre_solve"] = int(ffi.offsetof("struct cpCollisionHandler", "preSolveFunc"))
+    found["pythons_pre_solve"] = address_of(own.preSolveFunc)
     space.on_collision(pre_solve=pymunk.empty_callback)
     found["no_pre_solve"] = address_of(own.preSolveFunc)
     globally = address_of(own)

@@ -75,10 +75,12 @@ OFFSETS = [
     "shape_next",
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_body_a"),
     *("arbiter_count", "arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_state"),
+    "arbiter_handlers",
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
     *(
         "handler_pre_solve",
         "no_pre_solve",
+        "pythons_pre_solve",
         "space_gravity",
         "space_bodies",
         "space_constraints",
@@ -134,6 +136,9 @@ STATE = record(
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
         ("request", "i8"),
+        ("asked_arbiter", "u8"),  # of it: the normal that Chipmunk has found
+        ("asked_x", "f8"),
+        ("asked_y", "f8"),
         ("ask_at", "u8"),  # Python's ear
         ("hold_at", "u8"),
         ("springs_at", "u8"),  # what `chipmunk.springs` has found, and our own force function

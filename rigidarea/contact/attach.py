@@ -13,7 +13,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, kinds_of_joints, layout, springs
+from ..chipmunk import address_of, kinds_of_joints, layout, normal_of, springs
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
@@ -470,6 +470,8 @@ class AreaContact:
             store.keep()
             self._seen = np.zeros((len(store.tables.bodies), 3))
             self._state["seen_at"] = self._seen.ctypes.data
+        elif request == record.NORMAL:
+            self._state["asked_x"], self._state["asked_y"] = normal_of(int(self._state["asked_arbiter"]))
         elif request == record.BROKEN:
             space = self.space
             address = int(store.tables.bodies[int(self._state["broken"])]["address"])

@@ -40,7 +40,7 @@ from ..store import STATE, load_pool, load_tables, load_work, row_of_body
 from .joints import take_joints
 
 #: What machine code asks Python for.
-REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN = range(7)
+REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN, NORMAL = range(8)
 
 user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
@@ -57,6 +57,9 @@ _call_count = caller(types.int32(types.uintp))
 #: What sleeps wakes for somebody who comes by more than this in a frame, of its own smallest extent. Whoever is slower
 #: comes to overlap it a little, for which Chipmunk wakes it.
 WAKING = 0.01
+
+#: A normal has been set if it is turned by more than this (rad): Chipmunk's own search ends within 1e-9 of another one.
+SET = 1e-6
 
 
 @kernel(inline="always")
@@ -361,6 +364,28 @@ def _row_of_shape(s: Any, shape: int) -> int:
     return int(array_at(s.slots_at, (s.slots_n,), np.int32)[ident])
 
 
+@kernel
+def _note_normal(s: Any, pair: Any, arbiter: int) -> None:
+    """By how much callbacks of the user's have turned the arbiter's normal, if any has been called before the solve."""
+    pair.steer_c = 1.0
+    pair.steer_s = 0.0
+    called = s.user_pre_solve != 0
+    for handler in words(arbiter + s.arbiter_handlers, 4):
+        called |= handler != 0 and words(handler + s.handler_pre_solve, 1)[0] == s.pythons_pre_solve
+    if not called:
+        return
+    s.asked_arbiter = arbiter
+    if not ask(s, NORMAL):
+        return
+    n = floats(arbiter + s.arbiter_normal, 2)
+    c = s.asked_x * n[0] + s.asked_y * n[1]
+    d = s.asked_x * n[1] - s.asked_y * n[0]
+    length = math.hypot(c, d)
+    if length > 0.0 and (abs(d) > SET * length or c < 0.0):
+        pair.steer_c = c / length
+        pair.steer_s = d / length
+
+
 @callback(types.void(types.uintp, types.uintp, types.uintp))
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair: note it, with what the user's callbacks have made of it."""
@@ -414,3 +439,4 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     sign = -1.0 if pair.swapped else 1.0
     pair.surface_x = sign * x
     pair.surface_y = sign * y
+    _note_normal(s, pair, arbiter)

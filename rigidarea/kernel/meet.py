@@ -29,7 +29,7 @@ from .overlap import A_EDGE, OVERFLOW, Work
 from .patch import Patch, patch_of
 from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
-from .region import closing, fill, inverse_mass, region_stiffness
+from .region import closing, fill, inverse_mass, region_stiffness, steer
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness
 from .tables import (
@@ -278,6 +278,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         region = regions[r]
         if region.born:
             enter(pool, work, law, pair, region, face, ia, ib, a, b, back, h)
+        steer(pair, region, a, b)
         region.stiffness = pair.stiffness
         r = region.next
     return DONE
@@ -417,6 +418,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if expect(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h) and (
             region.mode == NEARING or (first and old < 0)
         ):
+            steer(pair, region, a, b)
             region.next = pair.head
             pair.head = r
         else:

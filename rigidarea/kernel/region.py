@@ -56,6 +56,18 @@ def closing(r: Any, a: Any, b: Any, full: float) -> float:
     )
 
 
+@kernel
+def steer(pair: Any, region: Any, a: Any, b: Any) -> None:
+    """Turn the direction as a user's callback has turned the arbiter's normal; a bounce is of the speed along it."""
+    if pair.steer_s == 0.0 and pair.steer_c >= 0.0:
+        return
+    before = closing(region, a, b, 0.5)
+    nx = pair.steer_c * region.nx - pair.steer_s * region.ny
+    turn_to(region, nx, pair.steer_s * region.nx + pair.steer_c * region.ny)
+    if region.first_speed > 0.0:
+        region.first_speed = max(0.0, region.first_speed + closing(region, a, b, 0.5) - before)
+
+
 @kernel(forceinline=True)
 def inverse_mass(r: Any, a: Any, b: Any) -> float:
     """1/m_eff of the two bodies along the region's direction (design 2.3)."""

@@ -143,6 +143,11 @@ PAIR = record(
         ("elasticity", "f8"),
         ("surface_x", "f8"),  # surface velocity, B's minus A's
         ("surface_y", "f8"),
+        (
+            "steer_c",
+            "f8",
+        ),  # by how much the user has turned the arbiter's normal in that frame: cosine and sine
+        ("steer_s", "f8"),
         ("jx", "f8"),  # impulse on B in this frame
         ("jy", "f8"),
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
@@ -360,6 +365,8 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.verdict = 1
         pair.arbiter = 0
         pair.turn = 0
+        pair.steer_c = 1.0
+        pair.steer_s = 0.0
         pair.jx = 0.0
         pair.jy = 0.0
         pair.stiffness = 0.0

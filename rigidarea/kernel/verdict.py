@@ -41,6 +41,8 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     sb = tables.shapes[pair.b]
     pair.friction = sa.friction * sb.friction
     pair.elasticity = sa.elasticity * sb.elasticity
+    pair.steer_c = 1.0
+    pair.steer_s = 0.0
     pair.surface_x = sb.surface_x - sa.surface_x
     pair.surface_y = sb.surface_y - sa.surface_y
     return True
