@@ -86,7 +86,7 @@ class Work(NamedTuple):
     slot_region: Ints  # (f,) that wrote it
     given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
     given_load: Array  # (f, 2) and by what, in their order
-    # (2,) whether spin or the hub's force change, in this step, the flexibility and the modes' stiffness, see ``tension``
+    # (2,) whether spin or the hub's force change, in this step, flexibility and modes' stiffness, see ``tension``
     tight: NDArray[np.bool_]
     yielding: Array  # (r, 2 r) D in its right half
     drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
