@@ -369,7 +369,7 @@ def _note_normal(s: Any, pair: Any, arbiter: int) -> None:
     """By how much callbacks of the user's have turned the arbiter's normal, if any has been called before the solve."""
     pair.steer_c = 1.0
     pair.steer_s = 0.0
-    called = s.user_pre_solve != 0
+    called = s.user_pre_solve == s.pythons_pre_solve
     for handler in words(arbiter + s.arbiter_handlers, 4):
         called |= handler != 0 and words(handler + s.handler_pre_solve, 1)[0] == s.pythons_pre_solve
     if not called:
