@@ -11,8 +11,8 @@ from ..gallery import Headline, Scene, add_body, static_body
 from ..outline import arc_points
 from ..shapes import ring, rounded_polygon
 
-RADIUS, WALL = 5.0, 0.4
-"""Of the bowl, inside, and of its wall (m)."""
+RADIUS, WALL, RIM = 5.0, 0.4, 2.0
+"""Of the bowl, inside; of its wall; height of its straight sides: what falls 10 m rebounds over less (m)."""
 TOLERANCE = 2e-3
 """Largest sagitta of a chord (m)."""
 COLUMNS, ROWS, PITCH = 5, 8, 1.75
@@ -22,10 +22,12 @@ G = 9.81
 
 
 def bowl() -> Outline:
-    """Half a ring, its rim at height 0."""
+    """Half a ring below height 0, straight sides above."""
     inner = arc_points((0, 0), RADIUS, math.pi, math.pi, TOLERANCE)
     outer = arc_points((0, 0), RADIUS + WALL, 2 * math.pi, -math.pi, TOLERANCE)
-    return Outline(np.concatenate((inner, outer)))
+    right = [(RADIUS, RIM), (RADIUS + WALL, RIM)]
+    left = [(-RADIUS - WALL, RIM), (-RADIUS, RIM)]
+    return Outline(np.concatenate((inner, right, outer, left)))
 
 
 def c_shape(radius: float, width: float, opening: float) -> Outline:

@@ -267,7 +267,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     elif flies_off(law, pair, r, a, b, h):
         gamma = 1.0 / inverse
         force = 0.0
-        row.t1 = HIT * least_extent(a, b) / h
+        # What opens at a speed and is sent back may close at that speed: stopped sooner, it would be pushed while it
+        # opens, and gain energy (l (v + v') / 2: J. J. Moreau 1988).
+        row.t1 = min(-closing(r, a, b, 0.0), HIT * least_extent(a, b) / h)
         row.t2 = row.t1
         row.alpha = 0.0
         row.alpha_t = 0.0
