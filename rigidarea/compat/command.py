@@ -13,7 +13,7 @@ import pymunk
 
 from ..report import envelope, output_arguments, write_json
 from . import suite
-from .examples import EXAMPLES, FRAMES, compare
+from .examples import EXAMPLES, FRAMES, GAMES, compare
 from .hostile import fuzz
 from .meddling import meddle
 from .soak import soak
@@ -144,10 +144,11 @@ the tower stands, the arrow sticks, the ball stays in the court; all hold native
 nothing is raised or printed on standard error, no body is farther out than the native run's box by its diagonal,
 none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
 off than twice natively plus a pixel, of the bodies that came two seconds before the end as many rest (up to a
-tenth; who sleeps rests), and callbacks come as often (up to a factor of two). Where one is farther out or faster,
-native runs with four other seeds count as well: games of chance have no one course. Facts of chance (whether a
-flipper meets the ball) are to hold in more than half of eight games, natively and attached. Times are processor
-time, median over frames: `space.step` alone, and the example's whole frame with its drawing.
+tenth; who sleeps rests), and callbacks come as often (up to a factor of two). Crowds have no one course: where
+something of that is not so, {len(GAMES)} games count, each with its own random numbers and with the hand a pixel
+further to the right: the widest and fastest of the native ones, and of both the median share that rests. Facts of
+chance (whether a flipper meets the ball) are to hold in more than half of them, natively and attached. Times are
+processor time, median over frames: `space.step` alone, and the example's whole frame with its drawing.
 
 {_sentence(summary(rows))}
 """

@@ -6,9 +6,11 @@ They come with the installed pymunk and are run from there, each run in a proces
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -26,9 +28,8 @@ from .screen import Input, drag, tap
 from .watch import Watch
 
 FRAMES = 300
-#: Seeds of the other native runs.
-SEEDS = (1, 2, 3, 4)
-#: Seeds of the runs over which facts of chance are counted.
+#: Games of one example, each with random numbers of its own and the hand that many pixels to the right. Where one run
+#: cannot tell, because a crowd's course is chance, these are counted.
 GAMES = tuple(range(8))
 #: Seconds after which a run is given up.
 TIME_LIMIT = 240.0
@@ -134,6 +135,11 @@ STEPPING = tuple(name for name, example in EXAMPLES.items() if example.facts is 
 """The examples that let time pass."""
 
 
+def by_hand(script: Sequence[Input], right: float) -> tuple[Input, ...]:
+    """The same user with the hand so many pixels further to the right."""
+    return tuple(i._replace(what=(i.what[0] + right, i.what[1])) if i.kind == "mouse" else i for i in script)
+
+
 def record(name: str, engine: str, frames: int, file: str, seed: int = 0) -> None:
     """Run an example in this process, which is its alone, and write what happened to `file` as JSON.
 
@@ -141,7 +147,7 @@ def record(name: str, engine: str, frames: int, file: str, seed: int = 0) -> Non
     """
     example = EXAMPLES[name]
     seed_everything(seed)
-    host = Host(engine, frames, script=example.script)
+    host = Host(engine, frames, script=by_hand(example.script, seed))
     watch = Watch(host, example.probe)
     error: str | None = None
     target = str(Path(pymunk.examples.__file__).parent / f"{name}.py")
@@ -247,13 +253,19 @@ def judge(native: dict[str, Any], own: dict[str, Any]) -> list[str]:
 
 
 def widened(native: dict[str, Any], others: Sequence[dict[str, Any]]) -> dict[str, Any]:
-    """A native run with the box and the fastest body of it and of others, of other random numbers."""
+    """A native run with the box and the fastest body of it and of others, of other games."""
     runs = [run for run in (native, *others) if run.get("box")]
     if not native.get("box"):
         return native
     boxes = [run["box"] for run in runs]
     low, high = ([pick(box[i] for box in boxes) for i in at] for pick, at in ((min, (0, 1)), (max, (2, 3))))
     return {**native, "box": [*low, *high], "fastest": max(run["fastest"] for run in runs)}
+
+
+def typical(run: dict[str, Any], games: Sequence[dict[str, Any]]) -> dict[str, Any]:
+    """The run with the share at rest that is the median of the games; unchanged where it has none."""
+    shares = [game["resting"] for game in games if game.get("resting") is not None]
+    return {**run, "resting": statistics.median(shares)} if shares and run.get("resting") is not None else run
 
 
 def by_chance(run: dict[str, Any], games: Sequence[dict[str, Any]], names: Sequence[str]) -> dict[str, Any]:
@@ -271,8 +283,9 @@ def by_chance(run: dict[str, Any], games: Sequence[dict[str, Any]], names: Seque
 def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
     """One row of the table: an example natively and with area contact.
 
-    Where something is wrong, native runs with other random numbers are asked too how far bodies get and how fast:
-    natively the ball of `flipper` is lost with five of eight seeds, and stays on the table with seed 0.
+    Where something is wrong, GAMES are asked, natively how far bodies get and how fast, and of both how many are at
+    rest: natively the ball of `flipper` is lost in five of eight, and the blocks of `playground` that rest at the end
+    are from 0.73 to 0.98 of all, as the hand that drops them is a pixel further left or right.
     `native_wrong` lists facts that do not hold natively either: the fact is wrong then, not the contact.
     """
     native, own = (run_example(name, engine, frames) for engine in ("pymunk", "area"))
@@ -281,17 +294,18 @@ def compare(name: str, frames: int = FRAMES) -> dict[str, Any]:
     def ratio(key: str) -> float | None:
         return own[key] / native[key] if steps and own.get(key) and native.get(key) else None
 
+    @functools.cache
+    def games(engine: str) -> list[dict[str, Any]]:
+        return [run_example(name, engine, frames, seed) for seed in GAMES]
+
     if EXAMPLES[name].chance:
-        games = {
-            engine: [run_example(name, engine, frames, seed) for seed in GAMES]
-            for engine in ("pymunk", "area")
-        }
-        native = by_chance(native, games["pymunk"], EXAMPLES[name].chance)
-        own = by_chance(own, games["area"], EXAMPLES[name].chance)
+        native = by_chance(native, games("pymunk"), EXAMPLES[name].chance)
+        own = by_chance(own, games("area"), EXAMPLES[name].chance)
     wrong = judge(native, own)
-    if wrong and steps:  # a game of chance: what does pymunk do with other numbers?
-        others = [run_example(name, "pymunk", frames, seed) for seed in SEEDS]
-        wrong = judge(widened(native, others), own)
+    if wrong and steps:  # a game of chance?
+        native = typical(widened(native, games("pymunk")), games("pymunk"))
+        own = typical(own, games("area"))
+        wrong = judge(native, own)
     return {
         "example": name,
         "steps_time": steps,

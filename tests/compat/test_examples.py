@@ -10,7 +10,17 @@ import pymunk.examples
 import pytest
 
 from rigidarea.compat import command
-from rigidarea.compat.examples import EXAMPLES, STEPPING, by_chance, compare, judge, run_example, widened
+from rigidarea.compat.examples import (
+    EXAMPLES,
+    STEPPING,
+    by_chance,
+    by_hand,
+    compare,
+    judge,
+    run_example,
+    typical,
+    widened,
+)
 from rigidarea.compat.facts import cradle_swings, stays_in_scene
 from rigidarea.compat.watch import Frame, Watch
 
@@ -174,6 +184,20 @@ def test_games_of_chance_are_judged_by_what_pymunk_does_with_other_numbers():
     assert len(judge(calm(), own)) == 2 and judge(wide, own) == []
     assert len(judge(wide, {**own, "resting": 0.7})) == 1
     assert widened({"error": "died", "facts": []}, [other]) == {"error": "died", "facts": []}
+
+
+def test_who_rests_in_a_game_of_chance_is_judged_by_the_median():
+    shares = [{"resting": share} for share in (0.7, 0.9, 0.95)] + [{"error": "died"}, {"resting": None}]
+    assert typical(calm(), shares) == {**calm(), "resting": 0.9}
+    nobody = {**calm(), "resting": None}
+    assert typical(nobody, shares) == nobody and typical(calm(), shares[3:]) == calm()
+
+
+def test_another_hand_is_the_same_user_further_right():
+    script = EXAMPLES["playground"].script
+    moved = by_hand(script, 3)
+    assert by_hand(script, 0) == script and moved[1:] == script[1:]
+    assert moved[0] == script[0]._replace(what=(303, 300))
 
 
 def test_who_has_just_come_is_still_on_the_way():
