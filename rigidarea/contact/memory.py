@@ -15,10 +15,12 @@ from ..chipmunk import address_of, centre_of, joint_impulse, put_centre
 from ..kernel.tables import (
     ANEW,
     APART,
+    BODIES,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    LIVE,
     NEAR,
     SEARCH,
     SUBSTEP,
@@ -49,6 +51,9 @@ class Memory(NamedTuple):
     bodies: np.ndarray
     """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
     calm, and for how long it has moved by itself."""
+    live: np.ndarray
+    """(n,) int: the bodies in the order of sums over them, by their places in the space's list, the static one last;
+    empty where that order is made anew."""
     centres: np.ndarray
     """(n, 2) where each body's centre of gravity is: pymunk restores a body's place before its centre of gravity, and
     leaves one elsewhere whose centre is not its origin."""
@@ -80,8 +85,25 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         np.array(
             [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
+        _in_line(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
     )
+
+
+def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
+    """The row of every body of the space's list, then of the static one; -1: it has none."""
+    return np.array([store.row_of(address_of(b._body)) for b in (*space.bodies, space.static_body)], np.int64)
+
+
+def _in_line(store: Store, space: pymunk.Space) -> np.ndarray:
+    """`Memory.live`."""
+    rows, counters = _body_rows(store, space), store.tables.counters
+    live = store.tables.live[: counters[LIVE]]
+    if counters[LIVE] != counters[BODIES] or set(live) != set(rows):
+        return np.zeros(0, np.int64)
+    place = np.zeros(len(store.tables.live), np.int64)
+    place[rows] = np.arange(len(rows))
+    return place[live]
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
@@ -127,6 +149,10 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)
+    tables, rows = store.tables, _body_rows(store, space)
+    if len(memory.live) == len(rows) == tables.counters[BODIES] and rows.min() >= 0:
+        tables.live[: len(rows)] = rows[memory.live]
+        tables.counters[LIVE] = len(rows)
 
 
 def _keep_apart(store: Store, space: pymunk.Space) -> None:

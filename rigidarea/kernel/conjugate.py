@@ -72,8 +72,9 @@ MOBILITY = record(
     ]
 )
 
-#: Added to a block, in parts of its own: rigid rows that say the same twice have one all the same.
-LEAST_COMPLIANCE = 1e-6
+#: What gives way by less than this part of the row's own is held from both sides (a disc between a floor and a blade
+#: that comes down): no impulse does what both ask, and the search leaves it to the sweeps.
+HELD = 1e-6
 
 
 @kernel
@@ -153,24 +154,37 @@ def _bears(row: Any, f: Any) -> bool:
 
 
 @kernel
-def _invert(f: Any, s11: float, s12: float, s1t: float, s22: float, s2t: float, stt: float) -> None:
-    """Inverse of a row's block; 1 in the place of an unknown that takes no part."""
+def _invert(
+    f: Any, s11: float, s12: float, s1t: float, s22: float, s2t: float, stt: float, least: float
+) -> None:
+    """Inverse of a row's block; 1 in the place of an unknown that takes no part, or that others hold already.
+
+    least: what an unknown gives way at least, the ones before it held (1/mass).
+    """
+    if s11 <= least or (f.second and s22 - s12 * s12 / s11 <= least):
+        f.first = 0
+        f.second = 0
     if not f.first:
         s11, s12, s1t = 1.0, 0.0, 0.0
     if not f.second:
         s22, s12, s2t = 1.0, 0.0, 0.0
-    if not f.grip:
-        stt, s1t, s2t = 1.0, 0.0, 0.0
     c11 = s22 * stt - s2t * s2t
     c12 = s1t * s2t - s12 * stt
     c1t = s12 * s2t - s1t * s22
+    held = s11 * s22 - s12 * s12
+    if not f.grip or (s11 * c11 + s12 * c12 + s1t * c1t) <= least * held:
+        f.grip = 0
+        stt, s1t, s2t = 1.0, 0.0, 0.0
+        c11 = s22
+        c12 = -s12
+        c1t = 0.0
     det = 1.0 / (s11 * c11 + s12 * c12 + s1t * c1t)
     f.d11 = c11 * det if f.first else 0.0
     f.d12 = c12 * det if f.first and f.second else 0.0
     f.d1t = c1t * det if f.first and f.grip else 0.0
     f.d22 = (s11 * stt - s1t * s1t) * det if f.second else 0.0
     f.d2t = (s12 * s1t - s11 * s2t) * det if f.second and f.grip else 0.0
-    f.dtt = (s11 * s22 - s12 * s12) * det if f.grip else 0.0
+    f.dtt = held * det if f.grip else 0.0
 
 
 @kernel
@@ -206,8 +220,7 @@ def take_part(tables: Tables) -> None:
         s1t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa1 * f.awt + wb1 * f.bwt
         s2t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa2 * f.awt + wb2 * f.bwt
         stt = nx * (f.ayt + f.byt) - ny * (f.axt + f.bxt) + row.lean_a * f.awt + row.lean_b * f.bwt
-        least = LEAST_COMPLIANCE * row.weight
-        _invert(f, s11 + f.e11 + least, s12 + f.e12, s1t, s22 + f.e22 + least, s2t, stt + f.et + least)
+        _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e22, s2t, stt + f.et, HELD * row.weight)
         _take(ma, f, f.ax1, f.ay1, f.aw1, f.ax2, f.ay2, f.aw2, f.axt, f.ayt, f.awt)
         _take(mb, f, f.bx1, f.by1, f.bw1, f.bx2, f.by2, f.bw2, f.bxt, f.byt, f.bwt)
 

@@ -258,16 +258,18 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             region.spring = 0.0
             region.tangent_stiffness = 0.0
             region.back = 0.0
-        elif (region.mode != IMPACT and hit(law, pair, region, a, b, h)) or (
-            region.mode == NEARING and arrives(region, a, b, h)
-        ):
-            region.born = 1  # hit at a speed of which its present overlap says nothing
-        elif region.mode >= STRUCK:
+        else:
+            nearing = region.mode == NEARING
             if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
                 region.l1 = 0.0
                 region.l2 = 0.0
                 region.lt = 0.0
-            region.mode = REST
+            if region.mode >= STRUCK:
+                region.mode = REST
+            if (region.mode == REST and hit(law, pair, region, a, b, h)) or (
+                nearing and arrives(region, a, b, h)
+            ):
+                region.born = 1  # hit at a speed of which its present overlap says nothing
     free_regions(regions, counters, old)
     pair.head = kept
     face = _face(pool, sa, sb, a, b)

@@ -26,7 +26,7 @@ import math
 from typing import Any
 
 from .birth import flies_off
-from .constants import HIT, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
@@ -269,7 +269,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         force = 0.0
         # What opens at a speed and is sent back may close at that speed: stopped sooner, it would be pushed while it
         # opens, and gain energy (l (v + v') / 2: J. J. Moreau 1988).
-        row.t1 = min(-closing(r, a, b, 0.0), HIT * least_extent(a, b) / h)
+        row.t1 = min(-closing(r, a, b, 0.0), LOOK * least_extent(a, b) / h)
         row.t2 = row.t1
         row.alpha = 0.0
         row.alpha_t = 0.0
