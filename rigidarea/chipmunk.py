@@ -162,7 +162,6 @@ def _body_and_shape() -> dict[str, int]:
     space = pymunk.Space()
     space.add(body, shape)
     found["body_shapes"] = _find_pointer(body._body, "body", "shapes", address_of(shape._shape))
-    found["shape_body"] = _find_pointer(shape._shape, "shape", "body", address_of(body._body))
     other = pymunk.Circle(body, 2.0)
     space.add(other)  # the body's list of shapes starts with the latest
     found["shape_next"] = _find_pointer(other._shape, "shape", "next shape", address_of(shape._shape))
@@ -175,16 +174,14 @@ def _arbiter() -> dict[str, int]:
         "arbiter_friction": "u",
         "arbiter_surface": "surface_vr",
         "arbiter_shape_a": "a",
-        "arbiter_body_a": "body_a",
         "arbiter_count": "count",
         "arbiter_contacts": "contacts",
         "arbiter_normal": "n",
         "arbiter_handlers": "handlerAB",
         "arbiter_process": "processCollision",
-        "arbiter_state": "state",
     }
     found = {name: int(ffi.offsetof("struct cpArbiter", field)) for name, field in arbiter.items()}
-    for pair in (("a", "b"), ("body_a", "body_b"), ("handlerAB", "handlerBA")):  # B's pointer follows A's
+    for pair in (("a", "b"), ("handlerAB", "handlerBA")):  # B's pointer follows A's
         at, after = (int(ffi.offsetof("struct cpArbiter", field)) for field in pair)
         if after != at + 8:
             raise LayoutError(f"arbiter {pair[0]}: B's pointer does not follow A's")

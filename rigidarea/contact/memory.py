@@ -25,7 +25,7 @@ from ..kernel.tables import (
     end_pair,
     rehash,
 )
-from ..store import Store
+from .arrays import Store
 
 
 class Memory(NamedTuple):

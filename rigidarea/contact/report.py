@@ -10,7 +10,8 @@ import pymunk
 
 from ..kernel.bed import stored
 from ..kernel.tables import SUBSTEP
-from ..store import Store, load_law
+from ..store import load_law
+from .arrays import Store
 
 #: One row a contact region, as `AreaContact.regions` gives them.
 REGIONS = np.dtype(
