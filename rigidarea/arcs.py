@@ -185,15 +185,16 @@ def sampled(points: Points, arcs: Points, tolerance: float) -> Points:
     return np.concatenate(pieces)
 
 
-def around(points: Points, arcs: Points, step: float = math.pi / 64) -> Points:
-    """Points (n, 2) whose convex hull contains the ring: arcs that bulge outwards become tangents, `step` radians
-    apart at the most."""
+def around(points: Points, arcs: Points) -> Points:
+    """Points (n, 2) whose convex hull contains the ring: arcs that bulge outwards become tangents, at most 1/64 of half
+    a turn apart.
+    """
     turned = sweeps(points, arcs)
     pieces = []
     for i, (x, y, r) in enumerate(arcs):
         pieces.append(points[i : i + 1])
         if r > 0:
-            count = max(1, math.ceil(turned[i] / step))
+            count = max(1, math.ceil(turned[i] / (math.pi / 64)))
             each = turned[i] / count
             angle = math.atan2(points[i, 1] - y, points[i, 0] - x) + each * (np.arange(count) + 0.5)
             reach = r / math.cos(each / 2)
