@@ -36,7 +36,10 @@ def address_of(cdata: object) -> int:
 
 
 def function(name: str, signature: Any) -> Any:
-    """One of pymunk's C functions, on pointers and scalars, callable from machine code."""
+    """The function `name` of pymunk's C library, callable from machine code.
+
+    signature: numba's, of pointers (`uintp`) and scalars.
+    """
     address = address_of(ffi.addressof(lib, name))
     if config.DISABLE_JIT:
         return prototype(signature)(address)
@@ -278,7 +281,10 @@ def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def springs() -> tuple[int, ...]:
-    """Of both kinds of springs: their class, where they keep their force function (bytes), and Chipmunk's own."""
+    """Of both kinds of springs: their class, where they keep their force function (bytes), and Chipmunk's own.
+
+    Raises LayoutError where that cannot be told for sure.
+    """
     found: list[int] = []
     for name, force in (("DampedSpring", "force_func"), ("DampedRotarySpring", "torque_func")):
         one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)

@@ -101,7 +101,7 @@ def test_the_page_has_every_public_name():
 def test_the_command_writes_the_page(tmp_path, capsys):
     assert main(["reference", "--docs", str(tmp_path)]) == 0
     text = (tmp_path / "api.md").read_text()
-    assert text == reference.page() and "### class `Outline(points: ArrayLike" in text
+    assert text == reference.page() and "### class `Outline`\n\n```python\nOutline(points: ArrayLike" in text
     assert main(["reference"]) == 0
     assert capsys.readouterr().out == text
 

@@ -225,7 +225,11 @@ class Store:
         extent: float,
         half: tuple[float, float],
     ) -> None:
-        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `settle` after the last."""
+        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `settle` after the last.
+
+        address, body: Chipmunk's. mirror: the outline's other side, of a segment that has two. extent: its smallest
+        extent (length). half: half the width and height of its box (length).
+        """
         number = self.outline(outline)
         other = -1 if mirror is None else self.outline(mirror)
         if ident >= len(self.slots):

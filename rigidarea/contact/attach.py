@@ -111,7 +111,10 @@ class AreaContact:
         return self._space
 
     def detach(self) -> None:
-        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again."""
+        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again.
+
+        Raises RuntimeError within a step.
+        """
         space = self._space
         if space is None:
             return
@@ -141,7 +144,10 @@ class AreaContact:
 
     @property
     def stiffness(self) -> float | None:
-        """k of F = k A (force/length^2) for all pairs; None: each pair's by the load that it carries."""
+        """k of F = k A (force/length^2) for all pairs; None: each pair's by the load that it carries.
+
+        May be set between frames; ValueError unless it is None, or positive and finite.
+        """
         return float(self._state["stiffness"]) if self._state["stiffness_given"] else None
 
     @stiffness.setter
@@ -156,7 +162,7 @@ class AreaContact:
         """How deep bodies may sink, as a fraction of the smallest extent, where no stiffness is given.
 
         Set between frames: pairs that touch for the first time take it at once, the others' stiffness follows by a few
-        per cent a frame, so that the energy which they store does not jump.
+        per cent a frame, so that the energy which they store does not jump. ValueError unless positive and finite.
         """
         return float(self._state["penetration"])
 
@@ -171,8 +177,9 @@ class AreaContact:
     ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
-        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, and more for islands
-            where teeth or slots of a concave outline would pass each other unseen. `ask` has islands take more.
+        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, one while hardly
+            anything moves, more for islands where teeth or slots of a concave outline would pass each other unseen.
+            `ask` has islands take more.
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
             its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
 
@@ -277,14 +284,21 @@ class AreaContact:
     def regions(self) -> np.ndarray:
         """The contact regions of the last substep, one REGIONS row each; the order means nothing.
 
-        Of flexible parts too: as they were at the end of their own motion, their speeds left out.
+        Fields: `shape_a`, `shape_b`, `body_a`, `body_b` (A was added first); `area` (length^2); `centroid` (2,), where
+        the force acts (length, world); `direction` (2,), unit, from A to B; `chord` (length); `stiffness`, k of F = k A
+        (force/length^2); `force`, on B along `direction`, on A the opposite; `friction`, on B along `direction` turned
+        by +90 degrees (force); `speed`, with which they close, and `slip`, of A along B, surface velocity included
+        (length/time). Of flexible parts too: as they were at the end of their own motion, their speeds left out.
         """
         assert self.space is not None  # says so if detached
         own, flexible = regions_of(self._store, self._register.shapes), self._settings["flexible"]
         return own if flexible is None else np.concatenate([own, flexible.rows(own.dtype)])
 
     def energy(self) -> float:
-        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
+        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length).
+
+        The potential is 0 where a centre of gravity is at the origin. Raises RuntimeError after `detach`.
+        """
         return total_energy(self.space, self._store)
 
     # --- what machine code asks for ---
@@ -387,8 +401,8 @@ def attach(
     Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
     their `friction`, callbacks' overrides included. `space.iterations` is the number of sweeps a substep.
 
-    Raises ValueError for settings out of range, and for a space that is attached already; LayoutError where
-    Chipmunk's memory is not as this version of pymunk has it.
+    Raises ValueError for settings out of range, for shapes without area, and for a space that is attached already;
+    RuntimeError within a step; LayoutError where Chipmunk's memory is not as this version of pymunk has it.
     """
     if not isinstance(space, pymunk.Space):
         raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")

@@ -74,7 +74,10 @@ class Register:
                 self.refresh(space, shape)
 
     def refresh(self, space: pymunk.Space, shape: pymunk.Shape) -> None:
-        """Read a shape's geometry again: `AreaContact.refresh`."""
+        """Read a shape's geometry again: `AreaContact.refresh`.
+
+        Raises ValueError for a shape that is not entered, or that has no area now.
+        """
         if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
             raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
         Outline.from_pymunk(shape)  # says what is wrong with it while nothing has changed

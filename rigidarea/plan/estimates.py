@@ -3,8 +3,12 @@
 They take numbers or NumPy arrays alike. Nothing here is fitted to a scene; the few numbers that were measured on this
 solve, not derived, say so and stand together at the end.
 
-Symbols: m mass, I moment, g the acceleration that presses, s a body's smallest extent, k of F = k A
-(force/length²), L a chord, h a substep, w a contact's angular frequency, p the penetration allowed (fraction of s).
+Symbols, and the arguments that they stand for: m `mass` (mass), g `gravity`, the acceleration that presses
+(length/time²), v `speed` (length/time), s `extent`, a body's smallest (length), k `stiffness` of F = k A
+(force/length²), L `chord` (length), h a substep (time), w `frequency` of a contact (rad/time), p the penetration
+allowed (fraction of s), r or rho `radius` of an arc (length), d `depth` (length), t `tolerance`, the sagitta of a chord
+(length), e `restitution`; E `young` (force/area), rho `density` (mass/volume), l `length`, h `height` and `thickness`
+of what bends (length).
 """
 
 from __future__ import annotations
@@ -62,7 +66,7 @@ def buckling_penetration(boxes: float) -> float:
 
 
 def contact_frequency(stiffness: Number, chord: Number, mass: Number) -> Number:
-    """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (design 2.3)."""
+    """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (docs/theory.md, 3)."""
     return np.sqrt(stiffness * chord / mass)
 
 

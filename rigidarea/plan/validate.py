@@ -27,16 +27,13 @@ from .. import contact as area
 from ..outline import Outline
 from ..report import envelope
 from ..study.peers.base import drive, record
-from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, surface
+from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, plain_shape, surface
 from ..study.records import Progress, Row, append_rows, read_rows
 from ..study.scene import (
     ANGLE,
     Array,
-    Circle,
     Curve,
-    Polygon,
     Scene,
-    Segment,
     Trace,
     X,
     Y,
@@ -93,12 +90,8 @@ def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
         made[body.name] = here = make_body(body)
         shapes: list[pymunk.Shape] = []
         for shape in body.shapes:
-            if isinstance(shape, Circle):
-                shapes.append(pymunk.Circle(here, shape.radius, shape.center))
-            elif isinstance(shape, Polygon):
-                shapes.append(pymunk.Poly(here, shape.points, radius=shape.radius))
-            elif isinstance(shape, Segment):
-                shapes.append(pymunk.Segment(here, shape.a, shape.b, shape.radius))
+            if not isinstance(shape, Curve):
+                shapes.append(plain_shape(shape, here))
             elif shape.exact is not None:
                 shapes.append(shape.exact().add_to(here))
             else:

@@ -485,7 +485,7 @@ def test_shape_of_a_gear():
 
 
 def test_gears_teeth_bend_by_what_the_elements_say():
-    """2.3 micrometres at 46 N/mm (docs: design, polygonal flanks): both gears' teeth together."""
+    """2.3 micrometres at 46 N/mm (polygonal flanks): both gears' teeth together."""
     from rigidarea.plan import estimates as est
 
     bends = 2 * est.deflection(46e3, 207e9, 1.0, 1.0, 0.5)
