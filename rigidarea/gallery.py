@@ -326,11 +326,3 @@ class Run:
             "headline": float(value),
             "headline_exact": scene.headline.exact,
         }
-
-
-def play(name: str) -> int:
-    """Open a demo in a window (`python demos/NAME.py`); returns the exit code."""
-    from .draw.window import show
-
-    show(Run(load(name)))
-    return 0
