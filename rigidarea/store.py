@@ -88,8 +88,7 @@ STATE = record(
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
-        ("request", "i8"),
-        ("asked_arbiter", "u8"),  # of it: the normal that Chipmunk has found
+        ("asked_arbiter", "u8"),  # the arbiter whose normal Chipmunk is to find again, and what it is
         ("asked_x", "f8"),
         ("asked_y", "f8"),
         ("ask_at", "u8"),  # Python's ear

@@ -74,7 +74,6 @@ def state_of(space: int) -> Any:
 @kernel
 def ask(s: Any, request: int) -> bool:
     """Ask Python for something; whether it could."""
-    s.request = request
     _call_ask(s.ask_at, np.uint64(request))
     return bool(s.failed == 0)
 
