@@ -1,6 +1,6 @@
 """The scene `platformer` in a window: `python demos/platformer.py`. What is in it: rigidarea/demos/platformer.py."""
 
-from rigidarea.gallery import play
+from rigidarea.draw.window import play
 
 if __name__ == "__main__":
     raise SystemExit(play("platformer"))

@@ -1,8 +1,8 @@
 """Rigid-body contact by overlap area for pymunk.
 
 import pymunk, rigidarea as ra
-contact = ra.attach(space)
-contact.step(1 / 60)
+contact = ra.attach(space)  # of a pymunk.Space
+space.step(1 / 60)  # as ever
 """
 
 from . import shapes

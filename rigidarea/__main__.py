@@ -8,6 +8,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import ctypes
+import importlib
 import os
 import sys
 import time
@@ -29,6 +30,15 @@ COMMANDS = {
     "run": "an existing pymunk program, area contact attached to every space it makes",
     "reference": "the API reference, written from the docstrings",
     "compat": "pymunk's own examples and tests with area contact attached",
+}
+#: Where they are: each module has `add_arguments(parser)` and `run(arguments)`.
+MODULES = {
+    "demo": "draw.demo",
+    "case": "cases",
+    "plan": "plan.command",
+    "run": "compat.run",
+    "reference": "reference",
+    "compat": "compat.command",
 }
 STUDIES = ("bench", "chart", "atlas", "compare")
 
@@ -52,37 +62,12 @@ def parser(command: str | None) -> argparse.ArgumentParser:
         if name in commands.choices:
             continue
         own = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
-        if name == command == "demo":
-            from .draw import demo
-
-            demo.add_arguments(own)
-            own.set_defaults(run=demo.run)
-        elif name == command == "run":
-            from .compat import run as program
-
-            program.add_arguments(own)
-            own.set_defaults(run=program.run)
-        elif name == command == "plan":
-            from .plan import command as planning
-
-            planning.add_arguments(own)
-            own.set_defaults(run=planning.run)
-        elif name == command == "reference":
-            from . import reference
-
-            reference.add_arguments(own)
-            own.set_defaults(run=reference.run)
-        elif name == command == "compat":
-            from .compat import command as compat
-
-            compat.add_arguments(own)
-            own.set_defaults(run=compat.run)
-        elif name == command == "case":
-            from . import cases
-
-            cases.add_arguments(own)
-            output_arguments(own, Path("out") / "cases")
-            own.set_defaults(run=_case)
+        if name == command:
+            module = importlib.import_module(f".{MODULES[name]}", __package__)
+            module.add_arguments(own)
+            if name == "case":
+                output_arguments(own, Path("out") / "cases")
+            own.set_defaults(run=_case if name == "case" else module.run)
     return top
 
 

@@ -31,7 +31,8 @@ def arc_points(
     """Points (n, 2) along a circular arc, both ends included and exactly on it, the sector's area kept
     exactly.
 
-    start, sweep: radians; sweep > 0 runs counter-clockwise. tolerance: largest sagitta (length).
+    center, radius: of the circle (length). start, sweep: radians; sweep > 0 runs counter-clockwise. tolerance: largest
+    sagitta (length). Raises ValueError for more than MOST_CHORDS.
     With m chords of angle θ and inner vertices at radius ρ, the fan has the sector's area R²φ/2 when
     (m−2)/2·sin θ·ρ² + R·sin θ·ρ − R²φ/2 = 0.
     """
@@ -49,8 +50,8 @@ def circle_points(center: tuple[float, float], radius: float, tolerance: float) 
     """Vertices (n, 2), counter-clockwise, of the regular polygon with the circle's area; n a multiple of 4,
     n >= 8.
 
-    tolerance: largest sagitta (length). The first edge stands across the x axis, so that a disc set down
-        unturned lies on a face.
+    center, radius: of the circle (length). tolerance: largest sagitta (length). The first edge stands across the x
+    axis, so that a disc set down unturned lies on a face. Raises ValueError for more than MOST_CHORDS.
     """
     n = 4 * max(2, math.ceil(_chords(radius, 2 * math.pi, tolerance) / 4))
     rho = radius * math.sqrt((2 * math.pi / n) / math.sin(2 * math.pi / n))
@@ -80,7 +81,7 @@ def circle_ring(center: tuple[float, float], radius: float) -> tuple[Points, Poi
 
 
 def reversed_ring(points: Points, arcs: Points) -> tuple[Points, Points]:
-    """The ring walked the other way round."""
+    """A ring, points (n, 2) and arcs (n, 3), walked the other way round: both in the new order."""
     return points[::-1].copy(), np.roll(arcs[::-1], -1, axis=0) * (1.0, 1.0, -1.0)
 
 
@@ -129,7 +130,10 @@ def area_and_first_moment(ring: Points) -> tuple[float, Points]:
 
 
 def measures(ring: Points, arcs: Points | None) -> tuple[float, Points, float]:
-    """Signed area, ∫ r dA (2,) and ∫ |r|² dA of a ring: of its chords, and of what lies between them and arcs."""
+    """Signed area, ∫ r dA (2,) and ∫ |r|² dA of a ring: of its chords, and of what lies between them and arcs.
+
+    About the origin (length², length³, length⁴); arcs None: straight edges only.
+    """
     area, first = area_and_first_moment(ring)
     following = _following(ring)
     cross = ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]
@@ -160,7 +164,10 @@ def extremes(points: Points, arcs: Points) -> Points:
 
 
 def on_arc(start: Points, end: Points, radius: float, where: Points) -> NDArray[np.bool_]:
-    """Which points (n, 2) of the circle lie on its arc from start to end."""
+    """Which points `where` (n, 2) of a circle lie on its arc from start to end, both (2,): (n,) bool.
+
+    radius: signed, as in `arcs` (length).
+    """
     chord, away = end - start, where - start
     left: Points = chord[0] * away[:, 1] - chord[1] * away[:, 0]
     return left * radius < 0
@@ -185,15 +192,16 @@ def sampled(points: Points, arcs: Points, tolerance: float) -> Points:
     return np.concatenate(pieces)
 
 
-def around(points: Points, arcs: Points, step: float = math.pi / 64) -> Points:
-    """Points (n, 2) whose convex hull contains the ring: arcs that bulge outwards become tangents, `step` radians
-    apart at the most."""
+def around(points: Points, arcs: Points) -> Points:
+    """Points (n, 2) whose convex hull contains the ring: arcs that bulge outwards become tangents, at most 1/64 of half
+    a turn apart.
+    """
     turned = sweeps(points, arcs)
     pieces = []
     for i, (x, y, r) in enumerate(arcs):
         pieces.append(points[i : i + 1])
         if r > 0:
-            count = max(1, math.ceil(turned[i] / step))
+            count = max(1, math.ceil(turned[i] / (math.pi / 64)))
             each = turned[i] / count
             angle = math.atan2(points[i, 1] - y, points[i, 0] - x) + each * (np.arange(count) + 0.5)
             reach = r / math.cos(each / 2)
@@ -202,7 +210,7 @@ def around(points: Points, arcs: Points, step: float = math.pi / 64) -> Points:
 
 
 def tangents(points: Points, arcs: Points) -> tuple[Points, Points]:
-    """Unit directions (n, 2) in which each edge starts and ends."""
+    """Unit directions in which each edge of a ring starts, and in which it ends: two arrays (n, 2)."""
     following = _following(points)
     chord = following - points
     out = []
@@ -215,7 +223,8 @@ def tangents(points: Points, arcs: Points) -> tuple[Points, Points]:
 
 def bulging(points: Points, bulges: Points) -> tuple[Points, Points]:
     """(points, arcs) of a ring whose edge i bulges to the right by bulges[i] = tan(sweep / 4), sweep > 0
-    counter-clockwise (DXF's convention). Arcs of more than half a turn are halved."""
+    counter-clockwise (DXF's convention). Arcs of more than half a turn are halved, so there may be more points.
+    """
     kept, arcs = [], []
     for p, q, b in zip(points, _following(points), bulges):
         chord = q - p
@@ -237,7 +246,9 @@ def bulging(points: Points, bulges: Points) -> tuple[Points, Points]:
 
 
 def grown(points: Points, radius: float) -> tuple[Points, Points]:
-    """(points, arcs) of a convex polygon, counter-clockwise, grown by `radius`; of two points: a capsule."""
+    """(points (m, 2), arcs (m, 3)) of a convex polygon, counter-clockwise, grown by `radius` (length); of two points: a
+    capsule.
+    """
     edge = _following(points) - points
     normal = np.column_stack((edge[:, 1], -edge[:, 0])) / np.hypot(*edge.T)[:, None]
     ring, arcs = [], []

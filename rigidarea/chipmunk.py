@@ -36,7 +36,10 @@ def address_of(cdata: object) -> int:
 
 
 def function(name: str, signature: Any) -> Any:
-    """One of pymunk's C functions, on pointers and scalars, callable from machine code."""
+    """The function `name` of pymunk's C library, callable from machine code.
+
+    signature: numba's, of pointers (`uintp`) and scalars.
+    """
     address = address_of(ffi.addressof(lib, name))
     if config.DISABLE_JIT:
         return prototype(signature)(address)
@@ -162,7 +165,6 @@ def _body_and_shape() -> dict[str, int]:
     space = pymunk.Space()
     space.add(body, shape)
     found["body_shapes"] = _find_pointer(body._body, "body", "shapes", address_of(shape._shape))
-    found["shape_body"] = _find_pointer(shape._shape, "shape", "body", address_of(body._body))
     other = pymunk.Circle(body, 2.0)
     space.add(other)  # the body's list of shapes starts with the latest
     found["shape_next"] = _find_pointer(other._shape, "shape", "next shape", address_of(shape._shape))
@@ -175,16 +177,14 @@ def _arbiter() -> dict[str, int]:
         "arbiter_friction": "u",
         "arbiter_surface": "surface_vr",
         "arbiter_shape_a": "a",
-        "arbiter_body_a": "body_a",
         "arbiter_count": "count",
         "arbiter_contacts": "contacts",
         "arbiter_normal": "n",
         "arbiter_handlers": "handlerAB",
         "arbiter_process": "processCollision",
-        "arbiter_state": "state",
     }
     found = {name: int(ffi.offsetof("struct cpArbiter", field)) for name, field in arbiter.items()}
-    for pair in (("a", "b"), ("body_a", "body_b"), ("handlerAB", "handlerBA")):  # B's pointer follows A's
+    for pair in (("a", "b"), ("handlerAB", "handlerBA")):  # B's pointer follows A's
         at, after = (int(ffi.offsetof("struct cpArbiter", field)) for field in pair)
         if after != at + 8:
             raise LayoutError(f"arbiter {pair[0]}: B's pointer does not follow A's")
@@ -281,7 +281,10 @@ def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:
 
 @lru_cache(maxsize=1)
 def springs() -> tuple[int, ...]:
-    """Of both kinds of springs: their class, where they keep their force function (bytes), and Chipmunk's own."""
+    """Of both kinds of springs: their class, where they keep their force function (bytes), and Chipmunk's own.
+
+    Raises LayoutError where that cannot be told for sure.
+    """
     found: list[int] = []
     for name, force in (("DampedSpring", "force_func"), ("DampedRotarySpring", "torque_func")):
         one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)

@@ -115,7 +115,7 @@ def load(name: str) -> Scene:
 
 
 def static_body(space: pymunk.Space, outline: Outline, **attributes: Any) -> pymunk.Shape:
-    """Add an outline to the space's static body; returns its shape."""
+    """Add an outline to the space's static body; returns its shape. attributes: as in `Outline.add_to`."""
     shape = outline.add_to(space.static_body, **attributes)
     space.add(shape)
     return shape
@@ -130,7 +130,11 @@ def add_body(
     angle: float = 0.0,
     **attributes: Any,
 ) -> pymunk.Body:
-    """Add a dynamic body of this outline (its centroid at the body's origin or not); returns the body."""
+    """Add a dynamic body of this outline to the space; returns the body.
+
+    position (length), angle (radians): of the body, whose origin is the outline's. density: mass/length². attributes:
+    of the shape, as in `Outline.add_to`.
+    """
     body = outline.body(density=density)
     body.angle = angle
     body.position = position
@@ -322,11 +326,3 @@ class Run:
             "headline": float(value),
             "headline_exact": scene.headline.exact,
         }
-
-
-def play(name: str) -> int:
-    """Open a demo in a window (`python demos/NAME.py`); returns the exit code."""
-    from .draw.window import show
-
-    show(Run(load(name)))
-    return 0

@@ -72,7 +72,7 @@ def one_of(value: str, name: str, known: Iterable[str]) -> str:
 
 
 def numbers(values: Any, name: str, count: int) -> tuple[float, ...]:
-    """So many finite numbers, as a tuple; ValueError with their name for anything else."""
+    """The values as a tuple of `count` floats; ValueError with their name unless they are as many finite numbers."""
     try:
         given = tuple(float(value) for value in values)
     except (TypeError, ValueError, OverflowError):
@@ -90,7 +90,7 @@ def truth(value: bool, name: str) -> bool:
 
 
 def listed(values: Any, name: str) -> list[Any]:
-    """What is in a list or the like; ValueError with its name for what holds nothing."""
+    """The values as a list; ValueError with their name for what cannot be gone through."""
     try:
         return list(values)
     except TypeError:
@@ -98,7 +98,10 @@ def listed(values: Any, name: str) -> list[Any]:
 
 
 def checked_attribute(name: str, value: Any) -> None:
-    """ValueError unless `value` can be that attribute of a pymunk shape (which asserts, or ends the process)."""
+    """ValueError unless `value` can be the attribute `name` of a pymunk shape (which would assert, or end the process).
+
+    name: friction, elasticity, collision_type, filter, sensor or surface_velocity.
+    """
     number = isinstance(value, int | float | np.number) and not isinstance(value, bool)
     good, wanted = {
         "friction": (number and math.isfinite(value) and value >= 0, "a finite number >= 0"),
@@ -121,8 +124,11 @@ def checked_attribute(name: str, value: Any) -> None:
 
 
 def checked_ring(points: ArrayLike, name: str) -> Points:
-    """A clean copy: float64 (n, 2), finite, n >= 3, no repeated or closing point, area not zero. Either
-    sense."""
+    """A clean copy of a ring's points: float64 (n, 2), n >= 3, no repeated or closing point, in the sense given.
+
+    Raises ValueError, beginning with `name`, for other shapes, numbers that are not finite or above LARGEST, fewer
+    than three distinct points, and no area.
+    """
     try:
         ring = np.array(points, dtype=np.float64)
     except (TypeError, ValueError) as error:

@@ -161,11 +161,14 @@ def _enlarge(pool: Pool, work: Work) -> Work:
 def overlap(
     outline_a: Outline, place_a: Sequence[float], outline_b: Outline, place_b: Sequence[float]
 ) -> np.ndarray:
-    """Contact regions of outline A at (x, y, angle) with outline B at (x, y, angle) (length, length, radians).
+    """Contact regions of two outlines where they overlap.
 
-    Returns a structured array, one OVERLAP row a connected region, empty where the outlines are apart. Area is Eq. 4,
-    centroid Eq. 7; the direction is perpendicular to the chord, for whole outlines inside the other and for crossed
-    bars (no chord) the shortest way out. Regions that touch in a single point may count as one.
+    place_a, place_b: where each outline's body is, (x, y, angle) (length, length, radians).
+    Returns a structured array, one OVERLAP row a connected region, empty where the outlines are apart: `area` (Eq. 4,
+    length^2), `centroid` (2,) (Eq. 7, length, world), `direction` (2,), unit, from A to B: perpendicular to the chord,
+    or where there is none (an outline inside the other, crossed bars) the shortest way out; `chord` (length, 0 where
+    there is none); `polygon`, the region's outer boundary (n, 2) (length). Regions that touch in a single point may
+    count as one.
 
     Raises ValueError for arguments that are no outlines, or no finite (x, y, angle).
     """
@@ -208,7 +211,8 @@ def overlaps(outline_a: Outline, places_a: ArrayLike, outline_b: Outline, places
     """Contact regions of two outlines at many places at once: what `overlap` says of each, without the polygons.
 
     places_a, places_b: arrays (n, 3) of x, y, angle (length, length, radians), row by row; (3,) is one place for all.
-    Returns a structured array, one OVERLAPS row a connected region, in the order of the places.
+    Returns a structured array, one OVERLAPS row a connected region, in the order of the places: `place`, the number of
+    its row, and `area`, `centroid`, `direction`, `chord` as of `overlap`.
     Raises ValueError for arguments that are no outlines, for places that are not finite or not of that shape.
     """
     _check_outlines(outline_a, outline_b)

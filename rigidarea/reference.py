@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import functools
 import importlib
 import inspect
 import re
 import sys
+import textwrap
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+#: Columns of a block of code.
+WIDTH = 110
 #: What a user may import, in the order of the page.
 MODULES = ("rigidarea", "rigidarea.shapes", "rigidarea.bring", "rigidarea.gym", "rigidarea.flexible")
 
@@ -79,7 +83,7 @@ def _module(module: ModuleType) -> str:
         if inspect.isclass(value):
             lines += _class(name, value)
         elif callable(value):
-            lines += [f"### `{name}{_signature(value)}`", "", _text(value), ""]
+            lines += [f"### `{name}`", "", *_fenced(name, value), _text(value), ""]
         elif isinstance(value, np.dtype):
             lines += [
                 f"### `{name}`",
@@ -93,17 +97,25 @@ def _module(module: ModuleType) -> str:
 
 
 def _class(name: str, made: type) -> list[str]:
-    lines = [f"### class `{name}{_signature(made)}`", "", _text(made), ""]
+    lines = [f"### class `{name}`", "", *_fenced(name, made), _text(made), ""]
     for member, value in vars(made).items():
         if member.startswith("_"):
             continue
         plain = value.__func__ if isinstance(value, classmethod | staticmethod) else value
-        if isinstance(plain, property):
-            settable = ", may be set" if plain.fset else ""
+        if isinstance(plain, property | functools.cached_property):
+            settable = ", may be set" if getattr(plain, "fset", None) else ""
             lines += [f"- **`.{member}`**{settable}: {_line(_text(plain))}"]
         elif inspect.isfunction(plain):
             lines += [f"- **`.{member}{_signature(plain)}`**: {_line(_text(plain))}"]
     return [*lines, ""]
+
+
+def _fenced(name: str, value: Any) -> list[str]:
+    """How it is called, as a block of code; nothing for what has no signature."""
+    signature = _signature(value)
+    if not signature:
+        return []
+    return ["```python", *textwrap.wrap(name + signature, WIDTH, subsequent_indent="    "), "```", ""]
 
 
 def _signature(value: Any) -> str:
@@ -113,6 +125,8 @@ def _signature(value: Any) -> str:
         return ""
     text = re.sub(r"\(self(, )?", "(", text)
     text = re.sub(r"\bcls(, )?", "", text, count=1) if text.startswith("(cls") else text
+    text = re.sub(r"ForwardRef\(('[^']*')\)", r"\1", text)  # annotations of a named tuple
+    text = re.sub(r"\d+\.\d{6,}", lambda m: f"{float(m.group()):.4g}", text)
     # annotations are text (from __future__ import annotations): strip their quotes and the modules' paths
     return re.sub(r"'([^']*)'", lambda m: m.group(1) if m.group(1) not in WORDS else m.group(), text)
 
@@ -137,6 +151,7 @@ WORDS = {
 def _text(value: Any) -> str:
     """The docstring; what it says of arguments ("name: ...") as a list."""
     text = inspect.getdoc(value) or "(no docstring)"
+    text = re.sub(r"(?<!\n)\n(Returns|Raises) ", r"\n\n\1 ", text)  # no part of the list before it
     return re.sub(r"^([a-z_]\w*(?:, [a-z_]\w*)*): ", r"- `\1`: ", text, flags=re.MULTILINE)
 
 

@@ -48,7 +48,7 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
 
 def tables_of(s: SimpleNamespace) -> Any:
     """The kernels' tables; what the search does not look at is empty."""
-    from rigidarea.store import Store
+    from rigidarea.contact.arrays import Store
 
     return Store().tables._replace(
         bodies=s.bodies, rows=s.rows, factors=s.factors, mobility=s.mobility, live=s.live, counters=s.counters

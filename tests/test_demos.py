@@ -241,7 +241,7 @@ def test_window_ends_after_its_frames(monkeypatch):
 @pytest.mark.parametrize("name", NAMES)
 def test_a_script_a_scene(name, monkeypatch):
     played = []
-    monkeypatch.setattr("rigidarea.gallery.play", lambda name: played.append(name) or 0)
+    monkeypatch.setattr("rigidarea.draw.window.play", lambda name: played.append(name) or 0)
     with pytest.raises(SystemExit) as end:
         runpy.run_path(str(SCRIPTS / f"{name}.py"), run_name="__main__")
     assert played == [name] and end.value.code == 0

@@ -151,7 +151,7 @@ ASKED = [0.1, 0.2, 0.35, 0.5, 0.65, 0.8, 0.9, 0.99, 1.0]
 
 @pytest.mark.parametrize("e", [0.05, *ASKED[:-1], 0.999])
 def test_restitution_damping_solves_its_equation(kernel: Any, e: float) -> None:
-    """alpha (1 + e) = ln[(1 + alpha) / (1 - alpha e)], design 2.4; by Brent's method, away from the root at 0."""
+    """alpha (1 + e) = ln[(1 + alpha) / (1 - alpha e)], docs/theory.md 5; by Brent's method, away from the root at 0."""
 
     def equation(alpha: float) -> float:
         return math.log1p(alpha) - math.log1p(-alpha * e) - alpha * (1 + e)

@@ -676,7 +676,7 @@ def test_thousands_of_adds_and_removes_do_not_grow_the_pairs():
     space.step(DT)
     assert used(contact) == (1, 1)
     assert len(sizes) == 1
-    assert len(contact._shapes) < cycles / 2
+    assert len(contact._register.shapes) < cycles / 2
 
 
 def test_rows_of_shapes_that_are_gone_are_used_again():

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import rigidarea as ra
+from rigidarea.contact.arrays import Store
 from rigidarea.kernel import broad, tables
 from rigidarea.kernel.place import place
-from rigidarea.store import Store
 
 SQUARE = ra.Outline([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 BLADE = ra.Outline([(-1.5, -0.1), (1.5, -0.1), (1.5, 0.1), (-1.5, 0.1)])

@@ -46,7 +46,10 @@ def outlines_from_geojson(
 
 
 def parse_json(content: str, what: str) -> Any:
-    """JSON without NaN and Infinity. ValueError, with the place, for anything else, however deep or long."""
+    """The value of a JSON text, in which NaN and Infinity are not allowed.
+
+    Raises ValueError for anything else, however deep or long; what: where it comes from, for the message.
+    """
 
     def refuse(name: str) -> None:
         raise ValueError(f"{what}: expected finite numbers, got {name}")

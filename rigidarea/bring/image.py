@@ -26,9 +26,10 @@ def outlines_from_image(
     tolerance: float | None = None,
     limits: Limits = LIMITS,
 ) -> list[Outline]:
-    """Outlines of a picture file's opaque parts, largest first; see `outlines_from_mask`.
+    """Outlines of a picture file's opaque parts, largest first.
 
-    A picture without an alpha channel is taken by its brightness: what is darker than the threshold is solid.
+    source: path of a file that Pillow reads. Opaque is what has more alpha than `threshold` (0 to 1); in a picture
+    without an alpha channel, what is darker than that. scale, flip, tolerance, limits: as in `outlines_from_mask`.
     Raises ValueError for what Pillow cannot read, and for more pixels than `limits` allow (asked before decoding).
     """
     from PIL import Image, UnidentifiedImageError

@@ -29,7 +29,11 @@ LIMITS = Limits()
 
 
 def read(source: str | os.PathLike[str], limits: Limits) -> bytes:
-    """A file's content. ValueError for one that is too large, or no regular file (a pipe may never end)."""
+    """The content of the file at the path `source`.
+
+    Raises ValueError for one of more than `limits.bytes`, and for what is no regular file (a pipe may never end);
+    OSError for one that cannot be read.
+    """
     allowed(limits)
     path = file_of(source)
     with path.open("rb") as file:
@@ -65,7 +69,7 @@ def allowed(limits: Limits) -> Limits:
 
 
 def text(data: bytes, what: str) -> str:
-    """The bytes as UTF-8, a mark at the start dropped. ValueError where they are something else."""
+    """The bytes as UTF-8, a byte order mark at the start dropped. ValueError, naming `what`, for anything else."""
     try:
         return data.decode("utf-8-sig")
     except UnicodeDecodeError as error:
@@ -75,6 +79,6 @@ def text(data: bytes, what: str) -> str:
 
 
 def check(count: int, most: int, what: str) -> None:
-    """ValueError if there are too many."""
+    """ValueError if `count` is more than `most`; what: what is counted, for the message."""
     if count > most:
         raise ValueError(f"expected at most {most} {what}, got {count}")

@@ -86,7 +86,10 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
 
 
 def overlapping_boxes(solid: Sequence[shapely.Polygon], most: int, what: str) -> tuple[Indices, Indices]:
-    """Pairs (i, j), i != j, of polygons whose boxes overlap. Of 1e5 nested rings there are 1e10: refused."""
+    """Pairs (i, j), i != j, of polygons whose boxes overlap: the i and the j, each (n,).
+
+    Raises ValueError for more than `most` pairs of `what` (1e5 nested rings have 1e10).
+    """
     if not solid:
         return np.zeros(0, int), np.zeros(0, int)
     tree, found, total = shapely.STRtree(solid), [], 0

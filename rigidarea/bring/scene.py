@@ -84,19 +84,27 @@ class Scene:
     """Arguments of `rigidarea.attach`."""
 
     def attach(self, **more: Any) -> AreaContact:
-        """Attach area contact as the file says; `more` goes before."""
+        """Attach area contact to `space` with the settings of the file; those in `more` (of `rigidarea.attach`) win."""
         return attach(self.space, **{**self.contact, **more})
 
 
 def load_scene(source: str | os.PathLike[str], limits: Limits = LIMITS) -> Scene:
-    """The scene of a file: .toml is TOML, everything else JSON. ValueError says where something else was expected."""
+    """The scene of the file at the path `source`: .toml is TOML, everything else JSON.
+
+    Raises ValueError, with the place in the file, what was expected and what came, for anything else, and for more
+    than `limits` allow; OSError for a file that cannot be read.
+    """
     data = read(source, limits)
     kind = "toml" if file_of(source).suffix.lower() == ".toml" else "json"
     return scene_from_text(text(data, str(source)), kind, limits)
 
 
 def scene_from_text(content: str, kind: str = "json", limits: Limits = LIMITS) -> Scene:
-    """The scene of a text, "json" or "toml". ValueError says where something else was expected, and what."""
+    """The scene of a text of the kind "json" or "toml".
+
+    Raises ValueError, with the place in it, what was expected and what came, for anything else, and for more than
+    `limits` allow.
+    """
     if not isinstance(content, str):
         raise ValueError(f"content must be a str, got {type(content).__name__}")
     allowed(limits)

@@ -15,7 +15,11 @@ FLATTEST = 1e-7
 
 
 class Values:
-    """Reads values out of plain data. All methods raise ValueError with the place, what was expected, what came."""
+    """Reads values out of plain data: each method returns what it has found, checked.
+
+    found: the value. place: where it stands in the file, for the message. All raise ValueError with the place, what was
+    expected and what came, where something else was found.
+    """
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
@@ -23,7 +27,7 @@ class Values:
         """Points of rings so far."""
 
     def table(self, found: Any, place: str, known: tuple[str, ...] | None = None) -> dict[str, Any]:
-        """A table, all of whose keys are known (None: any)."""
+        """A table, all of whose keys are among `known` (None: any)."""
         if not isinstance(found, dict):
             raise ValueError(f"{place}: expected a table, got {found!r:.40}")
         unknown = [key for key in found if known is not None and key not in known]
@@ -41,7 +45,7 @@ class Values:
     def number(
         self, found: Any, place: str, low: float | None = None, above: bool = False, infinite: bool = False
     ) -> float:
-        """A number >= low (or > low: above); infinite: the word "inf" is one too."""
+        """A finite number, at least `low`, with `above` more than that; with `infinite` the word "inf" is one too."""
         wanted = "a finite number" if not infinite else 'a number or "inf"'
         if low is not None:
             wanted += f" {'>' if above else '>='} {low:g}"
@@ -64,13 +68,13 @@ class Values:
         return found
 
     def truth(self, found: Any, place: str) -> bool:
-        """true or false."""
+        """A truth value: true or false."""
         if not isinstance(found, bool):
             raise ValueError(f"{place}: expected true or false, got {found!r:.40}")
         return found
 
     def point(self, found: Any, place: str) -> tuple[float, float]:
-        """[x, y]."""
+        """A point [x, y], as a tuple."""
         if not isinstance(found, list) or len(found) != 2:
             raise ValueError(f"{place}: expected [x, y], got {found!r:.40}")
         return self.number(found[0], f"{place}[0]"), self.number(found[1], f"{place}[1]")
@@ -98,7 +102,7 @@ class Values:
         return told
 
     def ring(self, found: Any, place: str, least: int = 3) -> list[tuple[float, float]]:
-        """A list of points, counted against the limit."""
+        """A list of `least` or more points [x, y], counted against the limit."""
         points = self.rows(found, place)
         self.points += len(points)
         check(self.points, self.limits.points, "points")

@@ -23,7 +23,7 @@ def within(name: str, value: float, low: float, high: float) -> Fact:
 
 
 def true(name: str, holds: bool, measured: object) -> Fact:
-    """A fact that holds or does not."""
+    """The fact that something holds; measured: what was seen, for the table."""
     return Fact(name, bool(holds), str(measured))
 
 
@@ -45,7 +45,10 @@ def lowest(w: Watch, up: int, inside: Callable[[np.ndarray], np.ndarray]) -> flo
 
 
 def rolls_into_corner(first: tuple[float, float], up: int, slope: tuple[float, float, float, float]) -> Facts:
-    """Facts of a body that comes down on a sloping line with a wall at its end: x and y of its place there."""
+    """Facts of a body that comes down on a sloping line with a wall at its end.
+
+    first: where it ends, x and y. up: which sign of y is up. slope: the line's ends, x0, y0, x1, y1 (pixels).
+    """
 
     def facts(w: Watch) -> list[Fact]:
         path = w.path(w.dynamic()[0])
@@ -63,6 +66,7 @@ def rolls_into_corner(first: tuple[float, float], up: int, slope: tuple[float, f
 
 
 def bounces(w: Watch) -> list[Fact]:
+    """bouncing_balls: the first ball rebounds by its elasticity, and none gets under the line."""
     path = w.path(w.dynamic()[0])
     start, bottom = path[0, 2], int(np.argmax(path[:80, 2]))  # y points down
     after = path[bottom : bottom + 60, 2]
@@ -74,6 +78,7 @@ def bounces(w: Watch) -> list[Fact]:
 
 
 def falls_freely(w: Watch) -> list[Fact]:
+    """basic_test: the body falls along the parabola, and is removed below 0."""
     path = w.path(w.dynamic()[0])
     t = (path[:, 0] - path[0, 0] + 1) / 50
     error = np.max(np.abs(path[:, 2] - (400 - 450 * t**2)))
@@ -85,6 +90,7 @@ def falls_freely(w: Watch) -> list[Fact]:
 
 
 def line_holds(w: Watch) -> list[Fact]:
+    """balls_and_lines: the ball rests on the line that was drawn, and grows while the mouse touches it."""
     path = w.path(w.dynamic()[0])
     rest = path[path[:, 0] == 195][0]
     radii = w.probed
@@ -120,6 +126,7 @@ def stays_in_scene(low: tuple[float, float], high: tuple[float, float], least: i
 
 
 def pyramid_stands(w: Watch) -> list[Fact]:
+    """box2d_pyramid, threaded_space: the pyramid stands, level and where it was built."""
     start, end = w.at(1), w.at(-1)
     top = max(end, key=lambda n: start[n][1])
     tilt = max(abs(math.remainder(row[2], math.pi / 2)) for row in end.values())
@@ -133,6 +140,7 @@ def pyramid_stands(w: Watch) -> list[Fact]:
 
 
 def stacks_stand_until_shot(w: Watch) -> list[Fact]:
+    """box2d_vertical_stack: the stacks stand until the ball is shot at them, which moves some boxes."""
     start, before, after = w.at(1), w.at(85), w.at(-1)
     boxes = sorted(start)
     shift = max(abs(before[n][0] - start[n][0]) for n in boxes)
@@ -146,6 +154,7 @@ def stacks_stand_until_shot(w: Watch) -> list[Fact]:
 
 
 def playground(w: Watch) -> list[Fact]:
+    """playground: the tower stands, nobody gets under the line, and what was made is there."""
     before, after = w.at(60), w.at(-1)
     tower = sorted(before)[:9]
     # nine boxes of 20 on a line at 50
@@ -165,6 +174,7 @@ def playground(w: Watch) -> list[Fact]:
 
 
 def arrows_stick(w: Watch) -> list[Fact]:
+    """arrows: both arrows that were shot stick and come to rest."""
     pivots = sum(isinstance(j, pymunk.PivotJoint) for j in w.space.constraints)
     flown = [n for n in w.dynamic() if w.path(n)[-1, 1] > 150]
     speed = max((math.hypot(*w.path(n)[-1, 4:6]) for n in flown), default=math.inf)
@@ -182,6 +192,7 @@ def _above(path: np.ndarray, y: float) -> np.ndarray:
 
 
 def breakout(w: Watch) -> list[Fact]:
+    """breakout: balls stay in the court and keep their speed, the paddle its groove, and bricks are hit."""
     balls = [n for n in w.dynamic() if w.bodies[n].mass == 1]
     speeds = np.concatenate([np.hypot(*w.path(n)[1:, 4:6].T) for n in balls])
     places = np.concatenate([_above(w.path(n), 50) for n in balls])
@@ -201,6 +212,7 @@ def breakout(w: Watch) -> list[Fact]:
 
 
 def flipper(w: Watch) -> list[Fact]:
+    """flipper: the flippers swing and come back, a ball is thrown up again, and none leaves the table."""
     right, left = w.dynamic()[:2]
     swing = np.max(np.abs(w.path(right)[:, 3]))
     balls = w.dynamic()[2:]
@@ -225,6 +237,7 @@ def feet(spaces: Sequence[pymunk.Space]) -> tuple[float, float, bool]:
 
 
 def platformer(w: Watch) -> list[Fact]:
+    """platformer: the player stands and is told so, walks, jumps and lands."""
     x, y, grounded = (np.array(column) for column in zip(*(seen for seen in w.probed if seen)))
     return [
         # feet: a circle of 10 at -5 on a line at 50 of radius 3
@@ -237,6 +250,7 @@ def platformer(w: Watch) -> list[Fact]:
 
 
 def tank(w: Watch) -> list[Fact]:
+    """tank: the tank drives to the mouse, and no box leaves the walls."""
     start, end = w.at(1), w.at(-1)
     driver = next(n for n in end if w.bodies[n].mass == 10)
     ends = np.array([row[:2] for row in end.values()])
@@ -251,6 +265,7 @@ def tank(w: Watch) -> list[Fact]:
 
 
 def constraints_hold(w: Watch) -> list[Fact]:
+    """constraints: every joint holds, the motor turns at its rate, the gear at its ratio."""
     motor = next(j for j in w.space.constraints if isinstance(j, pymunk.SimpleMotor))
     gear = next(j for j in w.space.constraints if isinstance(j, pymunk.GearJoint))
     numbers = {body: n for n, body in enumerate(w.bodies)}
@@ -265,6 +280,7 @@ def constraints_hold(w: Watch) -> list[Fact]:
 
 
 def gun_points(w: Watch) -> list[Fact]:
+    """damped_rotary_spring_pointer: the gun points at the mouse."""
     gun = w.path(w.dynamic()[0])
     return [
         within(
@@ -274,6 +290,7 @@ def gun_points(w: Watch) -> list[Fact]:
 
 
 def cradle_swings(w: Watch) -> list[Fact]:
+    """newtons_cradle: the last ball swings out, then the first, and the rods keep their length."""
     first, last = w.path(w.dynamic()[0])[:, 1], w.path(w.dynamic()[-1])[:, 1]
     hit = int(np.argmax(np.abs(last - last[0])))  # by then the first has been let go, and has struck
     return [
@@ -285,6 +302,7 @@ def cradle_swings(w: Watch) -> list[Fact]:
 
 
 def planets_orbit(w: Watch) -> list[Fact]:
+    """planet: most planets keep their angular momentum, and all of them together nearly do."""
     start, end = w.at(1), w.at(-1)
 
     def momentum(row: np.ndarray) -> float:
@@ -304,12 +322,14 @@ def planets_orbit(w: Watch) -> list[Fact]:
 
 
 def sprung_body_stays(w: Watch) -> list[Fact]:
+    """camera: the body on springs stays about its place."""
     start, end = w.at(1), w.path(w.dynamic()[0])
     far = float(np.max(np.hypot(*(end[:, 1:3] - start[w.dynamic()[0]][:2]).T)))
     return [within("the sprung angle stays about its place", far, 0, 80)]
 
 
 def web_holds(w: Watch) -> list[Fact]:
+    """spiderweb: the web hangs about the middle and keeps its springs."""
     middle = w.path(w.dynamic()[0])
     return [
         within("the middle of the web hangs about the middle", abs(middle[-1, 1] - 320), 0, 60),
@@ -319,6 +339,7 @@ def web_holds(w: Watch) -> list[Fact]:
 
 
 def lever_holds(w: Watch) -> list[Fact]:
+    """slide_and_pinjoint: the joints hold, and the beam turns no further than its limit."""
     beam = w.path(w.dynamic()[0])
     return [
         within("joints hold", max(w.joint_errors[-60:]), 0, 5),
@@ -332,6 +353,7 @@ def lever_holds(w: Watch) -> list[Fact]:
 
 
 def copies_agree(w: Watch) -> list[Fact]:
+    """copy_and_pickle: the stacks stand, and what is loaded is what was saved."""
     saved = w.probed[99]
     first, stored = w.at(1), w.at(100)
     sagged = max(abs(stored[n][1] - first[n][1]) for n in sorted(first)[:21])
@@ -347,6 +369,7 @@ def copies_agree(w: Watch) -> list[Fact]:
 
 
 def balls_are_deterministic(w: Watch) -> list[Fact]:
+    """colors: respawned, the balls fall to the same places, all within the walls."""
     halves = [np.array(w.probed[frame]) for frame in (141, 291)]
     same = halves[0].shape == halves[1].shape
     gap = float(np.max(np.abs(halves[0] - halves[1]))) if same else math.inf
@@ -358,6 +381,7 @@ def balls_are_deterministic(w: Watch) -> list[Fact]:
 
 
 def crowd_stays_between_walls(w: Watch) -> list[Fact]:
+    """colors_pyglet_batch: all balls are there, within the walls."""
     end = np.array([row[:2] for row in w.at(-1).values()])
     return [
         within("balls", len(end), 3000, 3000),
@@ -366,6 +390,7 @@ def crowd_stays_between_walls(w: Watch) -> list[Fact]:
 
 
 def terrain_holds(w: Watch) -> list[Fact]:
+    """deformable: the bowl holds its 25 balls, and most of those drawn are left."""
     end = w.at(-1)
     balls = sorted(end)
     lying = [math.dist(end[n][:2], (450, 120)) < 125 for n in balls]
@@ -376,6 +401,8 @@ def terrain_holds(w: Watch) -> list[Fact]:
 
 
 def logo_holds(w: Watch) -> list[Fact]:
+    """index_video: nobody gets under the floor, and the letters hold the small balls up."""
+
     def through(x: np.ndarray) -> np.ndarray:
         return (x > -80) & (x < 980)
 
@@ -397,6 +424,7 @@ def logo_holds(w: Watch) -> list[Fact]:
 
 
 def moves_nothing(w: Watch) -> list[Fact]:
+    """collisions: callbacks are called while sensors touch, and there is no dynamic body."""
     begun = w.host.calls["pre_solve"]
     return [
         within("pre_solve is called while the sensors touch", begun, 50, 300),

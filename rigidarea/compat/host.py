@@ -39,7 +39,8 @@ class Host:
         `pygame.display.flip`, `Clock.tick` or turn of pyglet's loop (whichever comes oftener), and where nothing is
         ever shown one `space.step`.
     headless: no window, a clock that never waits, input by `script`; else the program meets the real ones.
-    after_step(space), after_frame(): called then; they may look at everything.
+
+    `after_frame`, if somebody sets it, is called after every frame; it may look at everything.
 
     Raises ValueError for an unknown engine or a negative number of frames.
     """
@@ -51,15 +52,13 @@ class Host:
         *,
         headless: bool = True,
         script: Sequence[Input] = (),
-        after_step: Callable[[pymunk.Space], None] | None = None,
-        after_frame: Callable[[], None] | None = None,
     ) -> None:
         if engine not in ENGINES:
             raise ValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
         if frames is not None and frames < 1:
             raise ValueError(f"frames must be at least 1, got {frames}")
         self.engine, self.frames, self.headless, self.script = engine, frames, headless, script
-        self.after_step, self.after_frame = after_step, after_frame
+        self.after_frame: Callable[[], None] | None = None
         self.spaces: list[pymunk.Space] = []
         """Every space that was stepped, in the order of their first steps."""
         self.calls = dict.fromkeys(PHASES, 0)
@@ -179,8 +178,6 @@ class Host:
             self._cpu += time.process_time() - start
             self._inside = False
         self.steps += 1
-        if self.after_step is not None:
-            self.after_step(space)
         self._count("step")
 
     def _counting(self, phase: str, callback: Any) -> Any:

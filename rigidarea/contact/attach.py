@@ -6,7 +6,7 @@ import ctypes
 import math
 import time
 import weakref
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -17,9 +17,10 @@ from ..chipmunk import address_of, kinds_of_joints, layout, normal_of, springs
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
-from ..outline import Outline, positive
-from ..store import Store
+from ..outline import positive
+from .arrays import Store
 from .memory import Memory, recall, remember
+from .register import Register
 from .report import regions_of, total_energy
 from .space import KEY, attached, attached_class
 
@@ -30,30 +31,12 @@ INTEGRATIONS = ("implicit", "explicit")
 #: tower of about (0.65 / this)^(1/3) boxes stands: 14.
 PENETRATION = 2e-4
 
-
 #: Frames on end go through machine code for no longer than about this (s): then Python may be interrupted.
 ATTENTION = 0.1
 
 
 class SimulationError(RuntimeError):
     """A step went wrong for a reason that the message names (body and step)."""
-
-
-def _roll(constraints: int, by: int) -> None:
-    """Move Chipmunk's list of joints on by so many places. constraints: where a space keeps it."""
-    at = ffi.cast("uintptr_t *", int(ffi.cast("uintptr_t *", constraints)[0]))
-    count = ffi.cast("int *", at)[0]
-    listed = np.frombuffer(ffi.buffer(ffi.cast("void *", int(at[1])), 8 * count), np.uint64)
-    listed[:] = np.roll(listed, by)
-
-
-def _take_out(space: Any, joint: Any, body: Any, pivot: int, constraints: int, kept: Any) -> None:
-    """Remove the hidden constraint from Chipmunk's space, and free it."""
-    lib.cpSpaceSetUserData(space, ffi.NULL)
-    _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
-    lib.cpSpaceRemoveConstraint(space, joint)
-    ffi.cast("uintptr_t *", joint)[0] = pivot
-    lib.cpConstraintFree(joint)
 
 
 class AreaContact:
@@ -68,14 +51,12 @@ class AreaContact:
     # --- attaching ---
 
     def _install(self, space: pymunk.Space) -> None:
-        from . import joints, record  # the machine code: compiled, or loaded, when first attached
+        from . import joints, record, waking  # the machine code: compiled, or loaded, when first attached
+        from .hook import Hook
 
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._store = Store()
-        self._shapes: dict[int, pymunk.Shape] = {}
-        self._forms: dict[int, Any] = {}
-        self._added: dict[int, tuple[Outline, Any]] = {}
         self._state = state = self._store.state[0]
         settings = self._settings
         for name, offset in layout().items():
@@ -99,7 +80,7 @@ class AreaContact:
         self._springs = np.array(springs(), np.uint64)
         state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
-        state["hold_at"], state["seize_at"] = record.hold.address, joints.seize.address
+        state["seize_at"] = joints.seize.address
         own = weakref.ref(self)  # C keeps no Python object alive
         self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
         state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
@@ -107,14 +88,11 @@ class AreaContact:
         self._plain = type(space)
         space.__class__ = attached_class(self._plain)
         space.__dict__[KEY] = self
-        self._rouse = ffi.cast("void (*)(void *, double)", record.rouse.address)
-        self._hide(space)
-        lib.cpSpaceSetUserData(space._space, ffi.cast("void *", self._store.state.ctypes.data))
-        # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
-        kept = self._classes, self._store
-        self._end = weakref.finalize(space, _take_out, space._space, *self._hidden, kept)
+        self._rouse = ffi.cast("void (*)(void *, double)", waking.rouse.address)
+        self._hook = Hook(space, self._store)
+        self._register = Register(self._store, self._hook)
         try:
-            self._register()
+            self._update()
             if self._memory is not None:
                 recall(self._store, space, self._memory)
                 self._memory = None
@@ -125,42 +103,6 @@ class AreaContact:
             self.detach()
             raise
 
-    def _hide(self, space: pymunk.Space) -> None:
-        """The constraint that Chipmunk calls in a step, and the hook that it calls for a touching pair."""
-        from . import frame, joints, record
-
-        idle, none = joints.idle.address, joints.no_impulse.address
-        self._classes = np.array(
-            [
-                *(idle, idle, idle, none),
-                *(frame.silence.address, frame.solve.address, idle, none),
-                *(joints.prepared.address, idle, idle, none),
-            ],
-            np.uint64,
-        )
-        self._state["idle_kind"] = self._classes.ctypes.data
-        self._state["seized_kind"] = self._classes.ctypes.data + 64
-        body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
-        joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
-        own = ffi.cast("uintptr_t *", joint)
-        pivot = int(own[0])
-        own[0] = self._classes.ctypes.data + 32
-        at = int(self._state["constraint_post_solve"]) // 8
-        own[at] = frame.report.address
-        lib.cpSpaceAddConstraint(space._space, joint)
-        constraints = address_of(space._space) + int(self._state["space_constraints"])
-        _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
-        self._hidden = joint, body, pivot, constraints
-        self._state["hidden"] = address_of(joint)
-        wildcard = int(
-            ffi.cast("uintptr_t", ~0)
-        )  # pymunk's own way to the global handler, but for an entry of its own
-        handler = lib.cpSpaceAddCollisionHandler(space._space, wildcard, wildcard)
-        self._state["global_handler"] = address_of(handler)
-        self._hook = ffi.cast("uintptr_t *", address_of(handler) + int(self._state["handler_pre_solve"]) - 8)
-        self._state["user_pre_solve"] = int(self._hook[1])
-        self._state["pre_solve_at"] = self._hook[1] = record.pre_solve.address
-
     @property
     def space(self) -> pymunk.Space:
         """The attached space. RuntimeError after `detach`."""
@@ -169,7 +111,10 @@ class AreaContact:
         return self._space
 
     def detach(self) -> None:
-        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again."""
+        """Give the space Chipmunk's own response back, as if nothing had been. Does nothing when called again.
+
+        Raises RuntimeError within a step.
+        """
         space = self._space
         if space is None:
             return
@@ -177,134 +122,32 @@ class AreaContact:
             raise RuntimeError("detach() within a step: call it after the step")
         if self._settings["flexible"] is not None:
             self._settings["flexible"].leave(space)
-        self._end()
-        if int(self._hook[1]) == int(self._state["pre_solve_at"]):
-            self._hook[1] = int(self._state["user_pre_solve"]) or int(self._state["no_pre_solve"])
-        at, own = int(self._state["body_position_func"]) // 8, int(self._state["position_func"])
-        for body in space.bodies:
-            function = ffi.cast("uintptr_t *", body._body)
-            if int(function[at]) == int(self._state["hold_at"]):
-                function[at] = own
+        self._hook.remove(space)
         space.__class__ = self._plain
         del space.__dict__[KEY]
         self._space = None
 
     # --- shapes ---
 
-    def _register(self) -> None:
+    def _update(self) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
-        space, store = self.space, self._store
-        present = {shape._hashid: shape for shape in space.shapes}
-        # not space.static_body, which makes one where there is none
-        still = [] if space._static_body is None else [space._static_body]
-        bodies = {address_of(body._body): body for body in (*space.bodies, *still)}
-        for shape in space.shapes:
-            if shape.body is not None:
-                bodies.setdefault(address_of(shape.body._body), shape.body)
-        for constraint in space.constraints:
-            for body in (constraint.a, constraint.b):
-                bodies.setdefault(address_of(body._body), body)
-        gone = self._shapes.keys() - present.keys()
-        store.forget(gone, store.known_bodies() - bodies.keys())
-        for ident in gone:
-            del self._shapes[ident], self._forms[ident]
-        hold = int(self._state["hold_at"])
-        own = int(self._state["position_func"]), int(self._state["position_func_again"])
-        at = int(self._state["body_position_func"]) // 8
-        for address, body in bodies.items():
-            store.body(address)
-            function = ffi.cast("uintptr_t *", body._body)
-            if int(function[at]) in own and not space._locked and not self._state["explicit"]:
-                function[at] = hold
-        for ident, shape in present.items():
-            if ident not in self._shapes:
-                self._take(shape)
-        self._added.clear()
-        self._hear()
-        store.settle()
-        state = self._state
-        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
-        state["shape_count"] = len(present)
+        self._register.update(self.space)
         if self._settings["length"] is None:
-            state["length"] = max(
-                (max(s.bb.right - s.bb.left, s.bb.top - s.bb.bottom) for s in present.values() if _moves(s)),
-                default=1.0,
-            )
-
-    def _came(self, shape: pymunk.Shape) -> None:
-        """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
-        if shape.body is not None and shape.body.body_type == pymunk.Body.STATIC:
-            try:
-                self._added[shape._hashid] = Outline.from_pymunk(shape), _form(shape)
-            except ValueError:  # said when the space is stepped
-                pass
-
-    def _take(self, shape: pymunk.Shape) -> None:
-        if shape._hashid in self._added:
-            outline, form = self._added.pop(shape._hashid)
-        else:
-            outline, form = Outline.from_pymunk(shape), _form(shape)
-        body = shape.body
-        assert body is not None
-        left, bottom, right, top = outline.bounds
-        self._store.shape(
-            shape._hashid,
-            address_of(shape._shape),
-            outline,
-            outline.mirror,
-            address_of(body._body),
-            shape.sensor,
-            outline.smallest_extent,
-            (0.5 * (right - left), 0.5 * (top - bottom)),
-        )
-        self._shapes[shape._hashid] = shape
-        self._forms[shape._hashid] = form
-
-    def _reread(self, shapes: Iterable[pymunk.Shape]) -> None:
-        """Of these shapes, those whose geometry has been changed."""
-        for shape in shapes:
-            self._added.pop(shape._hashid, None)
-            if shape._hashid in self._forms and self._forms[shape._hashid] != _form(shape):
-                self.refresh(shape)
-
-    def _hear(self) -> None:
-        """Which shapes' collision types have callbacks of the user's, that may say no."""
-        space = self.space
-        state = self._state
-        for number, name in ((0, "begin"), (2, "post_solve"), (3, "separate")):
-            state[f"global_{name}"] = int(self._hook[number])
-        everywhere = space._handlers.get((None, None))
-        to_all = everywhere is not None and any(
-            getattr(everywhere, phase) is not None
-            for phase in ("begin", "pre_solve", "post_solve", "separate")
-        )
-        keys = [key for key in space._handlers if key != (None, None)]
-        alone = {a for a, b in keys if b is None}
-        pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
-        rows = self._store.slots
-        for ident, shape in self._shapes.items():
-            kind = shape.collision_type
-            row = self._store.tables.shapes[rows[ident]]
-            row["type"], row["heard"] = kind, (to_all or kind in alone) + 2 * (kind in pairs)
-        entries = ffi.cast("unsigned int **", address_of(space._space) + int(state["space_handlers"]))
-        state["handler_count"] = int(entries[0][0])
+            self._state["length"] = self._register.largest()
 
     def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again, after `unsafe_set_vertices` and the like; so do pymunk's `reindex_...`.
 
         Raises ValueError for a shape that is not in the space, or that has no area now.
         """
-        if not isinstance(shape, pymunk.Shape) or self._shapes.get(shape._hashid) is not shape:
-            raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
-        Outline.from_pymunk(shape)  # says what is wrong with it while nothing has changed
-        self._store.forget([shape._hashid], ())
-        self._take(shape)
-        self._hear()
-        self._store.settle()
+        self._register.refresh(self.space, shape)
 
     @property
     def stiffness(self) -> float | None:
-        """k of F = k A (force/length^2) for all pairs; None: each pair's by the load that it carries."""
+        """k of F = k A (force/length^2) for all pairs; None: each pair's by the load that it carries.
+
+        May be set between frames; ValueError unless it is None, or positive and finite.
+        """
         return float(self._state["stiffness"]) if self._state["stiffness_given"] else None
 
     @stiffness.setter
@@ -319,7 +162,7 @@ class AreaContact:
         """How deep bodies may sink, as a fraction of the smallest extent, where no stiffness is given.
 
         Set between frames: pairs that touch for the first time take it at once, the others' stiffness follows by a few
-        per cent a frame, so that the energy which they store does not jump.
+        per cent a frame, so that the energy which they store does not jump. ValueError unless positive and finite.
         """
         return float(self._state["penetration"])
 
@@ -334,8 +177,9 @@ class AreaContact:
     ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
-        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, and more for islands
-            where teeth or slots of a concave outline would pass each other unseen. `ask` has islands take more.
+        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, one while hardly
+            anything moves, more for islands where teeth or slots of a concave outline would pass each other unseen.
+            `ask` has islands take more.
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
             its smallest extent when they are doubled (MOST_SUBSTEPS at the most). Not together with `steps`.
 
@@ -440,14 +284,21 @@ class AreaContact:
     def regions(self) -> np.ndarray:
         """The contact regions of the last substep, one REGIONS row each; the order means nothing.
 
-        Of flexible parts too: as they were at the end of their own motion, their speeds left out.
+        Fields: `shape_a`, `shape_b`, `body_a`, `body_b` (A was added first); `area` (length^2); `centroid` (2,), where
+        the force acts (length, world); `direction` (2,), unit, from A to B; `chord` (length); `stiffness`, k of F = k A
+        (force/length^2); `force`, on B along `direction`, on A the opposite; `friction`, on B along `direction` turned
+        by +90 degrees (force); `speed`, with which they close, and `slip`, of A along B, surface velocity included
+        (length/time). Of flexible parts too: as they were at the end of their own motion, their speeds left out.
         """
         assert self.space is not None  # says so if detached
-        own, flexible = regions_of(self._store, self._shapes), self._settings["flexible"]
+        own, flexible = regions_of(self._store, self._register.shapes), self._settings["flexible"]
         return own if flexible is None else np.concatenate([own, flexible.rows(own.dtype)])
 
     def energy(self) -> float:
-        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length)."""
+        """Kinetic energy, plus potential in the space's gravity, plus what the contacts store (force length).
+
+        The potential is 0 where a centre of gravity is at the origin. Raises RuntimeError after `detach`.
+        """
         return total_energy(self.space, self._store)
 
     # --- what machine code asks for ---
@@ -457,7 +308,7 @@ class AreaContact:
 
         store = self._store
         if request == record.REGISTER:
-            self._register()
+            self._update()
         elif request == record.MORE_PAIRS:
             store.grow_pairs()
         elif request == record.MORE_REGIONS:
@@ -518,19 +369,6 @@ def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
     contact._raise()
 
 
-def _form(shape: pymunk.Shape) -> Any:
-    """What of a shape's geometry can be changed by pymunk's unsafe functions."""
-    if isinstance(shape, pymunk.Circle):
-        return shape.radius, shape.offset
-    if isinstance(shape, pymunk.Segment):
-        return shape.radius, shape.a, shape.b
-    return shape.radius, shape.get_vertices() if isinstance(shape, pymunk.Poly) else None
-
-
-def _moves(shape: pymunk.Shape) -> bool:
-    return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor
-
-
 # --- settings ---
 
 
@@ -563,8 +401,8 @@ def attach(
     Restitution, friction and surface velocity are pymunk's: of a pair the product of the shapes' `elasticity` and of
     their `friction`, callbacks' overrides included. `space.iterations` is the number of sweeps a substep.
 
-    Raises ValueError for settings out of range, and for a space that is attached already; LayoutError where
-    Chipmunk's memory is not as this version of pymunk has it.
+    Raises ValueError for settings out of range, for shapes without area, and for a space that is attached already;
+    RuntimeError within a step; LayoutError where Chipmunk's memory is not as this version of pymunk has it.
     """
     if not isinstance(space, pymunk.Space):
         raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")

@@ -27,7 +27,7 @@ from ..kernel.tables import (
     end_pair,
     rehash,
 )
-from ..store import Store
+from .arrays import Store
 
 
 class Memory(NamedTuple):
@@ -70,7 +70,7 @@ _SHAPE = (
 
 
 def remember(store: Store, space: pymunk.Space) -> Memory:
-    """What the next frame starts from."""
+    """What of a space's tables, and of its bodies and joints, the next frame starts from."""
     rows = [int(store.slots[s._hashid]) if store.knows(s._hashid) else -1 for s in space.shapes]
     tables = store.tables
     return Memory(
@@ -107,7 +107,7 @@ def _in_line(store: Store, space: pymunk.Space) -> np.ndarray:
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
-    """Give a copy, just registered, what its original remembers."""
+    """Give the tables of a copied space what its original remembers. Its bodies and shapes are entered already."""
     for body, centre in zip(space.bodies, memory.centres):
         if not np.array_equal(centre_of(body), centre):
             put_centre(body, *centre)

@@ -17,10 +17,8 @@ from numba import types
 from ..chipmunk import function
 from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
-from ..kernel.meet import DONE, meets_within
 from ..kernel.memory import array_at, caller
 from ..kernel.place import place
-from ..kernel.solve import find_near, may_touch
 from ..kernel.tables import (
     ANEW,
     BODIES,
@@ -28,15 +26,13 @@ from ..kernel.tables import (
     FIXED,
     FREE_PAIRS,
     LED,
-    NEAR,
     SEARCH,
     SHAPES,
-    TURN,
     Tables,
     find_pair,
     new_pair,
 )
-from ..store import STATE, load_pool, load_tables, load_work, row_of_body
+from ..store import STATE, load_pool, load_tables, row_of_body
 from .joints import take_joints
 
 #: What machine code asks Python for.
@@ -47,16 +43,11 @@ timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
 shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
 time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
-activate = function("cpBodyActivate", types.void(types.uintp))
 hash_id = function("cpShapeGetHashID", types.uintp(types.uintp))
 body_type = function("cpBodyGetType", types.int32(types.uintp))
 _call_ask = caller(types.void(types.uintp))
 _call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
 _call_count = caller(types.int32(types.uintp))
-
-#: What sleeps wakes for somebody who comes by more than this in a frame, of its own smallest extent. Whoever is slower
-#: comes to overlap it a little, for which Chipmunk wakes it.
-WAKING = 0.01
 
 #: A normal has been set if it is turned by more than this (rad): Chipmunk's own search ends within 1e-9 of another one.
 SET = 1e-6
@@ -83,7 +74,6 @@ def state_of(space: int) -> Any:
 @kernel
 def ask(s: Any, request: int) -> bool:
     """Ask Python for something; whether it could."""
-    s.request = request
     _call_ask(s.ask_at, np.uint64(request))
     return bool(s.failed == 0)
 
@@ -140,7 +130,7 @@ def read_motion(s: Any, address: int, body: Any) -> None:
 
 
 @kernel(forceinline=True)
-def _notice(s: Any, address: int, body: Any) -> None:
+def notice(s: Any, address: int, body: Any) -> None:
     """A body that is awake, as it is now, and whether it has been set so by the user."""
     x, y, angle = body.x, body.y, body.angle
     vx, vy, w = body.vx, body.vy, body.w
@@ -162,7 +152,7 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
             continue
         met = body.stamp >= 0
         x, y, angle = body.x, body.y, body.angle
-        _notice(s, address, body)
+        notice(s, address, body)
         body.stamp = s.frame
         body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         function = words(address + s.body_position_func, 1)
@@ -203,55 +193,6 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
             if x != body.x or y != body.y or angle != body.angle:
                 body.stamp = s.frame  # moved by hand
     return asleep
-
-
-@callback(types.void(types.uintp, types.float64))
-def rouse(space: int, dt: float) -> None:
-    """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame.
-
-    Chipmunk wakes what somebody overlaps at the frame's start. What is met within the frame would be a wall, on which
-    a blow is spent before anybody sees an overlap. (Within its step Chipmunk cannot wake anybody before it has paired
-    bodies and arbiters, and then the frame has begun.)
-    """
-    if user_data(space) == 0:
-        return
-    s = state_of(space)
-    if s.asleep == 0 or s.explicit:
-        return
-    tables = load_tables(s)
-    for address in members(space, s.space_bodies):
-        i = row_of_body(s, address)
-        if i < 0 or tables.bodies[i].stamp != s.frame:
-            return  # somebody new: the frame will look at everybody first
-        body = tables.bodies[i]
-        _notice(s, address, body)
-        if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
-            return
-    tables.counters[TURN] = 0  # everybody
-    ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
-    g = floats(space + s.space_gravity, 2)
-    while find_near(load_pool(s), load_tables(s), s.frame, ahead, ahead, g[0], g[1]) != DONE:
-        if not ask(s, MORE_PAIRS):
-            return
-    tables = load_tables(s)
-    for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -ahead):
-            continue
-        sleeper = a if a.kind == FIXED else b
-        comer = b if a.kind == FIXED else a
-        way = dt * (abs(comer.vx) + abs(comer.vy) + abs(comer.w) * sleeper.extent)
-        if not sleeper.mobile or way <= WAKING * sleeper.extent:
-            continue
-        met = meets_within(load_pool(s), tables, load_work(s), pair, ahead)
-        while met < 0:
-            if not ask(s, MORE_WORK):
-                return
-            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, ahead)
-        if met > 0:
-            activate(sleeper.address)
 
 
 @kernel(forceinline=True)

@@ -10,7 +10,8 @@ import pymunk
 
 from ..kernel.bed import stored
 from ..kernel.tables import SUBSTEP
-from ..store import Store, load_law
+from ..store import load_law
+from .arrays import Store
 
 #: One row a contact region, as `AreaContact.regions` gives them.
 REGIONS = np.dtype(
@@ -33,7 +34,7 @@ REGIONS = np.dtype(
 
 
 def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:
-    """The regions of the last substep, one REGIONS row each."""
+    """The regions of the last substep, one REGIONS row each. shapes: of the space, by Chipmunk's id."""
     tables = store.tables
     live = tables.regions[
         (tables.regions["stamp"] == tables.counters[SUBSTEP]) & (tables.counters[SUBSTEP] > 0)

@@ -32,19 +32,20 @@ def attached_class(plain: Any) -> type:
 
         def reindex_static(self: Any) -> None:
             plain.reindex_static(self)
-            self.__dict__[KEY]._reread(s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC)
+            still = [s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC]
+            self.__dict__[KEY]._register.reread(self, still)
 
         def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
             plain.reindex_shape(self, shape)
-            self.__dict__[KEY]._reread([shape])
+            self.__dict__[KEY]._register.reread(self, [shape])
 
         def reindex_shapes_for_body(self: Any, body: pymunk.Body) -> None:
             plain.reindex_shapes_for_body(self, body)
-            self.__dict__[KEY]._reread(body.shapes)
+            self.__dict__[KEY]._register.reread(self, body.shapes)
 
         def _add_shape(self: Any, shape: pymunk.Shape) -> None:
             plain._add_shape(self, shape)
-            self.__dict__[KEY]._came(shape)
+            self.__dict__[KEY]._register.came(shape)
 
         own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
         for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):

@@ -31,7 +31,7 @@ def bowl() -> Outline:
 
 
 def c_shape(radius: float, width: float, opening: float) -> Outline:
-    """A ring with a mouth of `opening` radians, ends cut square."""
+    """A ring of outer `radius` and thickness `width` (m) with a mouth of `opening` radians, ends cut square."""
     start, sweep = opening / 2, 2 * math.pi - opening
     outside = arc_points((0, 0), radius, start, sweep, TOLERANCE)
     inside = arc_points((0, 0), radius - width, start + sweep, -sweep, TOLERANCE)
@@ -39,7 +39,7 @@ def c_shape(radius: float, width: float, opening: float) -> Outline:
 
 
 def star(points: int, outer: float, inner: float) -> Outline:
-    """A star with rounded tips and creases."""
+    """A star of so many points with rounded tips and creases, at the radii `outer` and `inner` (m)."""
     angle = math.pi * np.arange(2 * points) / points + math.pi / 2
     radius = np.where(np.arange(2 * points) % 2 == 0, outer, inner)
     return rounded_polygon(

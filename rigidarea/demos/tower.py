@@ -15,7 +15,7 @@ SCATTER = 0.002
 """Largest offset of a box from the tower's axis (m). A tower without any could not buckle."""
 PENETRATION = 8e-6
 """Sinking of one box under its own weight, over its side: (0.65 / this)^(1/3) = 43 boxes stand, softer towers buckle
-under their own weight (design note: a beam on elastic interfaces)."""
+under their own weight (docs/theory.md, 8: a beam on elastic interfaces)."""
 
 
 def build() -> Scene:

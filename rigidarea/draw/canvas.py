@@ -36,7 +36,7 @@ UNDER: Color = (0, 114, 178)
 
 
 def tint(color: Color, strength: float) -> Color:
-    """The colour on paper: 1 is full, 0 is paper; above 1 it darkens towards ink."""
+    """The colour (r, g, b, 0 to 255) at a strength: 1 is full, 0 is paper; above 1, up to 2, it darkens to ink."""
     base, other, share = (PAPER, color, strength) if strength <= 1 else (color, INK, strength - 1)
     r, g, b = (round(p + (c - p) * share) for p, c in zip(base, other))
     return r, g, b

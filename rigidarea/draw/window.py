@@ -8,12 +8,18 @@ import pygame
 import pymunk
 import shapely
 
-from ..gallery import Run
+from ..gallery import Run, load
 from .canvas import placed_polygon
 from .picture import FINE, SIZE, Picture
 
 #: How hard the mouse may pull, in weights of the body (or, without gravity, in the scene's drawn forces).
 PULL = 30.0
+
+
+def play(name: str) -> int:
+    """Open a demo in a window (`python demos/NAME.py`); returns the exit code. ValueError lists the known ones."""
+    show(Run(load(name)))
+    return 0
 
 
 def show(run: Run, frames: int | None = None) -> None:

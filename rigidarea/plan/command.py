@@ -100,7 +100,7 @@ def told(made: Plan) -> dict[str, Any]:
 def of_scene(name: str, arguments: argparse.Namespace) -> Plan:
     """The plan of a scene's space. ValueError lists the known scenes."""
     from ..study.scene import get_scene
-    from .validate import space_of
+    from .trial import space_of
 
     scene = get_scene(name)
     space, _ = space_of(scene)

@@ -30,10 +30,13 @@ def area_frame(bodies: int, pairs: int, steps: int, sweeps: int) -> float:
 
 
 def turns_frame(parts: Iterable[tuple[int, int, int]], sweeps: int) -> float:
-    """A frame of area contact whose islands take substeps of their own (s): (bodies, pairs, substeps) of each part."""
+    """A frame of area contact whose islands take substeps of their own (s).
+
+    parts: (bodies, pairs, substeps) of each. sweeps: a substep.
+    """
     return sum(area_frame(bodies, pairs, steps, sweeps) for bodies, pairs, steps in parts)
 
 
 def native_frame(bodies: int, steps: int, sweeps: int) -> float:
-    """A frame in so many of Chipmunk's own steps (s)."""
+    """A frame of Chipmunk's own response (s): bodies that move, steps a frame, iterations (`sweeps`) a step."""
     return steps * (NATIVE_STEP_S + NATIVE_STEP_BODY_S * bodies * (0.5 + 0.05 * sweeps))

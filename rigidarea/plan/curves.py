@@ -38,7 +38,10 @@ class Facet(NamedTuple):
     driven: bool  # turned by something, against teeth or slots
 
     def error(self, p: float, turn: float, pressed: bool) -> float:
-        """What facets that turn by so much leave at penetration p."""
+        """Relative error that facets leave which turn by `turn` (radians), at penetration p (fraction of the extent).
+
+        pressed: whether weight holds the contact, which then sinks over the facets' edges.
+        """
         sagitta = float(est.tolerance_for_turn(self.radius, turn))
         if (
             self.driven or not pressed
@@ -48,7 +51,7 @@ class Facet(NamedTuple):
         return min(LOST, max(lost, sagitta / self.clearance))
 
     def turn_for(self, error: float, p: float, pressed: bool) -> float:
-        """The largest turn whose error is no larger (radians), to a factor of sqrt(2); LEAST_TURN if none is."""
+        """The largest turn (radians) whose `error` at p is no larger, to a factor of sqrt(2); LEAST_TURN if none is."""
         return _turn_for(self, error, p, pressed)
 
 
@@ -83,6 +86,7 @@ def facet_angle(outline: Outline) -> float:
 
 
 def facets_of(seen: Survey, time: float) -> list[Facet]:
+    """The sampled curves of a space, with what contacts run over of each within `time`."""
     found = []
     for k, outline in enumerate(seen.outlines):
         if seen.radius[k] == 0.0 or outline is None or outline.arcs:
@@ -115,19 +119,23 @@ def facets_of(seen: Survey, time: float) -> list[Facet]:
 
 
 def driven(seen: Survey, k: int) -> bool:
-    """Whether something turns this shape against teeth or slots, or those against it."""
+    """Whether something turns the shape number k against teeth or slots, or those against it."""
     mine = seen.pairs[(seen.pairs == k).any(axis=1) & seen.concave[seen.pairs].any(axis=1)]
     own = seen.owner[mine].ravel()
     return bool((seen.spin[own[~seen.moves[own]]] > 0.0).any())
 
 
 def tooth_lever(outline: Outline, reach: float) -> float:
-    """How far from the pitch point a tooth bears, over the radius: about a pitch, four times a tip's width."""
+    """How far from the pitch point a tooth bears, over the radius `reach` (length): about a pitch, four times a tip's
+    width (dimensionless, at most 1).
+    """
     return min(1.0, 4.0 * tooth(outline) / reach)
 
 
 def clearance(seen: Survey, k: int) -> float:
-    """Least difference of radii between a curve and what may lie in it or around it (length); infinite without."""
+    """Least difference of radii between the curve of shape k and what may lie in it or around it (length); infinite
+    without.
+    """
     mine = seen.pairs[(seen.pairs == k).any(axis=1)]
     other = np.where(mine[:, 0] == k, mine[:, 1], mine[:, 0])
     opposite = seen.radius[other] * seen.radius[k] < 0.0
@@ -135,7 +143,7 @@ def clearance(seen: Survey, k: int) -> float:
 
 
 def run_over(seen: Survey, k: int, time: float) -> float:
-    """Angle of a curve that a contact runs over in a time (radians), no less than one.
+    """Angle of the curve of shape k that a contact runs over within `time` (radians), no less than one.
 
     At the speed that its bodies have, or get in a swing to the curve's side, v² = g r on the average, if that
     comes sooner than the time ends; and with the faster of their spins.

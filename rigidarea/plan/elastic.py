@@ -12,6 +12,7 @@ import shapely
 
 from ..outline import Outline
 from . import estimates as est
+from .curves import pockets
 
 if TYPE_CHECKING:
     from ..flexible import Assembly
@@ -42,14 +43,12 @@ class Shape(NamedTuple):
 
 
 def shape_of(outline: Outline) -> Shape:
-    """Read an outline: teeth, slenderness, bore."""
+    """What of an outline bears on how it bends: its teeth, slenderness, bore."""
     polygon = outline.polygon
     hull = shapely.convex_hull(polygon)
-    solid = shapely.Polygon(polygon.exterior)
-    pockets = [
-        p for p in shapely.get_parts(shapely.difference(hull, solid)) if p.area > 1e-4 * hull.area / 100
-    ]
-    teeth = len(pockets) if len(pockets) > 2 else 0
+    teeth = pockets(outline)
+    if teeth <= 2:
+        teeth = 0
     reach = math.sqrt(hull.area / math.pi)
     holes = [math.sqrt(shapely.Polygon(hole).area / math.pi) for hole in polygon.interiors]
     box = shapely.oriented_envelope(polygon)
@@ -87,7 +86,10 @@ def load_on(space: pymunk.Space, body: pymunk.Body, lever: float) -> float:
 
 
 def first_frequency(shape: Shape, material: Any) -> float:
-    """First elastic frequency (rad/time): of a ring where there is a bore, of a lump or bar else."""
+    """First elastic frequency (rad/time): of a ring where there is a bore, of a lump or bar else.
+
+    material: a `rigidarea.flexible.Material` (force/area, mass/volume).
+    """
     young, density = material.young, material.density
     if shape.bore > 0.0 and shape.teeth:
         rim = shape.reach - shape.bore
@@ -109,10 +111,14 @@ def choose(
 ) -> list[Choice]:
     """One choice for each body with a material.
 
+    materials: by body. stiffness: k of the contacts (force/length²), None if each pair has its own. overrides: what
+    somebody has said otherwise, by body. tolerance: relative.
+
     Rigid where the body bends by less than the tolerance allows, as a fraction of a tooth's pitch or of its extent;
     compliant where what statics leaves out is less than that; else modal, with the modes up to three times the
     excitation. What excites is the mesh of the teeth at the present spin, or where there are none the contact's
-    own frequency."""
+    own frequency.
+    """
     out = []
     loads = {}
     shapes: dict[pymunk.Body, Shape] = {}

@@ -3,8 +3,12 @@
 They take numbers or NumPy arrays alike. Nothing here is fitted to a scene; the few numbers that were measured on this
 solve, not derived, say so and stand together at the end.
 
-Symbols: m mass, I moment, g the acceleration that presses, s a body's smallest extent, k of F = k A
-(force/length²), L a chord, h a substep, w a contact's angular frequency, p the penetration allowed (fraction of s).
+Symbols, and the arguments that they stand for: m `mass` (mass), g `gravity`, the acceleration that presses
+(length/time²), v `speed` (length/time), s `extent`, a body's smallest (length), k `stiffness` of F = k A
+(force/length²), L `chord` (length), h a substep (time), w `frequency` of a contact (rad/time), p the penetration
+allowed (fraction of s), r or rho `radius` of an arc (length), d `depth` (length), t `tolerance`, the sagitta of a chord
+(length), e `restitution`; E `young` (force/area), rho `density` (mass/volume), l `length`, h `height` and `thickness`
+of what bends (length).
 """
 
 from __future__ import annotations
@@ -61,27 +65,14 @@ def buckling_penetration(boxes: float) -> float:
 # --- how fast -------------------------------------------------------------------------------------------------
 
 
-def effective_mass(mass: Number, moment: Number, arm: Number) -> Number:
-    """What a force with that lever arm has to move (mass): 1/(1/m + d²/I)."""
-    return 1.0 / (1.0 / mass + arm * arm / moment)
-
-
 def contact_frequency(stiffness: Number, chord: Number, mass: Number) -> Number:
-    """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (design 2.3)."""
+    """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (docs/theory.md, 3)."""
     return np.sqrt(stiffness * chord / mass)
 
 
 def resting_phase2(gravity: Number, h: float, p: Number, extent: Number) -> Number:
     """(w h)² of a body that rests on a face at penetration p (dimensionless): g h²/(p s), from k L = m g/(p s)."""
     return gravity * h * h / (p * extent)
-
-
-def drift_of_phase(frequency: Number, h: float, time: float) -> Number:
-    """Phase that leapfrog gains on an oscillation in a time (radians): (w h)²/24 · w T.
-
-    Its frequency is (2/h) asin(w h/2) = w (1 + (w h)²/24 + ...) (Hairer, Lubich, Wanner 2003).
-    """
-    return (frequency * h) ** 2 / 24.0 * frequency * time
 
 
 def curve_loss(speed: Number, radius: Number, h: float, time: float, phase2: Number) -> Number:
@@ -238,15 +229,6 @@ def leaning(margin: np.ndarray, slenderness: np.ndarray) -> np.ndarray:
         1.0 / margin, np.where(margin < 2.0 / 3.0, 8.0 / (9.0 * margin * margin) * slenderness, 0.0)
     )
     return found
-
-
-def late_direction(speed: Number, offset: Number, h: float, radius: Number) -> Number:
-    """Error of the direction between two discs that are met up to a step after touch (radians): v h b/R².
-
-    R the sum of the radii, b how far their centres pass each other: the direction makes asin(b/R) with the way, and
-    d of the way turns it by d b/R². Nothing where they meet head on, or flat.
-    """
-    return speed * h * offset / (radius * radius)
 
 
 def sweeps_wanted(layers: Number, ratio: Number) -> Number:

@@ -55,6 +55,7 @@ def total(found: Facts, setting: Setting) -> float:
 def _area(f: Facts, s: Setting) -> list[Cause]:
     """Area contact: sinking, and what substeps and sweeps leave."""
     p, h, g = s.penetration, f.frame / s.steps, f.seen.g
+    corner = float(est.corner_depth(p))
     bodies = f.seen.bodies
     told = []
     if f.slots[0] > 0.0:
@@ -76,9 +77,9 @@ def _area(f: Facts, s: Setting) -> list[Cause]:
         text = (
             f"corner sqrt({p:.0e}), and {'g h²/s' if f.rocks else 'g h²/8s'} = {falls:.1e}, as it falls over"
         )
-        told.append(Cause("corner", est.TOPPLE * (math.sqrt(p) + falls), bodies[f.corner.body], text))
+        told.append(Cause("corner", est.TOPPLE * (corner + falls), bodies[f.corner.body], text))
     if f.leaning:
-        error = LEAN * math.sqrt(p) + 0.5 * g * h * h * f.leaning.value
+        error = LEAN * corner + 0.5 * g * h * h * f.leaning.value
         told.append(Cause("corner", error, bodies[f.leaning.body], f"leans on a corner, sqrt({p:.0e})"))
     if f.pile:
         wanted = est.sweeps_ours(f.tower, f.shared, f.struck, s.sweeps)

@@ -21,31 +21,15 @@ from typing import Any
 
 import numpy as np
 import pymunk
-from pymunk._chipmunk_cffi import lib
 
-from .. import contact as area
-from ..outline import Outline
 from ..report import envelope
-from ..study.peers.base import drive, record
-from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, surface
+from ..study.peers.base import record
 from ..study.records import Progress, Row, append_rows, read_rows
-from ..study.scene import (
-    ANGLE,
-    Array,
-    Circle,
-    Curve,
-    Polygon,
-    Scene,
-    Segment,
-    Trace,
-    X,
-    Y,
-    get_scene,
-    scenes,
-)
+from ..study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
 from ..study.sweep import key
 from ..study.timing import one_core, timed
-from .plan import Plan, plan
+from .plan import plan
+from .trial import Trial, at_settings, planned, space_of
 from .variations import variations
 
 TOLERANCES = (0.1, 0.01, 0.001)
@@ -68,93 +52,6 @@ SLOPS = (1e-2, 1e-3, 1e-4)
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
 FINEST = {"level": "rigid", "steps": 128, "sweeps": 20, "penetration": 1e-8}
 NEXT_TO_FINEST = {"level": "rigid", "steps": 64, "sweeps": 20, "penetration": 1e-8}
-
-
-# --- a scene as a space ---------------------------------------------------------------------------------------
-
-
-def _sampled(curve: Curve, tolerance: float) -> Outline:
-    outer, holes = curve.rings(tolerance)
-    return Outline(outer, holes)
-
-
-@cache
-def _outline(curve: Curve, tolerance: float) -> Outline:
-    """A curve's outline, which knows how to be sampled anew."""
-    return _sampled(curve, tolerance).with_curve(partial(_outline, curve))
-
-
-def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A scene as a user would build it: arcs are arcs, other curves are sampled to a thousandth of its size."""
-    space = pymunk.Space()
-    space.gravity = scene.gravity
-    made: dict[str, pymunk.Body] = {}
-    for body in scene.bodies:
-        made[body.name] = here = make_body(body)
-        shapes: list[pymunk.Shape] = []
-        for shape in body.shapes:
-            if isinstance(shape, Circle):
-                shapes.append(pymunk.Circle(here, shape.radius, shape.center))
-            elif isinstance(shape, Polygon):
-                shapes.append(pymunk.Poly(here, shape.points, radius=shape.radius))
-            elif isinstance(shape, Segment):
-                shapes.append(pymunk.Segment(here, shape.a, shape.b, shape.radius))
-            elif shape.exact is not None:
-                shapes.append(shape.exact().add_to(here))
-            else:
-                shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
-        for made_shape in shapes:
-            surface(made_shape, scene, body)
-        space.add(here, *shapes)
-    add_joints(scene, space, made)
-    return space, list(made.values())
-
-
-class Planned(SpaceRun):
-    """A scene run with a plan's settings, or those of the grid (`level`, `steps`, `sweeps`, `penetration`,
-    `sampling`)."""
-
-    def __init__(
-        self, scene: Scene, settings: Row, chosen: Callable[[pymunk.Space], Plan] | None = None
-    ) -> None:
-        space, bodies = space_of(scene)
-        super().__init__(scene, space, bodies, int(settings["steps"]) if chosen is None else 1)
-        self.frame, self.failed = scene.frame, False
-        if chosen is not None:
-            self.plan = chosen(space)
-            self.contact = self.plan.apply()
-            self.steps = self.plan.steps
-        else:
-            self.contact = _apply(space, settings, scene.size)
-        self.h = scene.frame / self.steps
-
-    def advance(self, frames: int) -> None:
-        """All frames in one call, in machine code."""
-        if self.contact is None:
-            drive(lib.cpSpaceStep, frames * self.steps, self.space._space, self.h)
-        elif not self.failed:
-            try:
-                self.contact.step(self.frame, frames, steps=self.steps)
-            except area.SimulationError:
-                self.failed = True
-
-    def state(self) -> Array:
-        """States (n_body, 6); no numbers once a contact has failed."""
-        states = super().state()
-        return np.full_like(states, np.nan) if self.failed else states
-
-
-def _apply(space: pymunk.Space, settings: Row, size: float) -> Any:
-    space.iterations = settings["sweeps"]
-    if settings.get("sampling"):
-        for shape in space.shapes:
-            outline = getattr(shape, "outline", None)
-            if outline is not None and not outline.arcs:
-                shape.outline = outline.sample(settings["sampling"] * size)  # type: ignore[attr-defined]
-    if settings["level"] == "pymunk":
-        space.collision_slop = settings["penetration"] * size
-        return None
-    return area.attach(space, penetration=settings["penetration"])
 
 
 def grid(scene: Scene) -> Iterator[Row]:
@@ -181,7 +78,7 @@ def grid(scene: Scene) -> Iterator[Row]:
 # --- one run -----------------------------------------------------------------------------------------------------
 
 
-def errors(scene: Scene, build: Callable[[], Planned], reference: Trace | None) -> float:
+def errors(scene: Scene, build: Callable[[], Trial], reference: Trace | None) -> float:
     """The error of a run, frame by frame: the scene's own, or against a reference."""
     trace = record(build(), scene)
     if reference is None:
@@ -204,7 +101,7 @@ def departure(trace: Trace, reference: Trace, size: float) -> float:
     return float(np.max(apart / np.maximum(ways, size)))
 
 
-def seconds_of(scene: Scene, build: Callable[[], Planned]) -> float:
+def seconds_of(scene: Scene, build: Callable[[], Trial]) -> float:
     """Processor time (s) of the whole run in one call; of short ones the median of several, each from cold caches.
 
     (What is planned has driven more out of the caches than what is just built: a run of a tenth of a millisecond took
@@ -216,7 +113,7 @@ def seconds_of(scene: Scene, build: Callable[[], Planned]) -> float:
     return statistics.median([_cold(build(), scene.frames) for _ in range(5)])
 
 
-def _cold(run: Planned, frames: int) -> float:
+def _cold(run: Trial, frames: int) -> float:
     """Time (s) of a run that finds nothing of its own in the caches."""
     np.ones(CACHE // 8).sum()
     return timed(run, frames)
@@ -280,7 +177,7 @@ def _swept(scene: Scene, settings: Row, reference: Callable[[], tuple[Trace | No
     """One setting of the grid: its error (None: it failed) and, roughly, its processor time (s)."""
     compared = reference()[0]
     begin = clock.thread_time()
-    error = errors(scene, partial(Planned, scene, settings), compared)
+    error = errors(scene, partial(at_settings, scene, settings), compared)
     return {"error": error if math.isfinite(error) else None, "rough_s": clock.thread_time() - begin}
 
 
@@ -291,15 +188,15 @@ def _none() -> tuple[None, float]:
 
 def _finest(name: str) -> Row:
     """The finest setting's error on a scene of the study (None: it failed)."""
-    error = errors(get_scene(name), partial(Planned, get_scene(name), {**FINEST, "sampling": 1e-6}), None)
+    error = errors(get_scene(name), partial(at_settings, get_scene(name), {**FINEST, "sampling": 1e-6}), None)
     return {"error": error if math.isfinite(error) else None}
 
 
 def _reference(scene: Scene) -> tuple[Trace, float]:
     """The finest setting's run, and how far the next to finest is from it."""
     fine, coarse = ({**s, "sampling": 1e-6} for s in (FINEST, NEXT_TO_FINEST))
-    trace = record(Planned(scene, fine), scene)
-    return trace, departure(record(Planned(scene, coarse), scene), trace, scene.size)
+    trace = record(at_settings(scene, fine), scene)
+    return trace, departure(record(at_settings(scene, coarse), scene), trace, scene.size)
 
 
 def judge(
@@ -311,14 +208,15 @@ def judge(
 ) -> Row:
     """A plan for one tolerance: its own run, and the cheapest settings of the sweep that are within the tolerance."""
     chosen = partial(plan, tolerance=tolerance, seconds=scene.duration, frame=scene.frame)
-    build = partial(Planned, scene, {}, chosen)
-    run = build()
+    build = partial(planned, scene, chosen)
+    own = build().plan
+    assert own is not None
     error = errors(scene, build, reference()[0])
     good = sorted(
         (row for row in swept if row["error"] is not None and row["error"] <= tolerance), key=_likely_cost
     )
     cheapest = [
-        partial(Planned, scene, {k: v for k, v in row.items() if k not in ("error", "rough_s")})
+        partial(at_settings, scene, {k: v for k, v in row.items() if k not in ("error", "rough_s")})
         for row in good[:TIMED]
     ]
     times: list[list[float]] = [[] for _ in range(1 + len(cheapest))]
@@ -330,7 +228,6 @@ def judge(
     costs = [statistics.median(found) for found in times]
     within = error <= tolerance
     least = min(costs[1:], default=math.inf)
-    own = run.plan
     if within:
         verdict = "within"
     elif not good:

@@ -195,13 +195,13 @@ def tooth_modes(counts: Sequence[int] = (10, 20, 40, 80), size: float = 6e-4) ->
     ]  # fmt: skip
 
 
-def beam_body(mesh: Any, material: Any, modes: int, contact_rings: Sequence[int] = (0,), **keys: Any) -> Any:
+def beam_body(mesh: Any, material: Any, modes: int, **keys: Any) -> Any:
     """A clamped bar (`bar`) as a body of `Simulation`."""
     from ..flexible.boundary import build
     from ..flexible.integrate import Body
     from ..flexible.modes import reduce
 
-    r = reduce(mesh, material, contact_rings, clamped=1, modes=modes)
+    r = reduce(mesh, material, (0,), clamped=1, modes=modes)
     boundary = build([mesh.points[mesh.rings[0]] - r.centre], None, r.modes, r.how_it_yields)
     return Body(
         boundary, r.mass, r.inertia, (float(r.centre[0]), float(r.centre[1])), 0.0, r.frequency, r.coupling, r.stretch,

@@ -305,8 +305,3 @@ def kernel_times(report: Row, out: Path) -> list[Path]:
     ]
     figure.legend(handles=handles, loc="outside upper center", ncols=2)
     return save(figure, out, "bench-kernels")
-
-
-def our_name(rows: Sequence[Row]) -> list[str]:
-    """Names of our own peers in rows."""
-    return [name for name in dict.fromkeys(row["peer"] for row in rows) if get_peer(name).ours]

@@ -65,7 +65,7 @@ COARSE, LEVELS = 0.1, 13
 
 
 def compare(ours: Iterable[Point], theirs: Iterable[Point], resolution: float = 0.0) -> Comparison:
-    """Compare two sets of settings by their fronts. Errors below `resolution` count as equal to it.
+    """Compare two sets of settings, ours and theirs, by their fronts. Errors below `resolution` count as equal to it.
 
     All NaN if either has no finite point.
     """

@@ -16,7 +16,9 @@ Row = dict[str, Any]
 
 
 def write_csv(target: Path, rows: Sequence[Row]) -> None:
-    """Rows as CSV; columns in order of first appearance, settings as JSON text, infinity as `inf`."""
+    """Write rows to the file `target` as CSV; columns in order of first appearance, settings as JSON text, infinity as
+    `inf`.
+    """
     columns = list(dict.fromkeys(key for row in rows for key in row))
     target.parent.mkdir(parents=True, exist_ok=True)
     with target.open("w", newline="") as file:

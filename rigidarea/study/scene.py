@@ -201,44 +201,47 @@ class Scene:
 
 
 def box(width: float, height: float) -> Polygon:
-    """A rectangle about the origin."""
+    """A rectangle about the origin (lengths)."""
     x, y = width / 2, height / 2
     return Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
 
 
 def box_moment(mass: float, width: float, height: float) -> float:
-    """m (w² + h²)/12."""
+    """Moment of inertia of a uniform rectangle about its centre (mass·length²): m (w² + h²)/12."""
     return mass * (width**2 + height**2) / 12
 
 
 def disc(name: str, radius: float, position: tuple[float, float], mass: float = 1.0, **more: object) -> Body:
-    """A uniform disc, moment m r²/2."""
+    """A uniform disc, moment m r²/2, its centre at `position` (length). more: other fields of `Body`."""
     return Body(name, (Circle(radius),), position, mass=mass, moment=mass * radius**2 / 2, **more)  # type: ignore[arg-type]
 
 
 def block(
     name: str, width: float, height: float, position: tuple[float, float], mass: float = 1.0, **more: object
 ) -> Body:
-    """A uniform rectangle, moment m (w² + h²)/12."""
+    """A uniform rectangle, moment m (w² + h²)/12, its centre at `position` (length). more: other fields of `Body`."""
     moment = box_moment(mass, width, height)
     return Body(name, (box(width, height),), position, mass=mass, moment=moment, **more)  # type: ignore[arg-type]
 
 
 def floor(width: float = 100.0, depth: float = 1.0, name: str = "floor", **more: object) -> Body:
-    """A static slab whose upper face is y = 0."""
+    """A static slab, `width` by `depth` (length), whose upper face is y = 0. more: other fields of `Body`."""
     return Body(name, (box(width, depth),), (0.0, -depth / 2), kind="static", **more)  # type: ignore[arg-type]
 
 
 def arc(radius: float, start: float, stop: float, tolerance: float) -> Array:
     """Points (n, 2) of the arc about the origin from angle `start` to `stop` (rad), both ends included.
 
-    Sampled so that the area is kept (`rigidarea.outline`), for all peers alike.
+    Sampled so that the area is kept (`rigidarea.arcs`), for all peers alike. tolerance: largest sagitta (length).
     """
     return arc_points((0.0, 0.0), radius, start, stop - start, tolerance)
 
 
 def full_circle(radius: float, tolerance: float) -> Array:
-    """Points (n, 2) of a circle about the origin, counter-clockwise, not closed, its area kept."""
+    """Points (n, 2) of a circle about the origin, counter-clockwise, not closed, its area kept.
+
+    tolerance: largest sagitta of a chord (length).
+    """
     return circle_points((0.0, 0.0), radius, tolerance)
 
 

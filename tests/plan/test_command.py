@@ -8,7 +8,7 @@ import pymunk
 import pytest
 
 from rigidarea.__main__ import main
-from rigidarea.plan import validate, variations
+from rigidarea.plan import trial, validate, variations
 
 PROGRAM = """
 import pymunk
@@ -64,7 +64,7 @@ def test_a_scene_is_built_as_a_space_and_nothing_else():
     """A plan gets a space: the scene's name is not in it, and curves know how to be sampled."""
     from rigidarea.study.scene import get_scene
 
-    space, bodies = validate.space_of(get_scene("bowl_slide"))
+    space, bodies = trial.space_of(get_scene("bowl_slide"))
     assert len(bodies) == 2 and space.gravity == (0, -9.81)
     (bowl,) = (shape for shape in space.shapes if hasattr(shape, "outline"))
     assert len(bowl.outline.sample(1e-6).rings[0]) > 3 * len(bowl.outline.rings[0])
@@ -91,7 +91,7 @@ def test_a_varied_outline_keeps_its_arcs():
     varied = variations.vary(scene, 3)
     factor = varied.size / scene.size
     assert factor != 1.0
-    for one, other in zip(validate.space_of(scene)[0].shapes, validate.space_of(varied)[0].shapes):
+    for one, other in zip(trial.space_of(scene)[0].shapes, trial.space_of(varied)[0].shapes):
         if isinstance(one, pymunk.Circle):
             assert other.radius == pytest.approx(factor * one.radius)
             continue

@@ -81,13 +81,6 @@ def test_a_corner_sinks_by_the_root():
         )  # what a face of that size cuts off at depth p
 
 
-def test_effective_mass_is_that_of_an_impulse():
-    mass, moment, arm = 2.0, 0.3, 0.4
-    impulse = 1.7
-    velocity = impulse / mass + arm * (impulse * arm) / moment  # of the point where it acts
-    assert est.effective_mass(mass, moment, arm) == pytest.approx(impulse / velocity, rel=1e-12)
-
-
 def test_contact_frequency_is_that_of_the_explicit_law():
     """A box let go above its rest on a stiff floor, in fine explicit steps: its period."""
     space = pymunk.Space()
@@ -118,14 +111,6 @@ def test_resting_phase_is_that_of_the_stiffness_for_it():
     assert est.resting_phase2(G, h, p, extent) == pytest.approx(
         (est.contact_frequency(k, extent, mass) * h) ** 2, rel=1e-12
     )
-
-
-def test_drift_of_phase_is_that_of_leapfrog():
-    w, time = 3.0, 20.0
-    for h in (0.02, 0.01):
-        steps = round(time / h)
-        angle = steps * 2 * math.asin(w * h / 2)  # exact for leapfrog
-        assert angle - w * time == pytest.approx(est.drift_of_phase(w, h, time), rel=2e-3)
 
 
 def test_curve_loss_is_that_of_a_polygonal_path():
@@ -184,13 +169,6 @@ def test_turning_gap_is_the_sagitta_of_the_way():
     speed, radius, h, depth = 2.0, 0.7, 1e-3, 1e-6
     gap = math.hypot(radius, speed * h) - radius
     assert est.turning_gap((speed / radius) ** 2, radius, h, depth) == pytest.approx(gap / depth, rel=1e-4)
-
-
-def test_late_direction_is_the_turn_of_the_line_of_centres():
-    speed, offset, h, radius = 3.0, 0.4, 1e-4, 1.0
-    along = math.sqrt(radius**2 - offset**2)
-    turned = math.atan2(offset, along - speed * h) - math.atan2(offset, along)
-    assert est.late_direction(speed, offset, h, radius) == pytest.approx(turned, rel=0.01)
 
 
 def test_bounce_error_bounds_where_touch_may_lie():

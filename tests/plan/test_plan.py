@@ -145,7 +145,7 @@ def test_a_hole_is_read_as_arcs_and_as_points():
 
 def test_what_comes_off_an_arc_is_seen_beforehand():
     """A ring on a peg, as stiff as its substeps do not bear: measured 0.23, against 0.0012 where it stays on."""
-    from rigidarea.plan.validate import space_of
+    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
 
     scene = get_scene("ring_on_peg")
@@ -157,7 +157,7 @@ def test_what_comes_off_an_arc_is_seen_beforehand():
 
 def test_a_pin_in_a_slot_is_no_gear():
     """A Geneva wheel has twelve hollows, six of them for the lock: it begins from nothing with each slot."""
-    from rigidarea.plan.validate import space_of
+    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
 
     scene = get_scene("geneva")
@@ -196,7 +196,7 @@ def test_a_blow_asks_for_a_stiffer_bed_than_its_weight():
 
 def test_what_starts_overlapped_and_meets_nothing():
     """Chipmunk takes two free boxes apart without a speed that stays: one step a frame will do, given the time."""
-    from rigidarea.plan.validate import space_of
+    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
 
     scene = get_scene("parted")
@@ -485,7 +485,7 @@ def test_shape_of_a_gear():
 
 
 def test_gears_teeth_bend_by_what_the_elements_say():
-    """2.3 micrometres at 46 N/mm (docs: design, polygonal flanks): both gears' teeth together."""
+    """2.3 micrometres at 46 N/mm (polygonal flanks): both gears' teeth together."""
     from rigidarea.plan import estimates as est
 
     bends = 2 * est.deflection(46e3, 207e9, 1.0, 1.0, 0.5)

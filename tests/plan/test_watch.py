@@ -6,7 +6,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.plan.validate import space_of
+from rigidarea.plan.trial import space_of
 from rigidarea.plan.watch import Indicator, PlanWarning
 from rigidarea.study.scene import get_scene
 

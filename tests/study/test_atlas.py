@@ -68,7 +68,7 @@ def test_damping_raises_the_step_limit(elasticity):
 
 @pytest.mark.parametrize("sinking,boxes", [(1e-2, 3), (1e-3, 8), (1e-4, 18), (1e-5, 39)])
 def test_buckling_bound(sinking, boxes):
-    """The eigenvalue problem gives the design's numbers, and the round formula is within a box of them."""
+    """The eigenvalue problem gives the numbers of docs/study.md, and the round formula is within a box of them."""
     assert buckling.tallest(sinking) == boxes
     assert abs(math.floor((0.65 / sinking) ** (1 / 3)) - boxes) <= 1
 
@@ -77,7 +77,7 @@ def test_buckling_bound(sinking, boxes):
 @pytest.mark.parametrize("engine", ["rigidarea", "explicit"])
 @pytest.mark.parametrize("sinking,boxes", [(1e-2, 3), (1e-3, 8), (1e-4, 18), (1e-5, 39)])
 def test_stacks_buckle_where_theory_says(sinking, boxes, engine):
-    """The tallest stable stack stands for half a minute, one box more topples: design 2.3's numbers, simulated."""
+    """The tallest stable stack stands for half a minute, one box more topples: those numbers, simulated."""
     variant = get_map("buckling").variants[engine]
     assert buckling.lean(variant, sinking, boxes) < buckling.LIMIT
     assert buckling.lean(variant, sinking, boxes + 1) > buckling.LIMIT

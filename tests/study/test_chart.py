@@ -26,7 +26,7 @@ def charted(tmp_path_factory):
 
 
 def test_chart_rows(charted):
-    """Keys of design 7, one row a setting, and a summary row a scene and foreign peer."""
+    """The keys of its JSON, one row a setting, and a summary row a scene and foreign peer."""
     _, report = charted
     wanted = {"scene", "peer", "settings", "error", "error_name", "cost_s_per_s"}
     assert wanted <= set(report["results"][0])
@@ -173,7 +173,7 @@ def test_crowds(name):
 
 
 def test_bench_frames():
-    """Keys of design 7; growth is fitted over the sizes."""
+    """The keys of its JSON; growth is fitted over the sizes."""
     report = bench.frames(["towers"], (10, 20), ["pymunk", "rigidarea"])
     wanted = {
         "scene",
@@ -204,7 +204,7 @@ def test_growth_is_a_slope():
 
 
 def test_bench_kernels():
-    """Areas agree with shapely to rounding; keys of design 7."""
+    """Areas agree with shapely to rounding; the keys of its JSON."""
     report = bench.kernels(["boxes", "gears"], repeats=1)
     for row in report["results"]:
         assert {"pair", "points_a", "points_b", "query_us", "call_us", "shapely_us"} <= set(row)

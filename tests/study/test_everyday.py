@@ -91,7 +91,7 @@ def test_engines_are_told_the_same(name):
 
 
 def test_rows_of_a_race():
-    """Keys of design 7, medians of the seeds, every engine's own figures beside them."""
+    """The keys of its JSON, medians of the seeds, every engine's own figures beside them."""
     report = everyday.everyday(["tower"], seeds=2)
     row = report["results"][0]
     wanted = {

@@ -76,7 +76,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 
 
 def theory() -> list[tuple[str, Array, Array]]:
-    """The eigenvalue problem, and the design's (0.65/δ₀)^(1/3)."""
+    """The eigenvalue problem, and the round formula (0.65/δ₀)^(1/3)."""
     sinking = np.logspace(-2.3, -3.7, 40)
     exact = np.array([tallest(float(value)) + 0.5 for value in sinking])
     return [("eigenvalue problem", sinking, exact), ("(0.65/δ₀)^(1/3)", sinking, (0.65 / sinking) ** (1 / 3))]

@@ -34,5 +34,5 @@ def atlas_map() -> Map:
         limit=LIMIT,
         variants=variants,
         run=run,
-        source="design 2.1: a region exists when its area is positive; the paper's gate wants nodes of both",
+        source="docs/theory.md, 1: a region exists when its area is positive; the paper's gate wants nodes of both",
     )

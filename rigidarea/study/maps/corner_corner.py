@@ -48,5 +48,5 @@ def atlas_map() -> Map:
         limit=LIMIT,
         variants=variants,
         run=run,
-        source="e = 1 without friction keeps the energy; F = k A is not conservative between two corners (design 2.3)",
+        source="e = 1 without friction keeps the energy; F = k A between two corners does not (docs/theory.md, 3)",
     )

@@ -44,5 +44,5 @@ def atlas_map() -> Map:
         limit=0.0,
         variants=variants,
         run=run,
-        source="design 2.1: regions without any node inside",
+        source="docs/theory.md, 1: regions without any node inside",
     )

@@ -12,9 +12,9 @@ from pymunk._chipmunk_cffi import lib
 
 import rigidarea
 
-from ..scene import Array, Body, Circle, Curve, Polygon, Scene, Segment
+from ..scene import Array, Body, Circle, Curve, Scene
 from .base import Run, Settings, drive, rigid_only
-from .chipmunk import SpaceRun, add_joints, make_body, surface
+from .chipmunk import SpaceRun, add_joints, make_body, plain_shape, surface
 
 STEPPING = ("steps", "tolerance", "phase")
 """Settings that say how the space is stepped."""
@@ -26,15 +26,11 @@ def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[
     """Shapes for area contact: outlines as they are, concave or holed; arcs are arcs, unless a tolerance is given."""
     shapes: list[pymunk.Shape] = []
     for shape in body.shapes:
-        if isinstance(shape, Circle):
-            circle = pymunk.Circle(made, shape.radius, shape.center)
-            if tolerance is not None:
-                circle.outline = rigidarea.Outline.from_pymunk(circle, tolerance)  # type: ignore[attr-defined]
-            shapes.append(circle)
-        elif isinstance(shape, Polygon):
-            shapes.append(pymunk.Poly(made, shape.points, radius=shape.radius))
-        elif isinstance(shape, Segment):
-            shapes.append(pymunk.Segment(made, shape.a, shape.b, shape.radius))
+        if not isinstance(shape, Curve):
+            plain = plain_shape(shape, made)
+            if tolerance is not None and isinstance(shape, Circle):
+                plain.outline = rigidarea.Outline.from_pymunk(plain, tolerance)  # type: ignore[attr-defined]
+            shapes.append(plain)
         elif tolerance is None and shape.exact is not None:
             shapes.append(shape.exact().add_to(made))
         else:

@@ -26,18 +26,23 @@ def make_body(body: Body) -> pymunk.Body:
     return made
 
 
+def plain_shape(shape: Circle | Polygon | Segment, made: pymunk.Body) -> pymunk.Shape:
+    """A disc, polygon or segment of a scene on a pymunk body."""
+    if isinstance(shape, Circle):
+        return pymunk.Circle(made, shape.radius, shape.center)
+    if isinstance(shape, Polygon):
+        return pymunk.Poly(made, shape.points, radius=shape.radius)
+    return pymunk.Segment(made, shape.a, shape.b, shape.radius)
+
+
 def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymunk.Shape]:
     """Shapes for an engine of convex shapes: terrain as chains of segments, moving outlines as convex
     pieces.
     """
     shapes: list[pymunk.Shape] = []
     for shape in body.shapes:
-        if isinstance(shape, Circle):
-            shapes.append(pymunk.Circle(made, shape.radius, shape.center))
-        elif isinstance(shape, Polygon):
-            shapes.append(pymunk.Poly(made, shape.points, radius=shape.radius))
-        elif isinstance(shape, Segment):
-            shapes.append(pymunk.Segment(made, shape.a, shape.b, shape.radius))
+        if not isinstance(shape, Curve):
+            shapes.append(plain_shape(shape, made))
         elif shape.convex:
             shapes.append(pymunk.Poly(made, shape.rings(tolerance)[0].tolist()))
         elif body.kind == "static":

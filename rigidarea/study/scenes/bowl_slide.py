@@ -19,7 +19,10 @@ def period(length: float, amplitude: float) -> float:
 
 
 def swing(t: np.ndarray, length: float, amplitude: float) -> np.ndarray:
-    """Angle of a pendulum released at rest: sin(θ/2) = k cd(ω t, k), k = sin(θ₀/2) (DLMF 22.19.2)."""
+    """Angle (radians) at times t of a pendulum of that length, released at rest at `amplitude`.
+
+    sin(θ/2) = k cd(ω t, k), k = sin(θ₀/2) (DLMF 22.19.2).
+    """
     from scipy.special import ellipj
 
     k = math.sin(amplitude / 2)

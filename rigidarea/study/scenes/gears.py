@@ -19,7 +19,7 @@ RADII = tuple(MODULE * teeth / 2 for teeth in TEETH)
 
 @cache
 def gear(teeth: int, tolerance: float | None = None) -> Outline:
-    """A gear of the pair."""
+    """A gear of the pair. tolerance: largest sagitta of its flanks' chords (length)."""
     return involute_gear(MODULE, teeth, backlash=BACKLASH * MODULE / 2, tolerance=tolerance)
 
 

@@ -8,7 +8,7 @@ V, TILE, COUNT, SIDE = 4.0, 0.5, 30, 0.5
 
 
 def error(trace: Trace, speed: float = V) -> float:
-    """Largest departure from x = v t, y and angle constant, relative to the side."""
+    """Largest departure of a run from x = v t (v: `speed`), y and angle constant, relative to the side."""
     moving = trace["box"]
     expected = moving[0, :3] + np.outer(trace.times, (speed, 0.0, 0.0))
     off = np.abs(moving[:, :3] - expected) * (1.0, 1.0, SIDE / 2)

@@ -1,0 +1,102 @@
+"""What of ours Chipmunk calls in a step of its own: put into a space, and taken out of it.
+
+A constraint that only Chipmunk knows, before all joints (`frame.silence`, `frame.solve`, `frame.report`); the function
+of its global handler that it calls for a touching pair (`record.pre_solve`); the position function of every body that
+has Chipmunk's own (`record.hold`).
+"""
+
+from __future__ import annotations
+
+import weakref
+from typing import Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..chipmunk import address_of
+from . import frame, joints, record
+from .arrays import Store
+
+
+class Hook:
+    """The hooks of one attached space: until `remove`, or until the space itself goes."""
+
+    def __init__(self, space: pymunk.Space, store: Store) -> None:
+        self._state = state = store.state[0]
+        idle, none = joints.idle.address, joints.no_impulse.address
+        classes = np.array(
+            [
+                *(idle, idle, idle, none),
+                *(frame.silence.address, frame.solve.address, idle, none),
+                *(joints.prepared.address, idle, idle, none),
+            ],
+            np.uint64,
+        )
+        state["idle_kind"], state["seized_kind"] = classes.ctypes.data, classes.ctypes.data + 64
+        body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
+        joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
+        own = ffi.cast("uintptr_t *", joint)
+        pivot = int(own[0])
+        own[0] = classes.ctypes.data + 32
+        own[int(state["constraint_post_solve"]) // 8] = frame.report.address
+        lib.cpSpaceAddConstraint(space._space, joint)
+        constraints = address_of(space._space) + int(state["space_constraints"])
+        _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
+        state["hidden"] = address_of(joint)
+        wildcard = int(ffi.cast("uintptr_t", ~0))
+        # pymunk's own way to the global handler, but for an entry of its own
+        handler = lib.cpSpaceAddCollisionHandler(space._space, wildcard, wildcard)
+        state["global_handler"] = address_of(handler)
+        at = address_of(handler) + int(state["handler_pre_solve"]) - 8
+        self._functions = ffi.cast("uintptr_t *", at)  # begin, pre_solve, post_solve, separate
+        state["user_pre_solve"] = int(self._functions[1])
+        state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
+        state["hold_at"] = record.hold.address
+        lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
+        # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
+        kept = body, classes, store
+        self._end = weakref.finalize(space, _take_out, space._space, joint, pivot, constraints, kept)
+
+    def hold(self, body: pymunk.Body) -> None:
+        """Have the solve move a body, unless its position function is the user's."""
+        function, state = self._position_function(body), self._state
+        if int(function[0]) in (int(state["position_func"]), int(state["position_func_again"])):
+            function[0] = int(state["hold_at"])
+
+    def note_callbacks(self) -> None:
+        """Take down which functions of its own the global handler has: `record.begin` looks whether they are others."""
+        for number, name in ((0, "begin"), (2, "post_solve"), (3, "separate")):
+            self._state[f"global_{name}"] = int(self._functions[number])
+
+    def remove(self, space: pymunk.Space) -> None:
+        """Take everything out of the space again."""
+        state = self._state
+        self._end()
+        if int(self._functions[1]) == int(state["pre_solve_at"]):
+            self._functions[1] = int(state["user_pre_solve"]) or int(state["no_pre_solve"])
+        for body in space.bodies:
+            function = self._position_function(body)
+            if int(function[0]) == int(state["hold_at"]):
+                function[0] = int(state["position_func"])
+
+    def _position_function(self, body: pymunk.Body) -> Any:
+        """Where Chipmunk keeps a body's position function."""
+        return ffi.cast("uintptr_t *", address_of(body._body) + int(self._state["body_position_func"]))
+
+
+def _roll(constraints: int, by: int) -> None:
+    """Move Chipmunk's list of joints on by so many places. constraints: where a space keeps it."""
+    at = ffi.cast("uintptr_t *", int(ffi.cast("uintptr_t *", constraints)[0]))
+    count = ffi.cast("int *", at)[0]
+    listed = np.frombuffer(ffi.buffer(ffi.cast("void *", int(at[1])), 8 * count), np.uint64)
+    listed[:] = np.roll(listed, by)
+
+
+def _take_out(space: Any, joint: Any, pivot: int, constraints: int, kept: Any) -> None:
+    """Remove the hidden constraint from Chipmunk's space, and free it. kept: what had to live until now."""
+    lib.cpSpaceSetUserData(space, ffi.NULL)
+    _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
+    lib.cpSpaceRemoveConstraint(space, joint)
+    ffi.cast("uintptr_t *", joint)[0] = pivot
+    lib.cpConstraintFree(joint)

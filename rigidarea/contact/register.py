@@ -1,0 +1,146 @@
+"""Which bodies and shapes a space has, and whose callbacks: as its tables know them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..chipmunk import address_of
+from ..outline import Outline
+from .arrays import Store
+
+if TYPE_CHECKING:
+    from .hook import Hook
+
+
+class Register:
+    """The shapes of one attached space that are in its tables. It keeps no space alive: that is handed over."""
+
+    def __init__(self, store: Store, hook: Hook) -> None:
+        self._store = store
+        self._state = store.state[0]
+        self._hook = hook
+        self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self._forms: dict[int, Any] = {}
+        self._added: dict[int, tuple[Outline, Any]] = {}
+
+    def update(self, space: pymunk.Space) -> None:
+        """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
+        store = self._store
+        present = {shape._hashid: shape for shape in space.shapes}
+        # not space.static_body, which makes one where there is none
+        still = [] if space._static_body is None else [space._static_body]
+        bodies = {address_of(body._body): body for body in (*space.bodies, *still)}
+        for shape in space.shapes:
+            if shape.body is not None:
+                bodies.setdefault(address_of(shape.body._body), shape.body)
+        for constraint in space.constraints:
+            for body in (constraint.a, constraint.b):
+                bodies.setdefault(address_of(body._body), body)
+        gone = self.shapes.keys() - present.keys()
+        store.forget(gone, store.known_bodies() - bodies.keys())
+        for ident in gone:
+            del self.shapes[ident], self._forms[ident]
+        held = not space._locked and not self._state["explicit"]
+        for address, body in bodies.items():
+            store.body(address)
+            if held:
+                self._hook.hold(body)
+        for ident, shape in present.items():
+            if ident not in self.shapes:
+                self._take(shape)
+        self._added.clear()
+        self._hear(space)
+        store.settle()
+        self._state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
+        self._state["shape_count"] = len(present)
+
+    def came(self, shape: pymunk.Shape) -> None:
+        """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
+        if shape.body is not None and shape.body.body_type == pymunk.Body.STATIC:
+            try:
+                self._added[shape._hashid] = Outline.from_pymunk(shape), _form(shape)
+            except ValueError:  # said when the space is stepped
+                pass
+
+    def reread(self, space: pymunk.Space, shapes: Iterable[pymunk.Shape]) -> None:
+        """Of these shapes, those whose geometry has been changed."""
+        for shape in shapes:
+            self._added.pop(shape._hashid, None)
+            if shape._hashid in self._forms and self._forms[shape._hashid] != _form(shape):
+                self.refresh(space, shape)
+
+    def refresh(self, space: pymunk.Space, shape: pymunk.Shape) -> None:
+        """Read a shape's geometry again: `AreaContact.refresh`.
+
+        Raises ValueError for a shape that is not entered, or that has no area now.
+        """
+        if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
+            raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
+        Outline.from_pymunk(shape)  # says what is wrong with it while nothing has changed
+        self._store.forget([shape._hashid], ())
+        self._take(shape)
+        self._hear(space)
+        self._store.settle()
+
+    def largest(self) -> float:
+        """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""
+        boxes = [shape.bb for shape in self.shapes.values() if _moves(shape)]
+        return max((max(bb.right - bb.left, bb.top - bb.bottom) for bb in boxes), default=1.0)
+
+    def _take(self, shape: pymunk.Shape) -> None:
+        """Enter a shape into the tables."""
+        if shape._hashid in self._added:
+            outline, form = self._added.pop(shape._hashid)
+        else:
+            outline, form = Outline.from_pymunk(shape), _form(shape)
+        body = shape.body
+        assert body is not None
+        left, bottom, right, top = outline.bounds
+        self._store.shape(
+            shape._hashid,
+            address_of(shape._shape),
+            outline,
+            outline.mirror,
+            address_of(body._body),
+            shape.sensor,
+            outline.smallest_extent,
+            (0.5 * (right - left), 0.5 * (top - bottom)),
+        )
+        self.shapes[shape._hashid] = shape
+        self._forms[shape._hashid] = form
+
+    def _hear(self, space: pymunk.Space) -> None:
+        """Which shapes' collision types have callbacks of the user's, that may say no."""
+        self._hook.note_callbacks()
+        everywhere = space._handlers.get((None, None))
+        to_all = everywhere is not None and any(
+            getattr(everywhere, phase) is not None
+            for phase in ("begin", "pre_solve", "post_solve", "separate")
+        )
+        keys = [key for key in space._handlers if key != (None, None)]
+        alone = {a for a, b in keys if b is None}
+        pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
+        rows = self._store.slots
+        for ident, shape in self.shapes.items():
+            kind = shape.collision_type
+            row = self._store.tables.shapes[rows[ident]]
+            row["type"], row["heard"] = kind, (to_all or kind in alone) + 2 * (kind in pairs)
+        entries = ffi.cast("unsigned int **", address_of(space._space) + int(self._state["space_handlers"]))
+        self._state["handler_count"] = int(entries[0][0])
+
+
+def _form(shape: pymunk.Shape) -> Any:
+    """What of a shape's geometry can be changed by pymunk's unsafe functions."""
+    if isinstance(shape, pymunk.Circle):
+        return shape.radius, shape.offset
+    if isinstance(shape, pymunk.Segment):
+        return shape.radius, shape.a, shape.b
+    return shape.radius, shape.get_vertices() if isinstance(shape, pymunk.Poly) else None
+
+
+def _moves(shape: pymunk.Shape) -> bool:
+    return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor

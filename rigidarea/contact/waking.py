@@ -1,0 +1,70 @@
+"""Before a step: who sleeps and will be hit in it is woken. Called by `AreaContact`, in machine code or interpreted."""
+
+from __future__ import annotations
+
+import math
+
+from numba import types
+
+from ..chipmunk import function
+from ..kernel.jit import callback
+from ..kernel.meet import DONE, meets_within
+from ..kernel.solve import find_near, may_touch
+from ..kernel.tables import FIXED, NEAR, TURN
+from ..store import load_pool, load_tables, load_work, row_of_body
+from .record import MORE_PAIRS, MORE_WORK, ask, floats, members, notice, state_of, user_data
+
+_activate = function("cpBodyActivate", types.void(types.uintp))
+
+#: What sleeps wakes for somebody who comes by more than this in a frame, of its own smallest extent. Whoever is slower
+#: comes to overlap it a little, for which Chipmunk wakes it.
+WAKING = 0.01
+
+
+@callback(types.void(types.uintp, types.float64))
+def rouse(space: int, dt: float) -> None:
+    """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame.
+
+    Chipmunk wakes what somebody overlaps at the frame's start. What is met within the frame would be a wall, on which
+    a blow is spent before anybody sees an overlap. (Within its step Chipmunk cannot wake anybody before it has paired
+    bodies and arbiters, and then the frame has begun.)
+    """
+    if user_data(space) == 0:
+        return
+    s = state_of(space)
+    if s.asleep == 0 or s.explicit:
+        return
+    tables = load_tables(s)
+    for address in members(space, s.space_bodies):
+        i = row_of_body(s, address)
+        if i < 0 or tables.bodies[i].stamp != s.frame:
+            return  # somebody new: the frame will look at everybody first
+        body = tables.bodies[i]
+        notice(s, address, body)
+        if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
+            return
+    tables.counters[TURN] = 0  # everybody
+    ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
+    g = floats(space + s.space_gravity, 2)
+    while find_near(load_pool(s), load_tables(s), s.frame, ahead, ahead, g[0], g[1]) != DONE:
+        if not ask(s, MORE_PAIRS):
+            return
+    tables = load_tables(s)
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -ahead):
+            continue
+        sleeper = a if a.kind == FIXED else b
+        comer = b if a.kind == FIXED else a
+        way = dt * (abs(comer.vx) + abs(comer.vy) + abs(comer.w) * sleeper.extent)
+        if not sleeper.mobile or way <= WAKING * sleeper.extent:
+            continue
+        met = meets_within(load_pool(s), tables, load_work(s), pair, ahead)
+        while met < 0:
+            if not ask(s, MORE_WORK):
+                return
+            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, ahead)
+        if met > 0:
+            _activate(sleeper.address)
