@@ -76,6 +76,33 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _near(bodies, sy, buf, pairs, st, s, found, p):  # type: ignore[no-untyped-def]
+    """Leaves of pair p that may touch soon, in its list: (their number, or MANY; the deformation allowed for)."""
+    ia, ib = pairs[p, 0], pairs[p, 1]
+    pa, pb = buf.pose[ia], buf.pose[ib]
+    dx, dy = pb[0] - pa[0], pb[1] - pa[1]
+    bend = buf.bend[ia] + buf.bend[ib] + (st.q if st.sts else 0.0)
+    if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + bend:
+        found.found[p] = -1
+        return 0, bend
+    size = min(sy.size[ia], sy.size[ib])
+    a, b, sp = boundary_at(bodies, ia), boundary_at(bodies, ib), of_pair(s, found, p)
+    return keep(a, pa, b, pb, st.margin, size, bend, sp, found, p), bend
+
+
+@kernel
+def all_apart(bodies, sy, buf, pairs, st, s, found):  # type: ignore[no-untyped-def]
+    """Whether no leaves of any pair are near, of bodies without loads or modes, at ``buf.pose``."""
+    for b in range(len(sy.mass)):
+        buf.bend[b] = 0.0
+    for p in range(len(pairs)):
+        n, _bend = _near(bodies, sy, buf, pairs, st, s, found, p)
+        if n != 0:
+            return False
+    return True
+
+
+@kernel
 def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untyped-def]
     """Evaluates all pairs at buf.pose: loads, tangent, records. Returns a count or an error code of ``scratch``.
 
@@ -95,12 +122,12 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
     total = 0
     for p in range(len(pairs)):
         ia, ib = pairs[p, 0], pairs[p, 1]
-        pa, pb = buf.pose[ia], buf.pose[ib]
-        dx, dy = pb[0] - pa[0], pb[1] - pa[1]
-        bend = buf.bend[ia] + buf.bend[ib] + (st.q if st.sts else 0.0)
-        if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + bend:
-            found.found[p] = -1
+        n_pairs, bend = _near(bodies, sy, buf, pairs, st, s, found, p)
+        if n_pairs < 0:
+            return n_pairs
+        if n_pairs == 0:
             continue
+        pa, pb = buf.pose[ia], buf.pose[ib]
         a, wa, b, wb = (
             boundary_at(bodies, ia),
             work_at(bodies, ia),
@@ -108,15 +135,10 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             work_at(bodies, ib),
         )
         sp = of_pair(s, found, p)
-        n_pairs = keep(a, pa, b, pb, st.margin, min(sy.size[ia], sy.size[ib]), bend, sp, found, p)
-        if n_pairs < 0:
-            return n_pairs
-        if (
-            n_pairs > 0 and not st.sts
-        ):  # near now: within twice the last deformation, as it grows from one to the next
+        if not st.sts:  # near now: within twice the last deformation, as it grows from one to the next
             n_pairs = narrow(a, pa, b, pb, n_pairs, NEAR * st.margin + 2.0 * bend, sp)
-        if n_pairs == 0:
-            continue
+            if n_pairs == 0:
+                continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
         first = s.load.made[0]
         # a little beside its place: boundaries that share lines or points, to the last bit, then cross in pairs

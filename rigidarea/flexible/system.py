@@ -35,15 +35,16 @@ class System(NamedTuple):
     amplitude: Array  # (m,) largest displacement of the boundary in each mode
     inverse: Array  # (b, 2) inverse mass and moment of inertia, 0 where a body does not yield to forces
     friction: Array  # (p,) coefficient of each pair
-    tense: (
-        Array  # (b, 3) largest part of the modes' stiffness that unit spin (squared) and hub force (x, y) add
-    )
+    tense: Array  # (b, 3) largest part of the stiffness that unit spin (squared) and hub force (x, y) add
     ratio: Array  # (p,) damping ratio of its contacts
     joints: NDArray[np.void]  # (j,) rows of ``joints.JOINT``
 
 
 class Settings(NamedTuple):
-    """Contact and scheme: k, q (or reach, for STS), sts, spread loads, search margin, and generalised-α constants."""
+    """Contact and scheme: k, q (or reach, for STS), sts, spread loads, search margin, and generalised-α constants.
+
+    loose: nothing but contacts and gravity acts on the bodies, and they have no modes.
+    """
 
     k: float
     q: float
@@ -51,6 +52,7 @@ class Settings(NamedTuple):
     spread: bool
     margin: float
     rho: float
+    loose: bool
 
 
 class State(NamedTuple):

@@ -54,25 +54,31 @@ def matrix(tension: Array, spin: float, fx: float, fy: float, out: Array) -> boo
 
 
 def tense(body: Any) -> Array:
-    """Of a modal body (``integrate.Body``): the largest entry (3,) of S, S_x and S_y over the frequencies of its modes;
-    zeros where it has none."""
-    if body.geometric is None or body.geometric.size == 0:
-        return np.zeros(3)
-    omega = np.asarray(body.frequency, float)
-    return np.asarray(np.abs(body.geometric / np.outer(omega, omega)).max((1, 2)))
+    """The most (3,) that S − M, S_x and S_y change in the stiffness of a body (``integrate.Body``): their largest
+    entry, over the frequencies of a modal body's modes or in a compliant body's basis; zeros where it has neither."""
+    if body.geometric is not None and body.geometric.size > 0:
+        omega = np.asarray(body.frequency, float)
+        return np.asarray(np.abs(body.geometric / np.outer(omega, omega)).max((1, 2)))
+    stiff = body.boundary.tension
+    return np.asarray(np.abs(stiff).max((1, 2))) if stiff.size > 0 else np.zeros(3)
 
 
-@kernel
+@kernel(forceinline=True)
 def slack(most: Array, spin: float, fx: float, fy: float) -> bool:
-    """Whether tension by spin (squared angular velocity) and the hub's force is less than SLACK of a modal body's
-    stiffness; most (3,): see ``tense``."""
+    """Whether tension by spin (squared angular velocity) and the hub's force is less than SLACK of a body's stiffness;
+    most (3,): see ``tense``."""
     return spin * most[0] + abs(fx) * most[1] + abs(fy) * most[2] < SLACK
 
 
-@kernel
-def tighten(b: Boundary, w: Work) -> None:
-    """Takes D from ``w.spin`` and ``w.hub_load``, at the start of a step."""
-    w.tight[0] = len(b.tension) > 0 and matrix(b.tension, w.spin[0], w.hub_load[0], w.hub_load[1], w.yielding)
+@kernel(forceinline=True)
+def tighten(b: Boundary, w: Work, most: Array) -> None:
+    """Takes D from ``w.spin`` and ``w.hub_load``, at the start of a step; most (3,): see ``tense``."""
+    fx, fy = w.hub_load[0], w.hub_load[1]
+    w.tight[0] = (
+        len(b.tension) > 0
+        and not slack(most, w.spin[0], fx, fy)
+        and matrix(b.tension, w.spin[0], fx, fy, w.yielding)
+    )
 
 
 @kernel

@@ -126,6 +126,16 @@ def least_extent(a: Any, b: Any) -> float:
     return float(min(a.extent, b.extent))
 
 
+@kernel(forceinline=True)
+def may_close(opening: float, a: Any, b: Any, h: float) -> float:
+    """How fast what opens so fast, and is sent back, may close: as fast, but no further than from one look to the next.
+
+    Stopped sooner it would be pushed while it opens, and gain energy (l (v + v') / 2: J. J. Moreau, "Unilateral contact
+    and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
+    """
+    return float(min(opening, LOOK * least_extent(a, b) / h))
+
+
 @kernel
 def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
@@ -152,6 +162,8 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
         target = since - e * max(0.0, u0)
         if u0 > 0.0 or e == 0.0:
             target = min(0.0, target)
+        else:
+            target += may_close(-u0, a, b, h)
         if end == 0:
             row.t1 = target
         else:
@@ -267,9 +279,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     elif flies_off(law, pair, r, a, b, h):
         gamma = 1.0 / inverse
         force = 0.0
-        # What opens at a speed and is sent back may close at that speed: stopped sooner, it would be pushed while it
-        # opens, and gain energy (l (v + v') / 2: J. J. Moreau 1988).
-        row.t1 = min(-closing(r, a, b, 0.0), LOOK * least_extent(a, b) / h)
+        row.t1 = may_close(-closing(r, a, b, 0.0), a, b, h)
         row.t2 = row.t1
         row.alpha = 0.0
         row.alpha_t = 0.0

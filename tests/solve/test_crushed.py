@@ -1,5 +1,6 @@
 """Between the floor and a kinematic body that comes down: no impulse does what both ask, and nobody is shot away."""
 
+import itertools
 import math
 import random
 
@@ -22,7 +23,7 @@ def crusher(draw: random.Random) -> tuple[pymunk.Space, pymunk.Body, float]:
     space = pymunk.Space()
     space.gravity = 0, -900
     corners = [(0, 0), (400, 0), (400, 400), (0, 400), (0, 0)]
-    for a, b in zip(corners, corners[1:]):
+    for a, b in itertools.pairwise(corners):
         space.add(pymunk.Segment(space.static_body, a, b, 5))
     size = draw.uniform(8, 16)
     gap = 2 * size * draw.uniform(0.1, 1)
