@@ -15,7 +15,7 @@ from .place import overlap_of_outlines
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, turn_to
 from .stiffness import depth_for
-from .tables import IMPACT, NEARING, PLACED, REST, STRUCK, Law
+from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 from .work import Work
 
 
@@ -161,6 +161,20 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
         return False
     phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
     return bool(phase2 <= law.followed or inside > PUT * least)
+
+
+@kernel(forceinline=True)
+def drives(body: Any) -> bool:
+    """Whether a body moves as it is told, whatever is in its way."""
+    return bool(body.kind != FIXED and not body.mobile)
+
+
+@kernel(forceinline=True)
+def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
+    """Whether a kinematic body has pressed another so deep that no bed is stiff enough: it has put it there."""
+    return bool(
+        (drives(a) or drives(b)) and law.stiffness == 0.0 and depth > PUT * min(size_of(a), size_of(b))
+    )
 
 
 @kernel(forceinline=True)

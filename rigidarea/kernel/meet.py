@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .birth import arrives, enter, expect, hit, jumped_in, size_of
+from .birth import arrives, crushed, enter, expect, hit, jumped_in, size_of
 from .constants import HIT
 from .jit import kernel
 from .motion import (
@@ -244,6 +244,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.depth = patch.depth
                 if jumped_in(law, region, before, a, b, h):
                     region.placed = PLACED
+            if crushed(law, patch.depth, a, b):
+                region.placed = PLACED
         if back > 0.0:
             ax, ay = centre_of(a, pose_a)
             bx, by = centre_of(b, pose_b)

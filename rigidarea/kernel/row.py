@@ -25,7 +25,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .birth import flies_off
+from .birth import drives, flies_off
 from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
@@ -308,7 +308,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         firm = max(stiffness, region_stiffness(law, pair.firm, r.chord))
         least = least_extent(a, b)
         if r.placed == PLACED and law.stiffness == 0.0:
-            most = PLACED_LOADS * max(pair.least, pair.load)
+            pressed = pair.least if drives(a) or drives(b) else max(pair.least, pair.load)
+            most = PLACED_LOADS * pressed
             if elastic > most:
                 firm *= most / elastic
                 elastic = most
@@ -494,8 +495,8 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     r.friction = row.lt / h
     if law.stiffness == 0.0:
         pair.carrying += normal
-        # a blow is no load, nor is what joints hold overlapped, which presses as far as it is stiff
-        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
+        # a blow is no load, nor is what joints or kinematic bodies hold overlapped, which presses as far as it is stiff
+        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0 or drives(a) or drives(b))
         if r.mode == IMPACT or held:
             pair.area = -math.inf
         elif last and r.mode != NEARING:

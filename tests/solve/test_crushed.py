@@ -65,3 +65,34 @@ def test_nobody_is_shot_away(seed):
         assert all(math.isfinite(sum(b.position)) for b in bodies)
     falls = math.sqrt(2 * 900 * 200)
     assert fastest <= SEEDS_SPEED * math.hypot(speed, falls)
+
+
+@pytest.mark.skipif(ENGINE == "pymunk", reason="of area contact's stiffness")
+@pytest.mark.parametrize("aside", [3.0, 11.0])
+@pytest.mark.parametrize("disc", [True, False])
+def test_what_a_kinematic_body_presses_into_a_wall_bears_no_more_than_a_bed(disc, aside):
+    """Deeper than a tenth of itself no stiffness is right: thirty times the load, and what closing adds, not k A.
+
+    (k A would be 34,000 weights of the disc here, 2,300 of the box; it bears 190 at the most.)
+    """
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    for a, b in (((490, -200), (490, 500)), ((0, 0), (500, 0))):
+        space.add(pymunk.Segment(space.static_body, a, b, 10))
+    one = pymunk.Body(3.4, pymunk.moment_for_circle(3.4, 0, 20))
+    one.position = 459, 31
+    space.add(one, pymunk.Circle(one, 20) if disc else pymunk.Poly.create_box(one, (40, 40)))
+    drive = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    drive.position, drive.velocity = (400, 31 + aside), (20, 0)
+    press = pymunk.Poly.create_box(drive, (60, 30))
+    space.add(drive, press)
+    for shape in space.shapes:
+        shape.friction = 0.5
+    contact = ra.attach(space)
+    most, seen = 0.0, 0
+    for _ in range(240):
+        space.step(DT)
+        for region in contact.regions:
+            if press in (region["shape_a"], region["shape_b"]) and region["area"] > 300.0:
+                most, seen = max(most, region["force"] / (one.mass * 900)), seen + 1
+    assert seen > 60 and most < 300.0
