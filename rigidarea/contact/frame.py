@@ -720,7 +720,7 @@ def report(constraint: int, space: int) -> None:
 
 @callback(types.int64(types.uintp, types.float64, types.int64))
 def advance(space: int, dt: float, frames: int) -> int:
-    """So many frames on end, until somebody has fallen asleep (`record.rouse`); returns how many went well."""
+    """So many frames on end, until somebody has fallen asleep (`waking.rouse`); returns how many went well."""
     for i in range(frames):
         if i > 0 and state_of(space).asleep:
             return i

@@ -74,7 +74,7 @@ MOBILITY = record(
 
 #: What gives way by less than this part of the row's own is held from both sides (a disc between a floor and a blade
 #: that comes down): no impulse does what both ask, and the search leaves it to the sweeps.
-HELD = 1e-6
+LEAST_GIVE = 1e-6
 
 
 @kernel
@@ -220,7 +220,7 @@ def take_part(tables: Tables) -> None:
         s1t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa1 * f.awt + wb1 * f.bwt
         s2t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa2 * f.awt + wb2 * f.bwt
         stt = nx * (f.ayt + f.byt) - ny * (f.axt + f.bxt) + row.lean_a * f.awt + row.lean_b * f.bwt
-        _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e22, s2t, stt + f.et, HELD * row.weight)
+        _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e22, s2t, stt + f.et, LEAST_GIVE * row.weight)
         _take(ma, f, f.ax1, f.ay1, f.aw1, f.ax2, f.ay2, f.aw2, f.axt, f.ayt, f.awt)
         _take(mb, f, f.bx1, f.by1, f.bw1, f.bx2, f.by2, f.bw2, f.bxt, f.byt, f.bwt)
 
