@@ -23,7 +23,7 @@ def placed(points: Array, frame: Array) -> Array:
 def perimeter(sim: Simulation, i: int) -> Array:
     """The outer contact perimeter of body ``i`` where it is now, closed, in millimetres."""
     b = sim.boundaries[i]
-    ring = np.flatnonzero(b.ring == 0)
+    ring = np.flatnonzero(b.ring_of == 0)
     return placed(b.points[np.append(ring, ring[0])], sim.state.x[i])
 
 

@@ -62,7 +62,7 @@ def calibrated(nodes: int, a: float) -> dict[str, Any]:
     nodal.contact(disc, wa, pose_a, none, disc, wb, pose_b, none, pairs, 1, 1.0, 0.5, True, s)
     region = s.regions[0].copy()
     k = FORCE / region["area"]  # Eq. 33
-    n_a, n_b = arcs(disc, wa, pose_a, none, disc, wb, pose_b, none, region, 1, s.x, s.y, s.edge, s.t)
+    n_a, n_b = arcs(region, s)
     arc = np.column_stack([s.x[0, : n_a + 1], s.y[0, : n_a + 1]])
     other = np.column_stack([s.x[1, : n_b + 1], s.y[1, : n_b + 1]])
     normal, distance, _, weight = nodal.literal(arc, other, 0.5)

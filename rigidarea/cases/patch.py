@@ -103,7 +103,7 @@ def press(gap: float, mesh: str) -> tuple[dict[str, Any], tuple[Work, Work]]:
         "pressure_pa_m": means[0],
     }
     # the paper's Alg. 3, q = 1
-    n_a, n_b = arcs(a, wa, pose_a, none, b, wb, pose_b, none, r, 1, s.x, s.y, s.edge, s.t)
+    n_a, n_b = arcs(r, s)
     poly = [np.column_stack([s.x[k, : m + 1], s.y[k, : m + 1]]) for k, m in ((0, n_a), (1, n_b))]
     literal = []
     for k, up in ((0, 1.0), (1, -1.0)):

@@ -22,7 +22,7 @@ from rigidarea.kernel.memory import array_at as compiled_array_at
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-SIZES = 11  # points, FE nodes, circles of the tree, modes, rows of flexibility and swelling, geometric stiffnesses,
+SIZES = 11  # points, FE nodes, boxes of the hierarchy, modes, rows of flexibility and swelling, geometric stiffnesses,
 # coordinates of ``tension``, pieces of the flexibility, rows of their paths, terms beside them
 WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
 COUPLING = WORK + len(Work._fields)
@@ -57,7 +57,7 @@ def table(
             if not array.flags.c_contiguous:
                 raise ValueError(f"{name} must be contiguous, got strides {array.strides}")
         row[:SIZES] = (
-            len(b.points), len(b.nodes), len(b.radius), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s),
+            len(b.points), len(b.nodes), len(b.boxes), b.modes.shape[1], len(b.flexibility), len(b.swell), len(s),
             b.soft.shape[1], len(b.ready), len(b.path), b.relief_left.shape[1],
         )  # fmt: skip
         row[SIZES:] = [array.ctypes.data for array in arrays]
@@ -73,30 +73,25 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
     own = c if p > 0 else 0
     return Boundary(
         array_at(row[SIZES], (n, 2), np.float64),
-        array_at(row[SIZES + 1], (n,), np.int64),
-        array_at(row[SIZES + 2], (n,), np.int64),
-        array_at(row[SIZES + 3], (n,), np.int64),
+        array_at(row[SIZES + 1], (n,), np.int32),
+        array_at(row[SIZES + 2], (n,), np.int32),
+        array_at(row[SIZES + 3], (t, 4), np.float64),
         array_at(row[SIZES + 4], (n,), np.int64),
         array_at(row[SIZES + 5], (n,), np.int64),
         array_at(row[SIZES + 6], (n,), np.float64),
-        array_at(row[SIZES + 7], (t, 2), np.float64),
-        array_at(row[SIZES + 8], (t,), np.float64),
-        array_at(row[SIZES + 9], (t,), np.int64),
-        array_at(row[SIZES + 10], (t,), np.int64),
-        array_at(row[SIZES + 11], (t, 6), np.float64),
-        array_at(row[SIZES + 12], (2 * f + 3, m), np.float64),
-        array_at(row[SIZES + 13], (c, c), np.float64),
-        array_at(row[SIZES + 14], (f, 2), np.float64),
-        array_at(row[SIZES + 15], (s,), np.float64),
-        array_at(row[SIZES + 16], (2 * f + 3, r), np.float64),
-        array_at(row[SIZES + 17], (r,), np.float64),
-        array_at(row[SIZES + 18], (3 if r > 0 else 0, r, r), np.float64),
-        array_at(row[SIZES + 19], (p, p), np.bool_),
-        array_at(row[SIZES + 20], (p + 1,), np.int64),
-        array_at(row[SIZES + 21], (v,), np.int64),
-        array_at(row[SIZES + 22], (v, WIDE), np.float64),
-        array_at(row[SIZES + 23], (own, k), np.float64),
-        array_at(row[SIZES + 24], (own, k), np.float64),
+        array_at(row[SIZES + 7], (2 * f + 3, m), np.float64),
+        array_at(row[SIZES + 8], (c, c), np.float64),
+        array_at(row[SIZES + 9], (f, 2), np.float64),
+        array_at(row[SIZES + 10], (s,), np.float64),
+        array_at(row[SIZES + 11], (2 * f + 3, r), np.float64),
+        array_at(row[SIZES + 12], (r,), np.float64),
+        array_at(row[SIZES + 13], (3 if r > 0 else 0, r, r), np.float64),
+        array_at(row[SIZES + 14], (p, p), np.bool_),
+        array_at(row[SIZES + 15], (p + 1,), np.int64),
+        array_at(row[SIZES + 16], (v,), np.int64),
+        array_at(row[SIZES + 17], (v, WIDE), np.float64),
+        array_at(row[SIZES + 18], (own, k), np.float64),
+        array_at(row[SIZES + 19], (own, k), np.float64),
     )
 
 

@@ -1,4 +1,4 @@
-"""A body's contact boundary as the kernels see it: points, where they move, and a tree of circles over them.
+"""A body's contact boundary as the kernels see it: points, where they move, and a hierarchy of boxes over them.
 
 Every boundary point rides on an edge of the finite-element boundary: its displacement is that of the edge's two
 nodes, interpolated. With one point a node this is the paper's perimeter; with more, a curved profile (a tooth flank)
@@ -15,21 +15,18 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.blocks import NODES, Pieces, fill, fill_all, no_pieces, sparse
 from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.pool import LEAF, boxes_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
-
-BOUNDLESS = np.array([0.0, 0.0, 1.0, 0.0, 1e300, 1e300])  # the box of several rings: never apart
-LEAF = 3  # edges a leaf: fewer make the tree deeper, more test more edge pairs
 
 
 class Boundary(NamedTuple):
     """Constant data of one body; lengths in the body frame, origin at the centre of mass.
 
-    points (n, 2); next, previous, ring (n,); low, high (n,) FE boundary nodes of the carrying edge and share (n,) in
-    [0, 1), the weight of ``high``; centre (t, 2), radius (t,), left, right (t,) the tree (a leaf has left < 0 and
-    holds edges right … right - left - 1); box (t, 6) of each, along its chord: centre, direction, half length and
-    half width; modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
+    points (n, 2); following, ring_of (n,) int32; boxes (2 leaves, 4) the hierarchy of ``kernel.pool``, of the points as
+    they are here; low, high (n,) FE boundary nodes of the carrying edge and share (n,) in [0, 1), the weight of
+    ``high`` (a point on a node has only that); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
     rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
     not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
     them beyond the modes (time² × length), or (0,). soft (2 f + 3, r), soft_stretch (r,), tension (3, r, r): of a
@@ -39,17 +36,12 @@ class Boundary(NamedTuple):
     """
 
     points: Array
-    next: Ints
-    previous: Ints
-    ring: Ints
+    following: NDArray[np.int32]
+    ring_of: NDArray[np.int32]
+    boxes: Array
     low: Ints
     high: Ints
     share: Array
-    centre: Array
-    radius: Array
-    left: Ints
-    right: Ints
-    box: Array
     modes: Array
     flexibility: Array
     nodes: Array
@@ -92,17 +84,6 @@ class Work(NamedTuple):
     drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
 
 
-def _box(p: Array) -> Array:
-    """The box of a chain of points (k, 2) along the line from its first to its last."""
-    d = p[-1] - p[0]
-    length = float(np.hypot(*d))
-    u = d / length if length > 0.0 else np.array([1.0, 0.0])
-    along, across = p @ u, p @ [-u[1], u[0]]
-    x, y = 0.5 * (along.min() + along.max()), 0.5 * (across.min() + across.max())
-    half = 0.5 * np.ptp(along), 0.5 * np.ptp(across)
-    return np.array([x * u[0] - y * u[1], x * u[1] + y * u[0], *u, *half])
-
-
 def build(
     rings: list[Array],
     carriers: tuple[Ints, Ints, Array] | None = None,
@@ -118,67 +99,14 @@ def build(
     """
     points = np.ascontiguousarray(np.vstack(rings), float)
     n = len(points)
-    nxt, prv, ring = np.empty(n, np.int64), np.empty(n, np.int64), np.empty(n, np.int64)
-    centre: list[Array] = []
-    radius: list[float] = []
-    box: list[Array] = []
-    left: list[int] = []
-    right: list[int] = []
-
-    def circle(first: int, count: int) -> int:
-        p = points[np.append(np.arange(first, first + count), nxt[first + count - 1])]
-        c = 0.5 * (p.min(0) + p.max(0))
-        centre.append(c)
-        radius.append(float(np.linalg.norm(p - c, axis=1).max()))
-        box.append(_box(p))
-        left.append(0)
-        right.append(0)
-        return len(centre) - 1
-
-    def grow(first: int, count: int) -> int:
-        me = circle(first, count)
-        if count <= LEAF:
-            left[me], right[me] = -count, first
-        else:
-            half = -(-count // (2 * LEAF)) * LEAF
-            left[me], right[me] = grow(first, half), grow(first + half, count - half)
-        return me
-
-    start, roots = 0, []
-    for k, r in enumerate(rings):
-        i = np.arange(start, start + len(r))
-        nxt[i], prv[i], ring[i] = np.roll(i, -1), np.roll(i, 1), k
-        start += len(r)
-    centre.append(np.zeros(2))  # node 0, the root, is filled in last
-    radius.append(np.inf)
-    box.append(np.zeros(6))
-    left.append(0)
-    right.append(0)
-    start = 0
-    for r in rings:
-        roots.append(grow(start, len(r)))
-        start += len(r)
-    while len(roots) > 1:  # join the rings' trees under one root
-        a, b = roots.pop(), roots.pop()
-        c = 0.5 * (centre[a] + centre[b])
-        centre.append(c)
-        radius.append(
-            float(max(np.linalg.norm(centre[a] - c) + radius[a], np.linalg.norm(centre[b] - c) + radius[b]))
-        )
-        box.append(BOUNDLESS)
-        left.append(a)
-        right.append(b)
-        roots.append(len(centre) - 1)
-    top = roots[0]
-    centre[0], radius[0], box[0], left[0], right[0] = (
-        centre[top],
-        radius[top],
-        box[top],
-        left[top],
-        right[top],
-    )
+    ends = np.cumsum([0] + [len(r) for r in rings])
+    following = np.arange(1, n + 1, dtype=np.int32)
+    following[ends[1:] - 1] = ends[:-1]
+    ring_of = np.repeat(np.arange(len(rings), dtype=np.int32), np.diff(ends))
+    boxes, _ = boxes_of(points, following, np.zeros((n, 4)))
     identity = (np.arange(n), np.arange(n), np.zeros(n))
     low, high, share = identity if carriers is None else carriers
+    high = np.where(np.asarray(share) == 0.0, low, high)
     f = int(max(low.max(), high.max())) + 1
     modes = np.zeros((2 * f + 3, 0)) if modes is None else np.ascontiguousarray(modes, float)
     on_node = np.flatnonzero(np.asarray(share) == 0.0)
@@ -194,9 +122,8 @@ def build(
         pieces = flexibility
         flexibility, ready = sparse(pieces)
     return Boundary(
-        points, nxt, prv, ring,
-        np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float),
-        np.array(centre), np.array(radius), np.array(left), np.array(right), np.array(box), modes,
+        points, following, ring_of, boxes,
+        np.asarray(low, np.int64), np.asarray(high, np.int64), np.asarray(share, float), modes,
         np.zeros((0, 0)) if flexibility is None else np.ascontiguousarray(flexibility, float),
         nodes, np.zeros(0) if swell is None else np.ascontiguousarray(swell, float),
         np.ascontiguousarray(psi, float), np.ascontiguousarray(h, float), np.ascontiguousarray(tension, float),
@@ -209,6 +136,41 @@ def complete(b: Boundary) -> Boundary:
     if len(b.ready):
         fill_all(b.flexibility, b.ready, Pieces(*b[-5:]))
     return b
+
+
+@kernel(forceinline=True)
+def edges_of(b: Boundary, leaf: int) -> tuple[int, int]:
+    """The first edge of a leaf of the hierarchy, and one past its last."""
+    return LEAF * leaf, min(LEAF * leaf + LEAF, len(b.points))
+
+
+@kernel(forceinline=True)
+def span(
+    at: Array, following: NDArray[np.int32], low: int, high: int, ox: float, oy: float, ux: float, uy: float
+) -> tuple[float, float]:
+    """Least and largest cross(u, p - o) of the ends p of the edges low … high - 1."""
+    lowest = highest = ux * (at[low, 1] - oy) - uy * (at[low, 0] - ox)
+    for i in range(low, high):
+        j = following[i]
+        o = ux * (at[j, 1] - oy) - uy * (at[j, 0] - ox)
+        lowest, highest = min(lowest, o), max(highest, o)
+        if j != i + 1 and i + 1 < high:  # another ring begins
+            o = ux * (at[i + 1, 1] - oy) - uy * (at[i + 1, 0] - ox)
+            lowest, highest = min(lowest, o), max(highest, o)
+    return lowest, highest
+
+
+@kernel(forceinline=True)
+def strip(
+    at: Array, following: NDArray[np.int32], low: int, high: int
+) -> tuple[float, float, float, float, float, float]:
+    """The strip that holds a leaf's edges low … high - 1: origin, chord, and the bounds of cross(chord, ·)."""
+    ox, oy = at[low, 0], at[low, 1]
+    end = following[high - 1]
+    ux, uy = at[end, 0] - ox, at[end, 1] - oy
+    below, above = span(at, following, low, high, ox, oy, ux, uy)
+    slack = 1e-9 * (ux * ux + uy * uy)  # rounding: the strip decides only what is clear
+    return ox, oy, ux, uy, above + slack, below - slack
 
 
 @kernel

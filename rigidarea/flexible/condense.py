@@ -90,7 +90,7 @@ def _enter(
         s.entry[count], s.share[count] = ends, weight * (1.0 - along)
         s.entry[count + 1], s.share[count + 1] = ends + 1, weight * along
         return count + 2
-    j = b.next[edge]
+    j = b.following[edge]
     low = b.share[edge]
     high = b.share[j] if b.share[j] > 0.0 else 1.0  # within one finite-element edge, or to its end
     other = b.high[j] if b.share[j] > 0.0 else b.low[j]

@@ -9,13 +9,9 @@ from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.flexible.search import NEAR, keep, narrow
+from rigidarea.flexible.search import NEAR, holds, narrow, renew, seen
 from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import entry, kernel
-
-#: Of the smaller body's size: a thousand times the rounding of its coordinates, a millionth of any overlap. The two
-#: differ, and have no small ratio, so that no edge of a drawing is along it.
-ASIDE = (1e-12, 0.618e-12)
 
 
 @kernel(forceinline=True)
@@ -85,9 +81,12 @@ def _near(bodies, sy, buf, pairs, st, s, found, p):  # type: ignore[no-untyped-d
     if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + bend:
         found.found[p] = -1
         return 0, bend
+    rel = seen(pa, pb)
+    if holds(rel, bend, found, p):
+        return found.found[p], bend
     size = min(sy.size[ia], sy.size[ib])
-    a, b, sp = boundary_at(bodies, ia), boundary_at(bodies, ib), of_pair(s, found, p)
-    return keep(a, pa, b, pb, st.margin, size, bend, sp, found, p), bend
+    a, b = boundary_at(bodies, ia), boundary_at(bodies, ib)
+    return renew(a, b, rel, st.margin, size, bend, s.work.stack, found, p), bend
 
 
 @kernel
@@ -136,24 +135,16 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         )
         sp = of_pair(s, found, p)
         if not st.sts:  # near now: within twice the last deformation, as it grows from one to the next
-            n_pairs = narrow(a, pa, b, pb, n_pairs, NEAR * st.margin + 2.0 * bend, sp)
+            reach = NEAR * st.margin + 2.0 * bend
+            n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, sp.pairs, n_pairs, sp.close)
             if n_pairs == 0:
                 continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
         first = s.load.made[0]
-        # a little beside its place: boundaries that share lines or points, to the last bit, then cross in pairs
-        size = min(sy.size[ia], sy.size[ib])
-        moved_b = buf.moved
-        moved_b[0], moved_b[1], moved_b[2], moved_b[3] = (
-            pb[0] + ASIDE[0] * size,
-            pb[1] + ASIDE[1] * size,
-            pb[2],
-            pb[3],
-        )
         if st.sts:
-            n = segment.contact(a, wa, pa, qa, b, wb, moved_b, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = segment.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         else:
-            n = nodal.contact(a, wa, pa, qa, b, wb, moved_b, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = nodal.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         if n < 0:
             return n
         if n > 0:

@@ -34,8 +34,8 @@ from rigidarea.flexible.literal import literal as literal
 from rigidarea.flexible.literal import literal_alpha as literal_alpha
 from rigidarea.flexible.place import add_load
 from rigidarea.flexible.quadrature import quadrature as quadrature
-from rigidarea.flexible.region import all_arcs, arcs, area_and_centroid, find_regions
-from rigidarea.flexible.scratch import FULL, MANY, Scratch
+from rigidarea.flexible.region import arcs, find_regions
+from rigidarea.flexible.scratch import FULL, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
 from rigidarea.flexible.search import search as search
 from rigidarea.kernel.jit import entry, kernel
@@ -133,7 +133,7 @@ def _distribute(
     load_a, flag_a, touched_a, pressure_a = wa.point_load, wa.point_flag, wa.touched, wa.pressure
     load_b, flag_b, touched_b, pressure_b = wb.point_load, wb.point_flag, wb.touched, wb.pressure
     wall = WALL * xa[n_a]
-    next_a, next_b = a.next, b.next
+    next_a, next_b = a.following, b.following
     lo = d0 = a_low = a_high = b_low = b_high = carry_a = carry_b = 0.0
     i = j = 0
     ga, gb = _slope(xa, ya, 0), _slope(xb, yb, 0)
@@ -189,7 +189,7 @@ def _distribute(
     add_load(load_b, flag_b, touched_b, edge_b[j - 1], carry_b * nx, carry_b * ny)
 
 
-@entry(forceinline=True)
+@entry
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, q: float, spread: bool, s: Scratch,
@@ -204,18 +204,10 @@ def contact(
     x, y = s.x, s.y
     for i in range(n):
         r = s.regions[i]
-        if r["arcs"] == 1:
-            n_a, n_b = arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, x, y, s.edge, s.t)
-        else:
-            n_a, n_b = all_arcs(a, wa, pose_a, qa, b, wb, pose_b, qb, r, stamp, s)
-        if n_a == MANY:
-            return MANY
-        area, xc, yc = area_and_centroid(x, y, s.t, n_a, n_b)
+        n_a, n_b = arcs(r, s)
+        area = r["area"]
         ux, uy = -r["ny"], r["nx"]
-        r["area"], r["force"], r["serial"] = area, k * area, 0  # Eq. 5
-        r["x"], r["y"] = r["enter_x"] + ux * xc - uy * yc, r["enter_y"] + uy * xc + ux * yc
-        if area <= 0.0:
-            continue
+        r["force"], r["serial"] = k * area, 0  # Eq. 5
         graphs = r["arcs"] == 1 and q == 1.0
         graphs = graphs and _straight(x[0], n_a, r["chord"]) and _straight(x[1], n_b, r["chord"])
         if graphs:
@@ -230,7 +222,7 @@ def contact(
         answers = len(s.load.force) > 0
         if answers and not room(s, n_a, n_b):
             return FULL
-        xc = c * xc + sn * yc
+        xc = ny * (r["enter_x"] - r["x"]) - nx * (r["enter_y"] - r["y"])  # along the turned axis
         if graphs and _straight(x[0], n_a, x[0, n_a]) and _straight(x[1], n_b, x[0, n_a]):
             _distribute(
                 a,

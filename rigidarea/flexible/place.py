@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work, make_ready
+from rigidarea.flexible.boundary import Boundary, Work, edges_of, make_ready
 from rigidarea.flexible.dense import dot
 from rigidarea.kernel.jit import entry, kernel
 
@@ -61,21 +61,30 @@ def displace(b: Boundary, w: Work, modal: Array, first: int, end: int, stamp: in
             u[i, 1] += dot(b.soft[2 * (first + i) + 1], w.drawn[0])
 
 
+@kernel(forceinline=True)
+def _put(
+    points: Array, low: Ints, high: Ints, share: Array, u: Array, pose: Array, position: Array, yields: bool, i: int
+) -> None:  # fmt: skip
+    """World position of point i; pose (x, y, cos θ, sin θ), u the displacements of its nodes, if it yields."""
+    x, y = points[i, 0], points[i, 1]
+    if yields:
+        m, n, f = low[i], high[i], share[i]
+        x += (1.0 - f) * u[m, 0] + f * u[n, 0]
+        y += (1.0 - f) * u[m, 1] + f * u[n, 1]
+    position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
+    position[i, 1] = pose[1] + pose[3] * x + pose[2] * y
+
+
 @kernel
 def place(b: Boundary, w: Work, pose: Array, modal: Array, i: int, stamp: int) -> None:
     """World position of point i, its nodes displaced; pose (x, y, cos θ, sin θ)."""
     w.position_stamp[i] = stamp
-    x, y = b.points[i, 0], b.points[i, 1]
-    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
-        m, n, f, u = b.low[i], b.high[i], b.share[i], w.displacement
-        if w.displacement_stamp[m] != stamp:
-            displace(b, w, modal, m, m + 1, stamp)
-        if w.displacement_stamp[n] != stamp:
-            displace(b, w, modal, n, n + 1, stamp)
-        x += (1.0 - f) * u[m, 0] + f * u[n, 0]
-        y += (1.0 - f) * u[m, 1] + f * u[n, 1]
-    w.position[i, 0] = pose[0] + pose[2] * x - pose[3] * y
-    w.position[i, 1] = pose[1] + pose[3] * x + pose[2] * y
+    yields = b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0
+    for side in range(2 if yields else 0):
+        node = b.low[i] if side == 0 else b.high[i]
+        if w.displacement_stamp[node] != stamp:
+            displace(b, w, modal, node, node + 1, stamp)
+    _put(b.points, b.low, b.high, b.share, w.displacement, pose, w.position, yields, i)
 
 
 @kernel
@@ -83,36 +92,42 @@ def place_leaves(
     b: Boundary, w: Work, pose: Array, modal: Array, pairs: Ints, n_pairs: int, side: int, stamp: int
 ) -> None:
     """``place`` for the points of the candidate leaves; the nodes of leaves beside each other move together."""
-    following, stamps = b.next, w.position_stamp
-    if b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0:
-        low = high = -1  # a run of nodes to be displaced
-        for k in range(n_pairs):
-            leaf = pairs[k, side]
-            start, end = b.low[b.right[leaf]], b.low[b.right[leaf] - b.left[leaf] - 1] + 1
-            if start >= low and end <= high:
+    following, stamps, moved = b.following, w.position_stamp, w.displacement_stamp
+    points, low, high, share, u, position = b.points, b.low, b.high, b.share, w.displacement, w.position
+    yields = b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0
+    start = end = -1  # a run of nodes to be displaced
+    for k in range(n_pairs + 1 if yields else 0):
+        n0 = n1 = -1
+        if k < n_pairs:
+            first, last = edges_of(b, pairs[k, side])
+            after = following[last - 1]
+            n0, n1 = low[first], (high[after] if after > first else low[last - 1]) + 1
+            if (n0 >= start and n1 <= end) or (moved[n0] == stamp and moved[n1 - 1] == stamp):
                 continue
-            if w.displacement_stamp[start] == stamp and w.displacement_stamp[end - 1] == stamp:
+            if start >= 0 and n0 <= end and n1 >= start:
+                start, end = min(start, n0), max(end, n1)
                 continue
-            if low >= 0 and start <= high and end >= low:
-                low, high = min(low, start), max(high, end)
-                continue
-            if low >= 0:
-                displace(b, w, modal, low, high, stamp)
-            low, high = start, end
-        if low >= 0:
-            displace(b, w, modal, low, high, stamp)
-    last = -1
+        if start >= 0:
+            displace(b, w, modal, start, end, stamp)
+        start, end = n0, n1
+    before = -1
     for k in range(n_pairs):
         leaf = pairs[k, side]
-        if leaf == last:
+        if leaf == before:
             continue
-        last = leaf
-        first, end = b.right[leaf], b.right[leaf] - b.left[leaf]
-        for i in range(first, end):
-            if stamps[i] != stamp:
+        before = leaf
+        first, last = edges_of(b, leaf)
+        for n in range(first, last + 1):
+            i = n if n < last else following[last - 1]
+            if n > first and following[n - 1] != i and stamps[following[n - 1]] != stamp:  # a ring ends
+                place(b, w, pose, modal, following[n - 1], stamp)
+            if stamps[i] == stamp:
+                continue
+            if yields and (moved[low[i]] != stamp or moved[high[i]] != stamp):
                 place(b, w, pose, modal, i, stamp)
-        if stamps[following[end - 1]] != stamp:
-            place(b, w, pose, modal, following[end - 1], stamp)
+                continue
+            stamps[i] = stamp
+            _put(points, low, high, share, u, pose, position, yields, i)
 
 
 @kernel(forceinline=True)

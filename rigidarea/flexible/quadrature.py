@@ -47,8 +47,8 @@ def quadrature(
             for g in range(3):
                 z = lo + GAUSS_X[g] * (hi - lo)
                 ra, rb = (z - x[0, i]) / wa, (z - x[1, j]) / wb
-                point[count, 0], point[count, 1] = edge[0, i], a.next[edge[0, i]]
-                point[count, 2], point[count, 3] = edge[1, j], b.next[edge[1, j]]
+                point[count, 0], point[count, 1] = edge[0, i], a.following[edge[0, i]]
+                point[count, 2], point[count, 3] = edge[1, j], b.following[edge[1, j]]
                 value[count, 0] = GAUSS_W[g] * (hi - lo)
                 value[count, 1] = t[0, i, 0] + ra * (t[0, i, 1] - t[0, i, 0])
                 value[count, 2] = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])

@@ -1,4 +1,4 @@
-"""Work arrays of one pair of bodies: what the search found, crossings, regions, and one region's arcs."""
+"""Work arrays of one pair of bodies: what the search found, the kernel's, regions, and one region's arcs."""
 
 from __future__ import annotations
 
@@ -8,35 +8,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.kernel.jit import kernel
+from rigidarea.kernel.work import OVERFLOW, TANGLED, Work, new_work
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-# enter_*: the crossing where A enters B (edge and parameter on each body), leave_*: where it leaves
 REGION = np.dtype(
-    [
-        (f"{end}_{body}{what}", t)
-        for end in ("enter", "leave")
-        for body in "ab"
-        for what, t in (("", "i8"), ("_t", "f8"))
-    ]
-    + [(name, "f8") for name in ("enter_x", "enter_y", "leave_x", "leave_y")]
+    [(name, "f8") for name in ("enter_x", "enter_y")]  # a crossing where A enters B
     + [("area", "f8"), ("x", "f8"), ("y", "f8"), ("nx", "f8"), ("ny", "f8"), ("chord", "f8"), ("force", "f8")]
     + [("x_chord", "f8"), ("y_chord", "f8")]
-    + [
-        ("first", "i8"),
-        ("arcs", "i8"),
-        ("serial", "i8"),
-    ]  # a crossing of it, its arcs a body, number of its loads
+    # its vertices in ``Work.polygon``, arcs a body, number of its loads
+    + [("start", "i8"), ("stop", "i8"), ("arcs", "i8"), ("serial", "i8")]
 )
-CROSSING = np.dtype(
-    [("a", "i8"), ("b", "i8"), ("ta", "f8"), ("tb", "f8"), ("x", "f8"), ("y", "f8"), ("enter", "i8"), ("next_a", "i8"),
-     ("next_b", "i8"), ("used", "i8")]
-)  # fmt: skip
 
 CANDIDATES = 16384  # pairs of leaves: a contact along 16,000 edges
-MANY = -1  # more crossings, arcs or candidates than the work arrays hold
-TORN = -2  # crossings that do not alternate: a boundary that crosses itself
+MANY = OVERFLOW  # more crossings, regions or candidates than the work arrays hold
+TORN = TANGLED  # crossings that do not alternate: a boundary that crosses itself
+CROSSINGS = 512
 SLICED = -3  # a region whose arcs have no common direction (a bar through a bar)
 FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: give it more and go on
 
@@ -60,16 +48,17 @@ class Loads(NamedTuple):
 class Scratch(NamedTuple):
     """See the module."""
 
-    stack: Ints
     pairs: Ints  # (p, 2) candidate leaves
     close: Ints  # (p, 2) those of them that are near now
-    crossings: NDArray[np.void]
+    work: Work
+    on: Ints  # (v,) the contact edge that each edge of ``work.polygon`` lies on
+    between: Array  # (v, 2) its parameters there
     regions: NDArray[np.void]
-    x: Array  # (2, n)
+    x: Array  # (2, v)
     y: Array
     edge: Ints
-    t: Array  # (2, n, 2)
-    cut: Array  # (2 n,)
+    t: Array  # (2, v, 2)
+    cut: Array  # (2 v,)
     load: Loads
 
 
@@ -86,11 +75,12 @@ def loads(room: int, points: int) -> Loads:
 
 def scratch(points: int, room: int = 0) -> Scratch:
     """Arrays for boundaries of up to ``points`` points in all, and ``room`` loads as unknowns."""
-    n = points + 3
+    work = new_work(points, CROSSINGS)
+    v = len(work.polygon)
     return Scratch(
-        np.zeros((256, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64),
-        np.zeros(512, CROSSING), np.zeros(1024, REGION),
-        np.zeros((2, n)), np.zeros((2, n)), np.zeros((2, n), np.int64), np.zeros((2, n, 2)), np.zeros(2 * n),
+        np.zeros((CANDIDATES, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), work,
+        np.zeros(v, np.int64), np.zeros((v, 2)), np.zeros(CROSSINGS, REGION),
+        np.zeros((2, v)), np.zeros((2, v)), np.zeros((2, v), np.int64), np.zeros((2, v, 2)), np.zeros(2 * v),
         loads(room, points),
     )  # fmt: skip
 
@@ -121,5 +111,5 @@ def searches(pairs: int) -> Searches:
 def of_pair(s: Scratch, all_pairs: Searches, p: int) -> Scratch:
     """The work arrays with what the search left for pair p."""
     return Scratch(
-        s.stack, all_pairs.pairs[p], s.close, s.crossings, s.regions, s.x, s.y, s.edge, s.t, s.cut, s.load
+        all_pairs.pairs[p], s.close, s.work, s.on, s.between, s.regions, s.x, s.y, s.edge, s.t, s.cut, s.load
     )  # fmt: skip

@@ -1,18 +1,15 @@
-"""The search: which leaves of two bodies' trees may touch.
-
-Circles do not mind rotation, so the trees are built once, in the body frames. Two branches whose circles are near are
-looked at again as boxes along their chords (separating axes, S. Gottschalk et al., OBBTree, 1996,
-doi:10.1145/237170.237244): a piece of a smooth boundary is far longer than thick.
-"""
+"""The search: which leaves of two bodies' hierarchies may touch, the bodies undeformed."""
 
 from __future__ import annotations
 
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary
-from rigidarea.flexible.scratch import MANY, Scratch
+from rigidarea.flexible.boundary import Boundary, edges_of, strip
+from rigidarea.flexible.scratch import MANY, Scratch, Searches
+from rigidarea.kernel.crossings import boxes_meet, go_down
 from rigidarea.kernel.jit import entry, kernel
+from rigidarea.kernel.work import Relative, placed, relative
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -23,55 +20,59 @@ NEAR = 0.5  # of the search's margin: how much farther than the deformation leav
 
 
 @kernel(forceinline=True)
-def relative(pose_a: Array, pose_b: Array) -> tuple[float, float, float, float]:
-    """Pose of b in the frame of a: cosine, sine, x, y."""
-    c = pose_a[2] * pose_b[2] + pose_a[3] * pose_b[3]
-    sn = pose_a[2] * pose_b[3] - pose_a[3] * pose_b[2]
-    dx, dy = pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]
-    return c, sn, pose_a[2] * dx + pose_a[3] * dy, -pose_a[3] * dx + pose_a[2] * dy
+def seen(pa: Array, pb: Array) -> Relative:
+    """Body b in the frame of a, of their poses (x, y, cos θ, sin θ)."""
+    return relative(pa[0], pa[1], pa[2], pa[3], pb[0], pb[1], pb[2], pb[3], 0.0, 0.0, 0.0, 0.0)
 
 
 @kernel
-def look(
-    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float, turn: float, at: Array, s: Scratch
-) -> int:
+def _aside(a: Boundary, i: int, b: Boundary, j: int, rel: Relative, margin: float) -> bool:
+    """Whether leaf j of b is by more than ``margin`` on one side of the strip that holds leaf i of a.
+
+    A piece of a smooth boundary is far longer than thick, and the sides of its box are along it by chance only.
+    """
+    low, high = edges_of(a, i)
+    ox, oy, ux, uy, above, below = strip(a.points, a.following, low, high)
+    far = margin * np.sqrt(ux * ux + uy * uy)
+    lowest, highest = np.inf, -np.inf
+    low, high = edges_of(b, j)
+    for n in range(2 * (high - low)):
+        m = low + n // 2
+        x, y = placed(b.points, m if n % 2 == 0 else b.following[m], rel)
+        o = ux * (y - oy) - uy * (x - ox)
+        lowest, highest = min(lowest, o), max(highest, o)
+    return lowest > above + far or highest < below - far
+
+
+@kernel
+def _look(
+    a: Boundary, b: Boundary, rel: Relative, margin: float, turn: float, at: Array, stack: NDArray[np.int32], out: Ints
+) -> int:  # fmt: skip
     """``search`` within ``margin``, and farther from the point ``at`` (b's frame) by ``turn`` of the distance to it.
 
     That is how far points come when b moves by ``margin`` there and turns by so many radians, in the frame of a.
     Where gears mesh they roll: there nothing moves, while they turn.
     """
-    c, sn, tx, ty = relative(pose_a, pose_b)
-    stack, out = s.stack, s.pairs
-    count, top = 0, 1
-    stack[0, 0] = stack[0, 1] = 0
-    while top > 0:
-        top -= 1
-        i, j = stack[top, 0], stack[top, 1]
-        ex = tx + c * b.centre[j, 0] - sn * b.centre[j, 1] - a.centre[i, 0]
-        ey = ty + sn * b.centre[j, 0] + c * b.centre[j, 1] - a.centre[i, 1]
+    leaves_a, leaves_b = len(a.boxes) // 2, len(b.boxes) // 2
+    stack[0, 0] = stack[0, 1] = 1
+    count, depth = 0, 1
+    while depth > 0:
+        depth -= 1
+        i, j = stack[depth, 0], stack[depth, 1]
         allowed = margin
         if turn > 0.0:
-            fx, fy = b.centre[j, 0] - at[0], b.centre[j, 1] - at[1]
-            allowed += turn * (np.sqrt(fx * fx + fy * fy) + b.radius[j])
-        reach = a.radius[i] + b.radius[j] + allowed
-        if ex * ex + ey * ey > reach * reach or _apart(a.box, i, b.box, j, c, sn, tx, ty, allowed):
+            x = abs(b.boxes[j, 0] - at[0]) + max(b.boxes[j, 2], 0.0)  # of its farthest corner; an empty box
+            y = abs(b.boxes[j, 1] - at[1]) + max(b.boxes[j, 3], 0.0)  # has sides below nothing
+            allowed += turn * np.sqrt(x * x + y * y)
+        if not boxes_meet(a.boxes, i, b.boxes, j, rel, allowed):
             continue
-        if a.left[i] < 0 and b.left[j] < 0:
+        if i < leaves_a or j < leaves_b:
+            depth = go_down(a.boxes, i, i, i >= leaves_a, b.boxes, j, j, j >= leaves_b, stack, depth)
+        elif not _aside(a, i - leaves_a, b, j - leaves_b, rel, allowed):
             if count == len(out):
                 return MANY
-            out[count, 0] = i
-            out[count, 1] = j
+            out[count, 0], out[count, 1] = i - leaves_a, j - leaves_b
             count += 1
-        elif b.left[j] < 0 or (a.left[i] >= 0 and a.radius[i] >= b.radius[j]):
-            stack[top, 0], stack[top, 1] = a.left[i], j
-            stack[top + 1, 0], stack[top + 1, 1] = a.right[i], j
-            top += 2
-        else:
-            stack[top, 0], stack[top, 1] = i, b.left[j]
-            stack[top + 1, 0], stack[top + 1, 1] = i, b.right[j]
-            top += 2
-    for k in range(count):
-        s.close[k, 0], s.close[k, 1] = out[k, 0], out[k, 1]
     return count
 
 
@@ -82,70 +83,66 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
     Poses are (x, y, cos θ, sin θ). ``margin`` (length) covers the deformation and, where the list is kept for several
     evaluations, the motion between them.
     """
-    return look(a, pose_a, b, pose_b, margin, 0.0, pose_b, s)
+    count = _look(a, b, seen(pose_a, pose_b), margin, 0.0, pose_b, s.work.stack, s.pairs)
+    for k in range(count):
+        s.close[k, 0], s.close[k, 1] = s.pairs[k, 0], s.pairs[k, 1]
+    return count
 
 
-@entry
+@kernel
 def narrow(
-    a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, n_pairs: int, margin: float, s: Scratch
+    boxes_a: Array, boxes_b: Array, rel: Relative, margin: float, pairs: Ints, n_pairs: int, close: Ints
 ) -> int:
-    """Fills ``s.close`` with those of ``s.pairs`` whose boxes are within ``margin`` where the bodies are now."""
-    c, sn, tx, ty = relative(pose_a, pose_b)
+    """Fills ``close`` with those of the first ``n_pairs`` pairs of leaves whose boxes are within ``margin``."""
+    leaves_a, leaves_b = len(boxes_a) // 2, len(boxes_b) // 2
     count = 0
     for k in range(n_pairs):
-        i, j = s.pairs[k, 0], s.pairs[k, 1]
-        if not _apart(a.box, i, b.box, j, c, sn, tx, ty, margin):
-            s.close[count, 0], s.close[count, 1] = i, j
+        i, j = pairs[k, 0], pairs[k, 1]
+        if boxes_meet(boxes_a, leaves_a + i, boxes_b, leaves_b + j, rel, margin):
+            close[count, 0], close[count, 1] = i, j
             count += 1
     return count
 
 
-@kernel(forceinline=True)
-def _apart(
-    box_a: Array, i: int, box_b: Array, j: int, c: float, sn: float, tx: float, ty: float, margin: float
-) -> bool:
-    """Whether one of the four sides' directions separates the leaves' boxes by more than ``margin``."""
-    ux, uy = box_a[i, 2], box_a[i, 3]
-    vx, vy = c * box_b[j, 2] - sn * box_b[j, 3], sn * box_b[j, 2] + c * box_b[j, 3]
-    dx = tx + c * box_b[j, 0] - sn * box_b[j, 1] - box_a[i, 0]
-    dy = ty + sn * box_b[j, 0] + c * box_b[j, 1] - box_a[i, 1]
-    cosine, sine = abs(ux * vx + uy * vy), abs(ux * vy - uy * vx)
-    la, wa, lb, wb = box_a[i, 4], box_a[i, 5], box_b[j, 4], box_b[j, 5]
-    return (
-        abs(dx * ux + dy * uy) > la + lb * cosine + wb * sine + margin
-        or abs(dy * ux - dx * uy) > wa + lb * sine + wb * cosine + margin
-        or abs(dx * vx + dy * vy) > lb + la * cosine + wa * sine + margin
-        or abs(dy * vx - dx * vy) > wb + la * sine + wa * cosine + margin
+@kernel
+def holds(rel: Relative, bend: float, found: Searches, p: int) -> bool:
+    """Whether the last search of pair p still does: b has moved little since, in the frame of a.
+
+    bend: the largest deformation, or what else brings them together.
+    """
+    at, was = found.held[p], found.posed[p]
+    dc, ds = rel.c - was[0], rel.s - was[1]
+    dx, dy = rel.tx - was[2] + dc * at[0] - ds * at[1], rel.ty - was[3] + ds * at[0] + dc * at[1]
+    moved = np.sqrt(dx * dx + dy * dy) + abs(bend - found.bend[p])
+    return not (
+        found.found[p] < 0 or moved > NEAR * found.margin[p] or np.sqrt(dc * dc + ds * ds) > found.turn[p]
     )
 
 
 @kernel
-def keep(a, pa, b, pb, margin, size, bend, s, found, p):  # type: ignore[no-untyped-def]
-    """The leaves of pair p that are near, or may come near soon, in ``s.pairs``: their number, or MANY.
+def renew(
+    a: Boundary, b: Boundary, rel: Relative, margin: float, size: float, bend: float, stack: NDArray[np.int32],
+    found: Searches, p: int,
+) -> int:  # fmt: skip
+    """The leaves of pair p that are near, or may come near soon, into ``found``: their number, or MANY.
 
-    The search, of undeformed bodies, holds while b has moved little in the frame of a. Where it found nothing it is
-    done again with twice the margin, and so on: bodies far apart need not be searched until they have come near each
-    other. size: of the smaller body; bend: the largest deformation, or what else brings them together.
+    Where the search, of undeformed bodies, finds nothing it is done again with twice the margin, and so on: bodies far
+    apart need not be searched until they have come near each other. size: of the smaller body; bend: see ``holds``.
     """
-    c, sn, x, y = relative(pa, pb)
-    at, was = found.held[p], found.posed[p]
-    dc, ds = c - was[0], sn - was[1]
-    dx, dy = x - was[2] + dc * at[0] - ds * at[1], y - was[3] + ds * at[0] + dc * at[1]
-    moved = np.sqrt(dx * dx + dy * dy) + abs(bend - found.bend[p])
-    if found.found[p] < 0 or moved > NEAR * found.margin[p] or np.sqrt(dc * dc + ds * ds) > found.turn[p]:
-        at[0], at[1] = found.pole[p, 0], found.pole[p, 1]
-        was[0], was[1], was[2], was[3] = c, sn, x, y
-        found.bend[p] = bend
-        found.margin[p], found.turn[p] = margin, TURN * margin / size
-        found.found[p] = look(a, pa, b, pb, margin + bend, found.turn[p], at, s)
-        while (
-            found.found[p] < 0 and found.turn[p] > 1e-3 * TURN * margin / size
-        ):  # more than there is room for
-            found.turn[p] *= 0.25
-            found.found[p] = look(a, pa, b, pb, margin + bend, found.turn[p], at, s)
-        while found.found[p] == 0 and 0.0 < found.margin[p] < size:
-            if look(a, pa, b, pb, 2.0 * found.margin[p] + bend, 2.0 * found.turn[p], at, s) != 0:
-                break
-            found.margin[p] *= 2.0
-            found.turn[p] *= 2.0
-    return found.found[p]
+    at, was, out = found.held[p], found.posed[p], found.pairs[p]
+    at[0], at[1] = found.pole[p, 0], found.pole[p, 1]
+    was[0], was[1], was[2], was[3] = rel.c, rel.s, rel.tx, rel.ty
+    found.bend[p] = bend
+    least = 1e-3 * TURN * margin / size
+    turn = TURN * margin / size
+    count = _look(a, b, rel, margin + bend, turn, at, stack, out)
+    while count < 0 and turn > least:  # more than there is room for
+        turn *= 0.25
+        count = _look(a, b, rel, margin + bend, turn, at, stack, out)
+    while count == 0 and 0.0 < margin < size:
+        if _look(a, b, rel, 2.0 * margin + bend, 2.0 * turn, at, stack, out) != 0:
+            break
+        margin *= 2.0
+        turn *= 2.0
+    found.found[p], found.margin[p], found.turn[p] = count, margin, turn
+    return count

@@ -13,9 +13,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.boundary import Boundary, Work, edges_of, span, strip
 from rigidarea.flexible.place import add_load, place_leaves
-from rigidarea.flexible.region import strip
 from rigidarea.flexible.scratch import MANY, Scratch
 from rigidarea.kernel.jit import entry, kernel
 
@@ -27,28 +26,23 @@ GAUSS = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)
 
 @kernel(forceinline=True)
 def _facing(
-    at_a: Array, next_a: Ints, low: int, high: int, at_b: Array, next_b: Ints, first_b: Ints, size_b: Ints,
-    pairs: Ints, start: int, end: int, reach: float, out: Ints,
+    at_a: Array, next_a: NDArray[np.int32], low: int, high: int, b: Boundary, at_b: Array, pairs: Ints, start: int,
+    end: int, reach: float, out: Ints,
 ) -> int:  # fmt: skip
     """Of the leaves of B paired with one of A, those not wholly outside A's leaf or deeper than ``reach``."""
     ox, oy, ux, uy, above, below = strip(at_a, next_a, low, high)
     above += reach * np.sqrt(ux * ux + uy * uy)
     count = 0
     for m in range(start, end):
-        leaf = pairs[m, 1]
-        low_b, high_b = first_b[leaf], first_b[leaf] - size_b[leaf]
-        j = next_b[high_b - 1]
-        lowest = highest = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
-        for j in range(low_b, high_b):
-            o = ux * (at_b[j, 1] - oy) - uy * (at_b[j, 0] - ox)
-            lowest, highest = min(lowest, o), max(highest, o)
+        low_b, high_b = edges_of(b, pairs[m, 1])
+        lowest, highest = span(at_b, b.following, low_b, high_b, ox, oy, ux, uy)
         if lowest <= above and highest >= below:
-            out[count] = leaf
+            out[count] = pairs[m, 1]
             count += 1
     return count
 
 
-@entry(forceinline=True)
+@entry
 def contact(
     a: Boundary, wa: Work, pose_a: Array, qa: Array, b: Boundary, wb: Work, pose_b: Array, qb: Array,
     n_pairs: int, stamp: int, k: float, reach: float, spread: bool, s: Scratch,
@@ -60,8 +54,7 @@ def contact(
     """
     place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
     place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
-    next_a, first_a, size_a, at_a = a.next, a.right, a.left, wa.position
-    next_b, first_b, size_b, at_b = b.next, b.right, b.left, wb.position
+    next_a, at_a, next_b, at_b = a.following, wa.position, b.following, wb.position
     load_a, flag_a, touched_a = wa.point_load, wa.point_flag, wa.touched
     load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
     pairs, regions, leaves = s.pairs, s.regions, s.edge[0]
@@ -71,10 +64,8 @@ def contact(
         start, leaf_a = end, pairs[end, 0]
         while end < n_pairs and pairs[end, 0] == leaf_a:
             end += 1
-        low, high = first_a[leaf_a], first_a[leaf_a] - size_a[leaf_a]
-        facing = _facing(
-            at_a, next_a, low, high, at_b, next_b, first_b, size_b, pairs, start, end, reach, leaves
-        )
+        low, high = edges_of(a, leaf_a)
+        facing = _facing(at_a, next_a, low, high, b, at_b, pairs, start, end, reach, leaves)
         fx = fy = moment = stiff = 0.0
         for i in range(low, high if facing > 0 else low):
             i1 = next_a[i]
@@ -85,8 +76,7 @@ def contact(
             nx, ny = ty, -tx  # outward
             total = first = 0.0  # force on the edge, and its moment about the edge's start
             for m in range(facing):
-                j = first_b[leaves[m]]
-                stop = j - size_b[leaves[m]]
+                j, stop = edges_of(b, leaves[m])
                 rx, ry = at_b[j, 0] - px, at_b[j, 1] - py
                 x_s, g_s = rx * tx + ry * ty, rx * nx + ry * ny
                 carry = 0.0
@@ -121,8 +111,15 @@ def contact(
                         add_load(load_b, flag_b, touched_b, j, at_low * nx, at_low * ny)
                     carry = at_high
                     j += 1
+                    if j1 != j:  # the last one, or a ring ends
+                        if spread and carry != 0.0:
+                            add_load(load_b, flag_b, touched_b, j1, carry * nx, carry * ny)
+                        carry = 0.0
+                        if j < stop:
+                            rx, ry = at_b[j, 0] - px, at_b[j, 1] - py
+                            x_s, g_s = rx * tx + ry * ty, rx * nx + ry * ny
                 if spread and carry != 0.0:
-                    add_load(load_b, flag_b, touched_b, next_b[stop - 1], carry * nx, carry * ny)
+                    add_load(load_b, flag_b, touched_b, stop, carry * nx, carry * ny)
             if total != 0.0:
                 if spread:
                     end_load = first / length

@@ -161,7 +161,7 @@ def distribute(
                     low, high = low + f * (1.0 - share), high + f * share
                 i = edge[side, k]
                 add_load(w.point_load, w.point_flag, w.touched, i, low * nx, low * ny)
-                add_load(w.point_load, w.point_flag, w.touched, body.next[i], high * nx, high * ny)
+                add_load(w.point_load, w.point_flag, w.touched, body.following[i], high * nx, high * ny)
                 # a node inside, Eq. 12 (none on a wall along the force)
                 if k + 1 == count or t[side, k + 1, 0] == t[side, k + 1, 1] or x[side, k + 2] < x1 or x1 > hi:
                     continue

@@ -95,7 +95,7 @@ def solve(
             raise RuntimeError("static contact: expected one arc of each body a region, got several")
         rows = []
         for r in s.regions[:n]:
-            n_a, n_b = arcs(a, wa, pa, none, b, wb, pb, none, r, stamp, s.x, s.y, s.edge, s.t)
+            n_a, n_b = arcs(r, s)
             g = nodal.quadrature(a, b, s.x, s.y, s.edge, s.t, n_a, n_b, float(r["chord"]), point, value)
             normal = np.tile([r["nx"], r["ny"]], (g, 1))
             at = np.array([r["enter_x"], r["enter_y"]]) + value[:g, 4:5] * [-r["ny"], r["nx"]]

@@ -107,7 +107,6 @@ class Buffers(NamedTuple):
     clock: Array  # (2,) step length, change of a velocity by that of its position
     springs: Array  # (3, REGIONS, 4) pair, place (2), stretch: of this evaluation, the last step, the step before it
     held: Ints  # (3,) how many
-    moved: Array  # (4,) pose of a pair's second body, a little aside
     joint: Array  # (j, 3) force and moment of each joint on its body b
     modes: Array  # (4, most modes of a body) see ``frame.inertia_forces``
     pace: Array  # (4,) of Newton's method, see ``pace``
@@ -124,6 +123,6 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room + 6 * n + 1)),
         np.zeros((room, 6 * n + 1)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
-        np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros(4), np.zeros((joints, 3)),
+        np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
         np.zeros((4, max(modes, default=0))), np.zeros(4), np.zeros((2, REGIONS)),
     )  # fmt: skip

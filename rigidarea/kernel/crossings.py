@@ -21,8 +21,8 @@ FEW = 128
 
 
 @kernel(forceinline=True)
-def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
-    """Separating axes of two hierarchy boxes: the two of A's frame and the two of B's."""
+def boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
+    """Separating axes of two hierarchy boxes, B's larger by `pad` all round: the two of A's frame and the two of B's."""
     ac = abs(rel.c)
     as_ = abs(rel.s)
     bhx = qb[nb, 2] + pad
@@ -41,8 +41,29 @@ def _boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative,
     )
 
 
+@kernel(forceinline=True)
+def go_down(
+    qa: np.ndarray, box_a: int, na: int, leaf_a: bool, qb: np.ndarray, box_b: int, nb: int, leaf_b: bool,
+    stack: np.ndarray, depth: int,
+) -> int:  # fmt: skip
+    """Put the pairs of nodes below (na, nb) on the stack, of the larger box's children; its depth then."""
+    size_a = qa[box_a, 2] + qa[box_a, 3]
+    size_b = qb[box_b, 2] + qb[box_b, 3]
+    if leaf_b or (not leaf_a and size_a >= size_b):
+        stack[depth, 0] = 2 * na
+        stack[depth, 1] = nb
+        stack[depth + 1, 0] = 2 * na + 1
+        stack[depth + 1, 1] = nb
+    else:
+        stack[depth, 0] = na
+        stack[depth, 1] = 2 * nb
+        stack[depth + 1, 0] = na
+        stack[depth + 1, 1] = 2 * nb + 1
+    return depth + 2
+
+
 @kernel
-def _cross_leaves(
+def cross_leaves(
     qa: np.ndarray, next_a: np.ndarray, a0: int, a1: int, qb: np.ndarray, next_b: np.ndarray, b0: int, b1: int,
     rel: Relative, cross: np.ndarray, param: np.ndarray, spot: np.ndarray, n: int,
 ) -> int:  # fmt: skip
@@ -122,7 +143,7 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
         depth -= 1
         na = stack[depth, 0]
         nb = stack[depth, 1]
-        if not _boxes_meet(pa.boxes, ha.box + na, pb.boxes, hb.box + nb, rel, pad):
+        if not boxes_meet(pa.boxes, ha.box + na, pb.boxes, hb.box + nb, rel, pad):
             continue
         leaf_a = na >= ha.leaves
         leaf_b = nb >= hb.leaves
@@ -138,27 +159,14 @@ def crossings(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -
                     work.cross, work.param, work.spot, n,
                 )  # fmt: skip
             else:
-                n = _cross_leaves(
+                n = cross_leaves(
                     pa.points, pa.following, ha.point + a0, a1, pb.points, pb.following, hb.point + b0, b1,
                     rel, work.cross, work.param, work.spot, n,
                 )  # fmt: skip
             if n < 0:
                 return n
             continue
-        # go down in the larger box
-        size_a = pa.boxes[ha.box + na, 2] + pa.boxes[ha.box + na, 3]
-        size_b = pb.boxes[hb.box + nb, 2] + pb.boxes[hb.box + nb, 3]
-        if leaf_b or (not leaf_a and size_a >= size_b):
-            stack[depth, 0] = 2 * na
-            stack[depth, 1] = nb
-            stack[depth + 1, 0] = 2 * na + 1
-            stack[depth + 1, 1] = nb
-        else:
-            stack[depth, 0] = na
-            stack[depth, 1] = 2 * nb
-            stack[depth + 1, 0] = na
-            stack[depth + 1, 1] = 2 * nb + 1
-        depth += 2
+        depth = go_down(pa.boxes, ha.box + na, na, leaf_a, pb.boxes, hb.box + nb, nb, leaf_b, stack, depth)
     return n
 
 

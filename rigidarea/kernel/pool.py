@@ -88,7 +88,7 @@ def _on_arc(p: np.ndarray, q: np.ndarray, r: float, x: float, y: float) -> bool:
 
 
 @njit
-def _boxes(points: np.ndarray, following: np.ndarray, arcs: np.ndarray) -> tuple[np.ndarray, int]:
+def boxes_of(points: np.ndarray, following: np.ndarray, arcs: np.ndarray) -> tuple[np.ndarray, int]:
     """The hierarchy over the edges (point, following point): boxes (2 leaves, 4), leaves."""
     n = len(points)
     leaves = 1
@@ -279,7 +279,7 @@ def _prepare(
         arcs[i, 3] = bow + 16.0 * 2.0**-52 * (reach + half)
     if disc:
         radius = arcs[0, 2]
-    boxes, leaves = _boxes(points, following, arcs)
+    boxes, leaves = boxes_of(points, following, arcs)
     convex = len(starts) == 2 and n <= MOST_WALKED and _convex(points, arcs)
     face = 0.0
     mouth = math.inf
