@@ -64,7 +64,7 @@ def table(
     return out
 
 
-@kernel
+@kernel(forceinline=True)  # nobody needs all of it
 def boundary_at(bodies: Ints, i: int) -> Boundary:
     """Body i's boundary."""
     row = bodies[i]
@@ -95,7 +95,7 @@ def boundary_at(bodies: Ints, i: int) -> Boundary:
     )
 
 
-@kernel
+@kernel(forceinline=True)
 def work_at(bodies: Ints, i: int) -> Work:
     """Body i's work arrays."""
     row = bodies[i]

@@ -71,7 +71,7 @@ def _bend(bodies, sy, buf, q):  # type: ignore[no-untyped-def]
         buf.most[b] = max(buf.most[b], buf.bend[b])
 
 
-@kernel
+@kernel(forceinline=True)
 def _near(bodies, sy, buf, pairs, st, s, found, p):  # type: ignore[no-untyped-def]
     """Leaves of pair p that may touch soon, in its list: (their number, or MANY; the deformation allowed for)."""
     ia, ib = pairs[p, 0], pairs[p, 1]
@@ -116,8 +116,10 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
     s.load.made[0] = 0
     _bend(bodies, sy, buf, q)
     for b in range(len(sy.mass)):
-        clear_loads(work_at(bodies, b))
-        draw(boundary_at(bodies, b), work_at(bodies, b))
+        w = work_at(bodies, b)
+        clear_loads(w)
+        if w.tight[0]:
+            draw(boundary_at(bodies, b), w)
     total = 0
     for p in range(len(pairs)):
         ia, ib = pairs[p, 0], pairs[p, 1]

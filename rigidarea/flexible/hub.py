@@ -60,7 +60,8 @@ class Hub(NamedTuple):
 @kernel
 def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
     """The hub of body b in the present state."""
-    draw(body, w)
+    if w.tight[0]:
+        draw(body, w)
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s, q = buf.pose[b, 2], buf.pose[b, 3], state.q[lo:hi]
     x, y = sy.hub[b, 0] + hub_displacement(body, w, q, 0), sy.hub[b, 1] + hub_displacement(body, w, q, 1)

@@ -58,7 +58,8 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
             row[at + i] = state.x[b, i]
             row[at + 3 + i] = state.v[b, i]
         body, w = boundary_at(bodies, b), work_at(bodies, b)
-        draw(body, w)
+        if w.tight[0]:
+            draw(body, w)
         row[at + 6] = state.x[b, 2] + hub_displacement(body, w, state.q[lo:hi], 2)
         row[at + 7] = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
         at += BODY

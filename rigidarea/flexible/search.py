@@ -104,7 +104,7 @@ def narrow(
     return count
 
 
-@kernel
+@kernel(forceinline=True)
 def holds(rel: Relative, bend: float, found: Searches, p: int) -> bool:
     """Whether the last search of pair p still does: b has moved little since, in the frame of a.
 

@@ -197,8 +197,10 @@ def _flies(bodies, sy, state, pairs, st, s, found, buf):  # type: ignore[no-unty
     buf.counts[1] += 1
     for b in range(len(sy.mass)):
         buf.hubs[b, 4] = sy.inertia[b] * state.acc[b, 2]
-        draw(boundary_at(bodies, b), work_at(bodies, b))
-        clear_loads(work_at(bodies, b))
+        w = work_at(bodies, b)
+        if w.tight[0]:
+            draw(boundary_at(bodies, b), w)
+        clear_loads(w)
     return True
 
 

@@ -84,9 +84,7 @@ def tighten(b: Boundary, w: Work, most: Array) -> None:
 @kernel
 def draw(b: Boundary, w: Work) -> None:
     """What the present loads and spin move: coordinates D (Ψᵀ f + ω² h) in ``w.drawn[0]``, those of hub and spin alone
-    in ``w.drawn[1]``; nothing where the body is not tight."""
-    if not w.tight[0]:
-        return
+    in ``w.drawn[1]``. For a body that is tight."""
     r = b.soft.shape[1]
     d, rest, total = w.yielding[:, r:], w.drawn[1], w.drawn[2]
     for k in range(r):
