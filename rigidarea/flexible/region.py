@@ -51,15 +51,14 @@ def _crossings(a: Boundary, at_a: Array, b: Boundary, at_b: Array, n_pairs: int,
             low_a, high_a = edges_of(a, last)
             ox, oy, ux, uy, above, below = strip(at_a, next_a, low_a, high_a)
         low_b, high_b = edges_of(b, pairs[k, 1])
-        # a leaf of B wholly to one side of A's strip cannot cross it
-        lowest, highest = span(at_b, next_b, low_b, high_b, ox, oy, ux, uy)
-        if lowest > above or highest < below:
-            continue
-        count = cross_leaves(
-            at_a, next_a, low_a, high_a, at_b, next_b, low_b, high_b, own, cross, param, spot, count
-        )
-        if count < 0:
-            return count
+        for j in range(low_b, high_b):
+            # an edge of B wholly to one side of A's strip cannot cross it
+            lowest, highest = span(at_b, next_b, j, j + 1, ox, oy, ux, uy)
+            if lowest > above or highest < below:
+                continue
+            count = cross_leaves(at_a, next_a, low_a, high_a, at_b, next_b, j, j + 1, own, cross, param, spot, count)
+            if count < 0:
+                return count
     return count
 
 

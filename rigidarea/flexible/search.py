@@ -119,7 +119,7 @@ def holds(rel: Relative, bend: float, found: Searches, p: int) -> bool:
     )
 
 
-@kernel
+@kernel(forceinline=False)  # else numba hands on what ``_near`` says of itself
 def renew(
     a: Boundary, b: Boundary, rel: Relative, margin: float, size: float, bend: float, stack: NDArray[np.int32],
     found: Searches, p: int,

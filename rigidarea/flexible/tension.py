@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 SLACK = 1e-5  # largest part of the stiffness that is left out: a hundredth of what a mesh is off by
 
 
-@entry
+@entry(forceinline=False)
 def matrix(tension: Array, spin: float, fx: float, fy: float, out: Array) -> bool:
     """D (r, r) in the right half of ``out`` (r, 2 r); whether G is more than SLACK, else D is not made.
 

@@ -85,7 +85,7 @@ class Whole(CPUDispatcher):  # type: ignore[misc]
 njit: Any = cached(functools.partial(numba.njit, error_model="numpy"))
 #: Decorator for kernels that Python too calls. They look at arrays that somebody else keeps alive; counting references
 #: to them would cost more than clipping two boxes. The price: a kernel cannot allocate.
-entry: Any = functools.partial(njit, _nrt=False, forceinline=False)
+entry: Any = functools.partial(njit, _nrt=False)
 
 
 class _Part(Whole):
@@ -111,7 +111,7 @@ def kernel(function: Any = None, **options: Any) -> Any:
     if numba.config.DISABLE_JIT:
         return function
     made = numba.njit(
-        _nrt=False, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **{"forceinline": False, **options}
+        _nrt=False, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
     )(function)
     made.__class__ = _Part
     return made
