@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 
 BASES = tuple(r * float(np.cos(gb.ANGLE)) for r in gb.PITCHES)  # radii
 BASE_PITCH = float(np.pi * gb.MODULE * np.cos(gb.ANGLE))
+DEPTH = 1e-8  # m, of the light load's contact
+LOAD = 100e3  # N/m, force a width: the least for which ISO 6336 needs no correction
+SIZES = (1.0, 0.5, 0.25)  # mm, meshes of the tooth's compliance
 
 
 def analytic_pairs(phi: float, addendum: float) -> Array:
@@ -43,14 +46,11 @@ def analytic_share(at: Array) -> float:
     return float(part.max() / part.sum())
 
 
-def light_load(
-    addendum: float = gb.ADDENDUM, points: int = 200, depth: float = 1e-8
-) -> tuple[dict[str, Any], dict[str, Any]]:
+def light_load(addendum: float = gb.ADDENDUM, points: int = 200) -> tuple[dict[str, Any], dict[str, Any]]:
     """Rigid gears turned through a pitch under a vanishing load: contact ratio, load sharing, kinematic error, each
     beside its analytic value; and the curves.
 
-    At each pinion angle the wheel is turned until the force reaches that of one pair pressed in by ``depth``
-    (length).
+    At each pinion angle the wheel is turned until the force reaches that of one pair pressed in by DEPTH.
     """
     from scipy.optimize import brentq
 
@@ -73,7 +73,7 @@ def light_load(
 
     # area of one pair at the pitch point pressed in by depth: 4/3 a d, a² = 2 R d
     radius = 0.5 * gb.MODULE * np.sin(gb.ANGLE) * gb.TEETH[0] * gb.TEETH[1] / sum(gb.TEETH)
-    wanted = 4 / 3 * np.sqrt(2 * radius * depth) * depth
+    wanted = 4 / 3 * np.sqrt(2 * radius * DEPTH) * DEPTH
     angles = 2 * np.pi / gb.TEETH[0] * np.arange(points) / points
     pairs, share, expected, error = [], [], [], []
     for phi in angles:
@@ -122,9 +122,9 @@ def _held(addendum: float, mesh_mm: float, depth: float | None, cache: Path | No
     return held
 
 
-def _errors(held: list[Boundary], load: float, angles: Array) -> tuple[Array, list[int]]:
-    """Deflection along the line of action (length) under ``load`` (force a width) at pinion angles, and pairs."""
-    force = load * gb.THICKNESS
+def _errors(held: list[Boundary], angles: Array) -> tuple[Array, list[int]]:
+    """Deflection along the line of action (length) under LOAD at pinion angles, and pairs."""
+    force = LOAD * gb.THICKNESS
     stiff = force / (0.2e-3 * 5e-8)  # over a contact of 0.2 mm the load overlaps by 0.05 µm
     error, pairs = [], []
     for phi in angles:
@@ -134,7 +134,7 @@ def _errors(held: list[Boundary], load: float, angles: Array) -> tuple[Array, li
             pose = (gb.CENTRES, 0, start + x / BASES[1])
             return solve(held[0], (0, 0, phi), held[1], pose, stiff, tolerance=1e-4, limit=100)
 
-        x0, x1 = 4e-6 * load / 100e3, 6e-6 * load / 100e3
+        x0, x1 = 4e-6, 6e-6
         s0, s1 = pressed(x0), pressed(x1)
         for _ in range(8):
             f0, f1 = (-s.moment / BASES[1] - force for s in (s0, s1))
@@ -148,17 +148,13 @@ def _errors(held: list[Boundary], load: float, angles: Array) -> tuple[Array, li
 
 
 def mesh_stiffness(
-    addendum: float = gb.ADDENDUM,
-    mesh_mm: float = 0.6,
-    load: float = 100e3,
-    points: int = 8,
-    cache: Path | None = None,
+    addendum: float = gb.ADDENDUM, mesh_mm: float = 0.6, points: int = 8, cache: Path | None = None
 ) -> dict[str, Any]:
-    """FE statics with stiff contact, transmission error under ``load`` (force a width), against ISO 6336-1 method B.
+    """FE statics with stiff contact, transmission error under LOAD, against ISO 6336-1 method B.
 
-    c' = c'_th C_M C_B with c'_th = 1/q', q' = 0.04723 + 0.15551/z₁ + 0.25791/z₂ mm µm/N (solid discs: C_R = 1), C_B = 1
-    + 0.5 (1.2 − h_fP/m) and C_M = 0.8; c_γ = c' (0.75 ε_α + 0.25). 100 N/mm is the least load for which it needs no
-    correction. The series for q' is for addenda of one module; for taller teeth it stands for want of another.
+    c' = c'_th C_M C_B with c'_th = 1/q', q' = 0.04723 + 0.15551/z₁ + 0.25791/z₂ mm µm/N (solid discs: C_R = 1), C_B =
+    1 + 0.5 (1.2 − h_fP/m) and C_M = 0.8; c_γ = c' (0.75 ε_α + 0.25). The series for q' is for addenda of one module;
+    for taller teeth it stands for want of another.
 
     What is compared: the norm's c'_th is that of the teeth, their foundation and the contact, Hertz included, on a
     half plane (Weber and Banaschek); the factor 0.8 then stands for what measurements found besides. Gears held at
@@ -175,16 +171,16 @@ def mesh_stiffness(
     approach, recess = gb.path_of_contact(addendum)
     # the middle of the zone of single contact
     middle = np.array([0.5 * (recess - approach) / BASES[0] - 0.5 * np.pi / gb.TEETH[0]])
-    width = 1e-9 * load  # N/(mm µm) times metres
+    width = 1e-9 * LOAD  # N/(mm µm) times metres
     theory = (1 + 0.5 * (1.2 - addendum - gb.ROOT)) / (
         0.04723 + 0.15551 / gb.TEETH[0] + 0.25791 / gb.TEETH[1]
     )
     several = 0.75 * gb.analytic_contact_ratio(addendum) + 0.25
-    found: dict[str, Any] = {"load_n_per_mm": 1e-3 * load}
+    found: dict[str, Any] = {"load_n_per_mm": 1e-3 * LOAD}
     for name, depth in (("fe", None), ("fe_teeth", 2 * gb.MODULE), ("fe_teeth_1_module", gb.MODULE)):
         held = _held(addendum, mesh_mm, depth, cache)
-        error, _ = _errors(held, load, angles)
-        single, pairs = _errors(held, load, middle)
+        error, _ = _errors(held, angles)
+        single, pairs = _errors(held, middle)
         found[f"{name}_single_n_per_mm_um"] = width / float(single[0])
         found[f"{name}_single_pairs"] = pairs[0]  # 2: the neighbour touches before its time, teeth being bent
         found[f"{name}_n_per_mm_um"] = width / float(np.mean(error))
@@ -204,15 +200,13 @@ def mesh_stiffness(
     return found
 
 
-def tooth_compliance(
-    cache: Path | None = None, sizes: tuple[float, ...] = (1.0, 0.5, 0.25)
-) -> dict[str, Any]:
+def tooth_compliance(cache: Path | None = None) -> dict[str, Any]:
     """Compliance of a pinion tooth pushed sideways at its tip land, hub held, on meshes each half as coarse as the one
     before; the order of convergence from the differences of the last three (Richardson)."""
     pinion, _ = gb.outlines()
     tip = gb.PITCHES[0] + gb.ADDENDUM * gb.MODULE
     values = []
-    for size in sizes:
+    for size in SIZES:
         body, _ = elastic_body(pinion.rings, 1e-3 * size, gb.STEEL, "compliant", hub=1, cache=cache)
         b = hub_fixed(body.boundary, body.hub)
         land = np.flatnonzero(
@@ -223,7 +217,7 @@ def tooth_compliance(
         values.append(float(load @ b.flexibility @ load))
     coarse, middle, fine = values[-3:]
     return {
-        "mesh_mm": list(sizes),
+        "mesh_mm": list(SIZES),
         "compliance_m_per_n": values,
         "change_percent": [100 * (b / a - 1) for a, b in pairwise(values)],
         "order": float(np.log2((middle - coarse) / (fine - middle))),

@@ -52,7 +52,7 @@ def table(
     """
     out = np.zeros((len(boundaries), GEOMETRIC + 1), np.int64)
     for row, b, w, g, s in zip(out, boundaries, works, couplings, geometric, strict=True):
-        arrays = (*b, *w, g, s)
+        arrays: tuple[NDArray[Any], ...] = (*b, *w, g, s)
         for name, array in zip((*b._fields, *w._fields, "coupling", "geometric"), arrays, strict=True):
             if not array.flags.c_contiguous:
                 raise ValueError(f"{name} must be contiguous, got strides {array.strides}")

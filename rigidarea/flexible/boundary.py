@@ -24,15 +24,15 @@ Ints = NDArray[np.int64]
 class Boundary(NamedTuple):
     """Constant data of one body; lengths in the body frame, origin at the centre of mass.
 
-    points (n, 2); following, ring_of (n,) int32; boxes (2 leaves, 4) the hierarchy of ``kernel.pool``, of the points as
-    they are here; low, high (n,) FE boundary nodes of the carrying edge and share (n,) in [0, 1), the weight of
-    ``high`` (a point on a node has only that); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the last three rows the hub's (x, y,
-    rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if
-    not used; nodes (f, 2) the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move
-    them beyond the modes (time² × length), or (0,). soft (2 f + 3, r), soft_stretch (r,), tension (3, r, r): of a
-    compliant body that may spin, see ``tension``; r = 0 if there is none. ready (p, p), start, path, value,
-    relief_left, relief_right: of a flexibility that is made block by block, when it is used, see ``blocks`` and
-    ``complete``; p = 0 if it is whole.
+    points (n, 2); following, ring_of (n,) int32; boxes (2 leaves, 4) the hierarchy of ``kernel.pool``, of the
+    points as they are here; low, high (n,) FE boundary nodes of the carrying edge and share (n,) in [0, 1), the
+    weight of ``high`` (one node where it is 0); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the
+    last three rows the hub's (x, y, rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if not used; nodes (f, 2)
+    the FE boundary nodes; swell (2 f + 3,) what centrifugal forces of unit angular velocity move them beyond the
+    modes (time² × length), or (0,). soft (2 f + 3, r), soft_stretch (r,), tension (3, r, r): of a compliant body
+    that may spin, see ``tension``; r = 0 if there is none. ready (p, p), start, path, value, relief_left,
+    relief_right: of a flexibility that is made block by block, when it is used, see ``blocks`` and ``complete``; p
+    = 0 if it is whole.
     """
 
     points: Array

@@ -26,7 +26,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, edges_of, span, strip
 from rigidarea.flexible.place import place, place_leaves
-from rigidarea.flexible.scratch import MANY, SLICED, TORN, Scratch
+from rigidarea.flexible.scratch import SLICED, TORN, Scratch
 from rigidarea.kernel.crossings import cross_leaves, link
 from rigidarea.kernel.direction import chord_direction
 from rigidarea.kernel.jit import entry, kernel
@@ -56,7 +56,9 @@ def _crossings(a: Boundary, at_a: Array, b: Boundary, at_b: Array, n_pairs: int,
             lowest, highest = span(at_b, next_b, j, j + 1, ox, oy, ux, uy)
             if lowest > above or highest < below:
                 continue
-            count = cross_leaves(at_a, next_a, low_a, high_a, at_b, next_b, j, j + 1, own, cross, param, spot, count)
+            count = cross_leaves(
+                at_a, next_a, low_a, high_a, at_b, next_b, j, j + 1, own, cross, param, spot, count
+            )
             if count < 0:
                 return count
     return count
@@ -108,11 +110,11 @@ def find_regions(
         return n
     own = Relative(1.0, 0.0, 0.0, 0.0)
     for side in range(2):
-        q, following, ring_of = (at_a, a.following, a.ring_of) if side == 0 else (at_b, b.following, b.ring_of)
-        other, beyond = (at_b, b.following) if side == 0 else (at_a, a.following)
+        at, body, there, other = (at_a, a, at_b, b) if side == 0 else (at_b, b, at_a, a)
         if not link(
-            q, following, ring_of, other, beyond, own, n, work.cross, work.param, work.spot, work.order, side, 0.0
-        ):
+            at, body.following, body.ring_of, there, other.following, own, n,
+            work.cross, work.param, work.spot, work.order, side, 0.0,
+        ):  # fmt: skip
             return TORN
     work.done[:n] = 0
     count = v = 0

@@ -22,7 +22,7 @@ FEW = 128
 
 @kernel(forceinline=True)
 def boxes_meet(qa: np.ndarray, na: int, qb: np.ndarray, nb: int, rel: Relative, pad: float) -> bool:
-    """Separating axes of two hierarchy boxes, B's larger by `pad` all round: the two of A's frame and the two of B's."""
+    """Separating axes of two hierarchy boxes, B's wider by `pad` all round: the two of A's frame, the two of B's."""
     ac = abs(rel.c)
     as_ = abs(rel.s)
     bhx = qb[nb, 2] + pad

@@ -111,6 +111,18 @@ def test_sts_equals_area_on_flat_faces():
         assert x == pytest.approx(area[0]["x"], abs=1e-4)
 
 
+@pytest.mark.parametrize(
+    ("dx", "dy", "area"), [(0.5, 0, 3), (1, 1, 1), (0, -0.25, 3.5), (2, 0, 0), (2, 2, 0)]
+)
+def test_boundaries_that_share_lines_and_points(dx, dy, area):
+    """Equal boxes, edges along each other and corners on edges, to the last bit: one region, or no area at all."""
+    ring = np.array([[-1, -1], [0, -1], [1, -1], [1, 0], [1, 1], [0, 1], [-1, 1], [-1, 0]], float)
+    regions, _, _ = evaluate([ring], pose(0, 0, 0), [ring], pose(dx, dy, 0))
+    assert list(regions["area"]) == ([area] if area else [])
+    if area:
+        assert (regions[0]["x"], regions[0]["y"]) == pytest.approx((dx / 2, dy / 2), abs=1e-15)
+
+
 def test_far_from_the_origin():
     ra, rb = [circle(1.0, 50)], [circle(1.0, 41)]
     near, _, _ = evaluate(ra, pose(0, 0, 0.1), rb, pose(0, 1.875, 0.2))
