@@ -39,7 +39,6 @@ from ..kernel.passed import return_what_passed
 from ..kernel.place import place
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
-    adapt_stiffness,
     common,
     drift,
     find_near,
@@ -55,6 +54,7 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
+from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
     BODIES,

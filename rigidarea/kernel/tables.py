@@ -41,6 +41,7 @@ BODY = record(
         ("gain_y", "f8"),
         ("gain_w", "f8"),
         ("thrust", "f8"),  # how much that changed its velocity, whoever did it: the user's functions too
+        ("load", "f8"),  # the largest that a contact of its bears (force)
         ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
