@@ -39,6 +39,7 @@ from ..kernel.passed import return_what_passed
 from ..kernel.place import place
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
+    blows,
     common,
     drift,
     find_near,
@@ -387,6 +388,8 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 return True
             if k == 0:
                 search_together(tables, searches)
+                if moved > small and blows(tables, load_law(s), h):
+                    search_together(tables, searches)
         if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
             break
     return True
