@@ -26,7 +26,7 @@ import math
 from typing import Any
 
 from .birth import drives, flies_off
-from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, REST_KICKS, TANGENT_STIFFNESS
+from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
@@ -458,12 +458,12 @@ def stiffen(row: Any) -> bool:
         return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:
         return False
-    _harden(row, row.theta * row.alpha)
+    harden(row, row.theta * row.alpha)
     return bool(row.l1 + row.l2 > 0.0)
 
 
 @kernel(forceinline=True)
-def _harden(row: Any, rigid: float) -> None:
+def harden(row: Any, rigid: float) -> None:
     """Take so much of a row's give."""
     row.alpha -= rigid
     row.m11 -= rigid
@@ -472,23 +472,6 @@ def _harden(row: Any, rigid: float) -> None:
     else:
         row.m22 -= rigid
         row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
-
-
-@kernel(forceinline=True)
-def struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> bool:
-    """Whether what lies there is pressed in as by a blow, faster than rest, deeper than it lies: then it is rigid.
-
-    A bed is as stiff as its load asks; a blow that goes on through it is shorter than the step.
-    """
-    if r.mode != REST or row.theta == 0.0 or row.alpha == 0.0:
-        return False
-    turn = a.w - b.w
-    u = closing(r, a, b, 0.0) + max(-turn * row.e1, -turn * row.e2)
-    pushed = max(law.gravity, abs(closing(r, a, b, 0.0) - closing(r, a, b, 1.0)) / h)
-    if u <= REST_KICKS * pushed * h or u * h <= r.depth:
-        return False
-    _harden(row, row.alpha)
-    return True
 
 
 @kernel(forceinline=True)

@@ -13,14 +13,13 @@ from typing import Any
 import numpy as np
 
 from .apart import find_axis, gap_along
-from .birth import drives
 from .broad import search, somebody_left
 from .constants import LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
 from .pool import Pool
-from .row import make_row, push, settle, struck_at_rest, visit
+from .row import make_row, push, settle, visit
 from .tables import (
     ANEW,
     BODIES,
@@ -402,33 +401,6 @@ def sweep(tables: Tables, up: bool) -> float:
         row = tables.rows[i if up else n - 1 - i]
         most = max(most, visit(row, tables.bodies[row.a], tables.bodies[row.b]))
     return most
-
-
-@kernel
-def blows(tables: Tables, law: Law, h: float) -> bool:
-    """Whether a blow goes on through what lies at rest: there it is no bed any more.
-
-    Not of what hangs in a joint, or a kinematic body hits: those press on, and something has to give way.
-    """
-    rows = tables.rows
-    for i in range(tables.counters[ROWS]):
-        a = tables.bodies[rows[i].a]
-        b = tables.bodies[rows[i].b]
-        a.free = a.calm >= 0
-        b.free = b.calm >= 0
-    for i in range(tables.counters[ROWS]):
-        a = tables.bodies[rows[i].a]
-        b = tables.bodies[rows[i].b]
-        if drives(a) or drives(b):
-            a.free = 0
-            b.free = 0
-    struck = False
-    for i in range(tables.counters[ROWS]):
-        a = tables.bodies[rows[i].a]
-        b = tables.bodies[rows[i].b]
-        if (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
-            struck |= struck_at_rest(rows[i], tables.regions[rows[i].region], law, a, b, h)
-    return struck
 
 
 @kernel
