@@ -276,7 +276,7 @@ def test_what_is_jammed_grows_no_stiffer_than_all_that_pushes(hung):
             space.add(wall)
     bodies = []
     for i in range(20):
-        body, shape = disc((0.7 * (i % 3) if i else 0, 9 + 17 * i), radius=8, mass=3)
+        body, shape = disc((0.7 * (i % 3) if i else 0, -1 + 17 * i), radius=8, mass=3)
         space.add(body, shape)
         bodies.append(body)
     if hung:  # the walls' own body holds a joint, and bears as before
@@ -286,9 +286,7 @@ def test_what_is_jammed_grows_no_stiffer_than_all_that_pushes(hung):
     for i in range(600):
         space.step(DT)
         if i > 540:
-            # one that the heap has pushed through the slot, before its bed was stiff enough, is gone
-            assert max(b.velocity.length for b in bodies if b.position.y > -60) < 10
-    assert sum(b.position.y < -60 for b in bodies) <= 1
+            assert max(b.velocity.length for b in bodies) < 10
     # as stiff as the weight of all asks for (and a fifth more), but 0.01 deep on either side: a disc's A goes as d^1.5
     weight, allowed = (20 * 3 + hung) * 900, 2e-4 * 16
     assert max(contact.regions["force"]) < STIFFER * weight * (0.01 / allowed) ** 1.5
