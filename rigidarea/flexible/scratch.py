@@ -21,10 +21,10 @@ REGION = np.dtype(
     + [("start", "i8"), ("stop", "i8"), ("arcs", "i8"), ("serial", "i8")]
 )
 
+CROSSINGS = 512  # room for a pair's; a region takes two at least
 CANDIDATES = 16384  # pairs of leaves: a contact along 16,000 edges
 MANY = OVERFLOW  # more crossings, regions or candidates than the work arrays hold
 TORN = TANGLED  # crossings that do not alternate: a boundary that crosses itself
-CROSSINGS = 512
 SLICED = -3  # a region whose arcs have no common direction (a bar through a bar)
 FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: give it more and go on
 
