@@ -53,7 +53,7 @@ def result(
     simulated_s: float,
     complete: bool = True,
 ) -> dict[str, Any]:
-    """The JSON object of a case (design 7); ``complete`` is false in the file of a run that was interrupted."""
+    """The JSON object of a case; ``complete`` is false in the file of a run that was interrupted."""
     return envelope(
         f"case {name}",
         settings,

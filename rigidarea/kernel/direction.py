@@ -1,4 +1,4 @@
-"""Direction of a region's force: along the chord's normal, or the paper's weighted nodal normals (design 2.2)."""
+"""Direction of a region's force: along the chord's normal, or the paper's weighted nodal normals (theory 2)."""
 
 from __future__ import annotations
 

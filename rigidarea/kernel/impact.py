@@ -1,4 +1,4 @@
-"""Impacts that the steps follow: how a region returns the restitution it is asked for (design 2.4).
+"""Impacts that the steps follow: how a region returns the restitution it is asked for (theory 5).
 
 (One shorter than the step has no course, only a result: see `row.py`.)
 """
@@ -18,7 +18,7 @@ def restitution_damping(e: float) -> float:
     """alpha = a v0 for which F = f(depth) (1 + a speed) returns exactly e v0, whatever f.
 
     m v dv/dx = -f (1 + a v) separates: both ways through the same integral of f give
-    alpha (1 + e) = ln[(1 + alpha) / (1 - alpha e)] (design 2.4). The right side minus the left is negative just
+    alpha (1 + e) = ln[(1 + alpha) / (1 - alpha e)] (theory 5). The right side minus the left is negative just
     above 0 and infinite at 1/e; its one root between is found by bisection.
     """
     if e >= 1.0:

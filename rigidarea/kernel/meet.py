@@ -194,7 +194,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         past = 0
         if not born:
             # Past the middle of a body the chord shrinks to nothing and comes out the other way: a region then keeps
-            # the way it came in, while it lives (design 2.1). A wide chord that turns by more than 90 degrees is not
+            # the way it came in, while it lives (theory 1). A wide chord that turns by more than 90 degrees is not
             # that: the sliver of a corner has found another edge, and that is another contact.
             against = not patch.blind and wx * region.nx + wy * region.ny < 0.0
             if patch.blind or (against and (region.past or region.chord * region.chord < region.area)):

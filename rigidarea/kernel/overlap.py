@@ -25,7 +25,7 @@ there are none. What the shift leaves behind, loops of no area, is dropped. Of a
 `place.overlap_of_outlines` asks again with B shifted by 1e-13.
 
 Differences from the paper: Alg. 1 asks for a node of each body inside the other and for two crossings; here a region
-is there when its area is positive, however many crossings it has, and whatever nodes (design 2.1). Area and centroid
+is there when its area is positive, however many crossings it has, and whatever nodes (theory 1). Area and centroid
 are Eq. 4 and Eq. 7, taken relative to a point of the region.
 
 Everything is computed in A's frame, with B placed relative to A, so that a common offset costs no digits.

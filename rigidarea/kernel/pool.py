@@ -130,7 +130,7 @@ def boxes_of(points: np.ndarray, following: np.ndarray, arcs: np.ndarray) -> tup
 
 @njit
 def _face(points: np.ndarray, x: float, y: float) -> float:
-    """The chord for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (design 2.3).
+    """The chord for which chord (1 + arm^2 / gyration^2) is largest, over cuts at FACE_DEPTH (theory 3).
 
     A straight edge pressed `FACE_DEPTH * extent` into the outline cuts off a chord (of a gear: one tooth's); its
     stiffness is k chord, its leverage on a free body the arm of its middle about the centroid (x, y). Directions are

@@ -70,7 +70,7 @@ def steer(pair: Any, region: Any, a: Any, b: Any) -> None:
 
 @kernel(forceinline=True)
 def inverse_mass(r: Any, a: Any, b: Any) -> float:
-    """1/m_eff of the two bodies along the region's direction (design 2.3)."""
+    """1/m_eff of the two bodies along the region's direction (theory 3)."""
     return (
         a.inverse_mass
         + b.inverse_mass
@@ -81,7 +81,7 @@ def inverse_mass(r: Any, a: Any, b: Any) -> float:
 
 @kernel(forceinline=True)
 def region_stiffness(law: Law, k: float, chord: float) -> float:
-    """dF/ddelta of a region (design 2.3)."""
+    """dF/ddelta of a region (theory 3)."""
     if law.law == LAW_AREA:
         return k * chord
     return k * chord * chord / law.length

@@ -1,4 +1,4 @@
-"""One contact region as rows of the solve: a normal force at each end of its face, and friction (design 2.9).
+"""One contact region as rows of the solve: a normal force at each end of its face, and friction (theory 4).
 
     l = h (F0 + C (v' - vt)),   F0 = k A,   C = c + theta (1 + S) h k L,   l >= 0
 

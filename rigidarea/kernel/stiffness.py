@@ -52,7 +52,7 @@ def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float)
     """The stiffness of a pair that touches for the first time: for the weight of the lighter body that can move.
 
     face: the chord on which it would lie (length). Not the one on which it has landed: k tuned on a corner is far too
-    stiff for the face that comes down next (design 2.3). What it rests on in the end, `carry` learns.
+    stiff for the face that comes down next (theory 3). What it rests on in the end, `carry` learns.
     """
     if law.stiffness > 0.0:
         pair.stiffness = law.stiffness

@@ -62,8 +62,16 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     )
     for key, peer, label in kinds:
         found = [(row[key] / row["native_1_ms"], y) for y, row in enumerate(rows) if row[key]]
-        hollow = {"mfc": "white"} if key == "native_4_ms" else {}
-        ax.plot(*zip(*found), ls="", marker=marker(peer), color=colour(peer), ms=8, label=label, **hollow)
+        look = (
+            {"mfc": "white"}
+            if key == "native_4_ms"
+            else {"zorder": 3, "ms": 11}
+            if key == kinds[0][0]
+            else {}
+        )
+        ax.plot(
+            *zip(*found), ls="", label=label, marker=marker(peer), color=colour(peer), **{"ms": 8, **look}
+        )
     for y, row in enumerate(rows):
         ax.text(
             1.01,
@@ -77,6 +85,7 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     ax.set_yticks(range(len(rows)), names)
     ax.set(xscale="log", xlabel="frame time over that of pymunk's one step, which stands on the right")
     ax.xaxis.set_major_formatter("{x:g}")
+    ax.xaxis.set_minor_formatter("{x:.1g}")
     ax.axvline(1, color="#666666", lw=1)
     note = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "center"}
     ax.annotate("* shown, not in the summary", (0, 0), (-8, -30), fontsize=8, **note)
