@@ -283,7 +283,6 @@ def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
             if n > 0:
                 scale_impulse(joint, 1.0 / n)
             _joint(s, tables, joint, PRE_STEP, h)
-    _joints(s, tables, APPLY_CACHED, 1.0)
 
 
 @kernel
@@ -365,6 +364,8 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     mass, x, y = common(tables)
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
+    if jointed:
+        _joints(s, tables, APPLY_CACHED, 1.0)
     warm_start(tables)
     searches = whole // SEARCH_SWEEPS
     sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
