@@ -50,9 +50,11 @@ from ..kernel.solve import (
     join,
     kick,
     kinetic,
+    lessen,
     pace,
     respond_explicitly,
     sweep,
+    usable,
     warm_start,
 )
 from ..kernel.tables import (
@@ -79,6 +81,7 @@ from .joints import (
     add_impulse,
     give_back,
     hide,
+    is_spring,
     joints_of,
     keep_impulse,
     restore_impulse,
@@ -286,6 +289,20 @@ def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
 
 
 @kernel
+def _lessen_joints(s: Any, tables: Tables, h: float) -> None:
+    """Of what joints begin with, only what is usable."""
+    for joint in joints_of(s):
+        if joint.mine and not is_spring(s, joint):
+            part = 1.0
+            for i in (joint.a, joint.b):
+                if i >= 0:
+                    part = min(part, usable(tables.bodies[i], h))
+            if part < 1.0:
+                _joint(s, tables, joint, APPLY_CACHED, part - 1.0)
+                scale_impulse(joint, part)
+
+
+@kernel
 def _find_near(s: Any, space: int, h: float, time: float) -> bool:
     """Find the pairs that are near. Whether there was memory for them."""
     g = floats(space + s.space_gravity, 2)
@@ -364,11 +381,15 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     mass, x, y = common(tables)
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
+    warm_start(tables)
     if jointed:
         _joints(s, tables, APPLY_CACHED, 1.0)
-    warm_start(tables)
+    lessen(tables, h)
+    if jointed:
+        _lessen_joints(s, tables, h)
     searches = whole // SEARCH_SWEEPS
     sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
+    before = math.inf
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -390,6 +411,11 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 search_together(tables, searches)
         if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
             break
+        if (
+            jointed and moved >= before
+        ):  # no impulse does what joints and contacts ask: more sweeps, more of it
+            break
+        before = moved
     return True
 
 
