@@ -389,7 +389,6 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
         _lessen_joints(s, tables, h)
     searches = whole // SEARCH_SWEEPS
     sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
-    before = math.inf
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -411,11 +410,6 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 search_together(tables, searches)
         if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
             break
-        if (
-            jointed and moved >= before
-        ):  # no impulse does what joints and contacts ask: more sweeps, more of it
-            break
-        before = moved
     return True
 
 
