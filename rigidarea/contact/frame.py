@@ -17,6 +17,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
+from ..kernel.blows import blows, calm_bounces
 from ..kernel.conjugate import search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import (
@@ -39,7 +40,6 @@ from ..kernel.passed import return_what_passed
 from ..kernel.place import place
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
-    adapt_stiffness,
     common,
     drift,
     find_near,
@@ -57,6 +57,7 @@ from ..kernel.solve import (
     usable,
     warm_start,
 )
+from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
     BODIES,
@@ -408,8 +409,13 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 return True
             if k == 0:
                 search_together(tables, searches)
-        if moved <= small and (jointed or kinetic(tables, x, y) <= GAINED * energy + held_back(tables, h)):
+                if moved > small and blows(tables, load_law(s), h):
+                    search_together(tables, searches)
+        gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
+        if moved <= small and not gained:
             break
+        if gained:
+            calm_bounces(tables)
     return True
 
 

@@ -75,6 +75,9 @@ MOBILITY = record(
 #: What gives way by less than this part of the row's own is held from both sides (a disc between a floor and a blade
 #: that comes down): no impulse does what both ask, and the search leaves it to the sweeps.
 LEAST_GIVE = 1e-6
+#: Friction nearer to its bound than this part of it slides: a step that was cut short there leaves it there but for
+#: rounding, which is not to decide.
+AT_ITS_BOUND = 1e-9
 
 
 @kernel
@@ -136,7 +139,7 @@ def _bears(row: Any, f: Any) -> bool:
         # what a half open face does follows both of its ends, and both bodies: no energy has that for its slope
         f.first = 0
         f.second = 0
-    f.grip = most > 0.0 and abs(row.lt) < most
+    f.grip = abs(row.lt) < (1.0 - AT_ITS_BOUND) * most
     f.p1 = 0.0
     f.p2 = 0.0
     f.pt = 0.0

@@ -56,9 +56,11 @@ MARGIN = 0.1
 WEIGHTLESS_PHASE2 = 40.0
 #: Time over which the load that a pair carries is averaged (time).
 LOAD_TIME = 0.5
-#: A stiffness grows by no more than this factor a frame, and shrinks by that one.
-MOST_STIFFER = 1.2
-SOFTER = 1.05
+#: A stiffness that is too low grows by this factor a frame, and shrinks by that one when it is this much too high. (A
+#: load that comes and goes is not followed: a pile in which stiffness goes up and down never rests.)
+STIFFER = 1.2
+SOFTER = 1.02
+TOO_STIFF = 10.0
 #: A force that has grown with its stiffness, by this factor at least for so many frames on end, is no load: the two are
 #: held overlapped by joints. (A load is what it is, however stiff that on which it lies.)
 HELD = 1.02

@@ -458,7 +458,13 @@ def stiffen(row: Any) -> bool:
         return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:
         return False
-    rigid = row.theta * row.alpha
+    harden(row, row.theta * row.alpha)
+    return bool(row.l1 + row.l2 > 0.0)
+
+
+@kernel(forceinline=True)
+def harden(row: Any, rigid: float) -> None:
+    """Take so much of a row's give."""
     row.alpha -= rigid
     row.m11 -= rigid
     if row.ends == 1:
@@ -466,7 +472,6 @@ def stiffen(row: Any) -> bool:
     else:
         row.m22 -= rigid
         row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
-    return bool(row.l1 + row.l2 > 0.0)
 
 
 @kernel(forceinline=True)

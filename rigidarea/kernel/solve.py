@@ -20,7 +20,6 @@ from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_
 from .place import place, seen_from, shift
 from .pool import Pool
 from .row import make_row, push, settle, visit
-from .stiffness import carry
 from .tables import (
     ANEW,
     BODIES,
@@ -28,7 +27,6 @@ from .tables import (
     FIRST,
     FIXED,
     LAST,
-    LED,
     LIVE,
     MET,
     NEAR,
@@ -528,27 +526,6 @@ def respond_explicitly(tables: Tables) -> None:
         visit(row, a, b)
         a.vx, a.vy, a.w, b.vx, b.vy, b.w = keep
     warm_start(tables)
-
-
-@kernel
-def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
-    """Once a frame, where the user gave none: each pair's stiffness follows the load that it carries.
-
-    Nobody carries more than what pushes everybody, together, but for who hangs in a joint or lies on a kinematic body:
-    those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
-    """
-    most = 0.0
-    lined_up = tables.counters[LIVE] == tables.counters[BODIES]
-    for k in range(tables.counters[BODIES]):
-        body = tables.bodies[tables.live[k] if lined_up else k]
-        if body.stamp == frame and body.inverse_mass > 0.0:
-            most += max(law.gravity, body.thrust / dt) / body.inverse_mass
-    for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        led = a.kind == LED or b.kind == LED
-        carry(pair, dt, math.inf if led or a.calm < 0 or b.calm < 0 else most)
 
 
 @kernel

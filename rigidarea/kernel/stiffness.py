@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import HELD, HELD_FRAMES, LOAD_TIME, MOST_STIFFER, SOFTER, SPREAD, WEIGHTLESS_PHASE2
+from .constants import HELD, HELD_FRAMES, LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
 from .jit import kernel
-from .tables import LAW_AREA, Law
+from .tables import BODIES, LAW_AREA, LED, LIVE, NEAR, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -81,19 +81,31 @@ def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
     return area
 
 
-@kernel
-def carry(pair: Any, dt: float, most: float) -> None:
-    """Once a frame: the pair's load, averaged over LOAD_TIME, and its stiffness after it.
+@kernel(forceinline=True)
+def bear(pair: Any, dt: float, most: float) -> float:
+    """Once a frame: the load that the pair bears (force), averaged over LOAD_TIME; 0 where nothing lies.
 
-    most: no load that it follows is more (force). What is jammed between walls presses as far as it is stiff: that
-    would be stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved. Too soft, it goes half
-    of the way, in powers, to a tenth more than it must be; far too stiff, it softens slowly.
+    most: no load that a stiffness follows is more (force). What is jammed between walls presses as far as it is stiff:
+    that would be stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved.
+    """
+    if pair.area <= 0.0 or pair.stiffness <= 0.0:
+        return 0.0
+    pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
+    return float(max(min(most, pair.load), pair.least))
+
+
+@kernel
+def carry(pair: Any, load: float, dt: float, most: float) -> None:
+    """Once a frame, after `bear`: the pair's stiffness after a load (force) no less than its own.
+
+    That of the less loaded of its two bodies, not the pair's: where a body lies on several, each bears as much as it is
+    stiff, and stiff as it bears they would share the load in any way at all, and go on sharing it anew.
+    Too soft, it stiffens; far too stiff, it softens slowly, for every change moves what lies on it.
     What joints hold overlapped presses back as much as it is stiff: if that does not take it apart it is left as it is.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pressed = pair.carrying / dt
-        pair.load += dt / (dt + LOAD_TIME) * (pressed - pair.load)
-        wanted = max(min(most, pair.load), pair.least) / pair.area
+        wanted = load / pair.area
         pair.firm = max(wanted, min(most, pressed) / pair.area)
         k = pair.stiffness
         if wanted > k:
@@ -102,8 +114,42 @@ def carry(pair: Any, dt: float, most: float) -> None:
         else:
             pair.held = 0.0
         if wanted > k and pair.held <= HELD_FRAMES:
-            pair.stiffness = min(MOST_STIFFER, math.sqrt(1.1 * wanted / k)) * k
-        elif wanted < 0.5 * k:  # a load that comes and goes is not followed
+            pair.stiffness = STIFFER * k
+        elif TOO_STIFF * wanted < k:
             pair.stiffness = k / SOFTER
     pair.carrying = 0.0
     pair.area = 0.0
+
+
+@kernel
+def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
+    """Once a frame, where the user gave none: each pair's stiffness follows the load that its bodies carry.
+
+    Nobody carries more than what pushes everybody, together, but for who hangs in a joint or lies on a kinematic body:
+    those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
+    """
+    most = 0.0
+    lined_up = tables.counters[LIVE] == tables.counters[BODIES]
+    for k in range(tables.counters[BODIES]):
+        body = tables.bodies[tables.live[k] if lined_up else k]
+        body.load = 0.0 if body.inverse_mass > 0.0 else math.inf
+        if body.stamp == frame and body.inverse_mass > 0.0:
+            most += max(law.gravity, body.thrust / dt) / body.inverse_mass
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        load = bear(pair, dt, _most(a, b, most))
+        a.load = max(a.load, load)
+        b.load = max(b.load, load)
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i]]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        carry(pair, min(a.load, b.load), dt, _most(a, b, most))
+
+
+@kernel(forceinline=True)
+def _most(a: Any, b: Any, most: float) -> float:
+    """The most that a contact of two bodies may bear, where nobody who is free bears more than `most` (force)."""
+    return math.inf if a.kind == LED or b.kind == LED or a.calm < 0 or b.calm < 0 else most

@@ -41,6 +41,7 @@ BODY = record(
         ("gain_y", "f8"),
         ("gain_w", "f8"),
         ("thrust", "f8"),  # how much that changed its velocity, whoever did it: the user's functions too
+        ("load", "f8"),  # the largest that a contact of its bears (force)
         ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
@@ -48,6 +49,7 @@ BODY = record(
         ("came_vy", "f8"),
         ("came_w", "f8"),
         ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
+        ("free", "i4"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
