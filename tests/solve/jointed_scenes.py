@@ -45,7 +45,7 @@ def _walls(draw: random.Random, space: pymunk.Space) -> None:
             space.add(pymunk.Segment(ground, (x1, y1), (x2, y2), radius))
             continue
         across = 1 if x1 == x2 else 0
-        out = WALL if x1 > 0 and across or y1 > 0 and not across else -WALL
+        out = WALL if x1 + y1 > 0 else -WALL
         dx, dy = (out, 0) if across else (0, out)
         low, high = (-WALL, HEIGHT + WALL) if across else (-WALL, WIDTH + WALL)
         ends = [(x1, low), (x1, high)] if across else [(low, y1), (high, y1)]
@@ -61,7 +61,9 @@ def _shapes(draw: random.Random, body: pymunk.Body, size: float) -> list[pymunk.
     kind = draw.randrange(5)
     half = size / 2
     if kind == 0:
-        return [pymunk.Poly.create_box(body, (size, size * draw.uniform(0.3, 1)), radius=draw.choice((0, 0, 1)))]
+        return [
+            pymunk.Poly.create_box(body, (size, size * draw.uniform(0.3, 1)), radius=draw.choice((0, 0, 1)))
+        ]
     if kind == 1:
         return [pymunk.Circle(body, half)]
     if kind == 2:
@@ -116,7 +118,9 @@ def _joint(draw: random.Random, a: pymunk.Body, b: pymunk.Body) -> pymunk.Constr
     elif kind == 3:
         joint = pymunk.GrooveJoint(a, b, (-30, 0), (30, draw.uniform(-20, 20)), to)
     elif kind == 4:
-        joint = pymunk.DampedSpring(a, b, at, to, fits * apart, 10 ** draw.uniform(1, 4), 10 ** draw.uniform(-1, 2))
+        joint = pymunk.DampedSpring(
+            a, b, at, to, fits * apart, 10 ** draw.uniform(1, 4), 10 ** draw.uniform(-1, 2)
+        )
     elif kind == 5:
         joint = pymunk.DampedRotarySpring(
             a, b, draw.uniform(-1, 1), 10 ** draw.uniform(3, 6), 10 ** draw.uniform(1, 4)
@@ -216,7 +220,7 @@ def jointed(seed: int) -> Scene:
 
 @dataclass(frozen=True)
 class Seen:
-    """What a run showed: the fastest body's speed (px/s), its number and the frame; how many were out; finite or not."""
+    """A run: the fastest body's speed (px/s), its number and the frame; how many were out; finite or not."""
 
     fastest: float
     who: int
