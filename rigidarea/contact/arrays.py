@@ -35,6 +35,9 @@ from ..kernel.tables import (
 )
 from ..store import JOINT, STATE, enter_bodies
 
+#: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
+JOINTS = 8
+
 
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
@@ -62,7 +65,7 @@ class Store:
             np.zeros(16, MOBILITY),
             np.zeros(16, np.int32),
             np.zeros(0, np.int32),
-            np.zeros((4, 2), np.int32),
+            np.zeros((JOINTS, 2), np.int32),
             np.zeros(0, np.int32),
             np.full(64, -1, np.int64),
             np.zeros(64, np.int32),
@@ -72,7 +75,7 @@ class Store:
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
-        self.joints = np.zeros(8, JOINT)
+        self.joints = np.zeros(JOINTS, JOINT)
         self._kept: dict[str, np.ndarray] = {}
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._free: list[int] = []  # rows of shapes that are gone

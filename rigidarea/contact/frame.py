@@ -50,9 +50,11 @@ from ..kernel.solve import (
     join,
     kick,
     kinetic,
+    lessen,
     pace,
     respond_explicitly,
     sweep,
+    usable,
     warm_start,
 )
 from ..kernel.stiffness import adapt_stiffness
@@ -80,6 +82,7 @@ from .joints import (
     add_impulse,
     give_back,
     hide,
+    is_spring,
     joints_of,
     keep_impulse,
     restore_impulse,
@@ -284,7 +287,20 @@ def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
             if n > 0:
                 scale_impulse(joint, 1.0 / n)
             _joint(s, tables, joint, PRE_STEP, h)
-    _joints(s, tables, APPLY_CACHED, 1.0)
+
+
+@kernel
+def _lessen_joints(s: Any, tables: Tables, h: float) -> None:
+    """Of what joints begin with, only what is usable."""
+    for joint in joints_of(s):
+        if joint.mine and not is_spring(s, joint):
+            part = 1.0
+            for i in (joint.a, joint.b):
+                if i >= 0:
+                    part = min(part, usable(tables.bodies[i], h))
+            if part < 1.0:
+                _joint(s, tables, joint, APPLY_CACHED, part - 1.0)
+                scale_impulse(joint, part)
 
 
 @kernel
@@ -367,6 +383,11 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
+    if jointed:
+        _joints(s, tables, APPLY_CACHED, 1.0)
+    lessen(tables, h)
+    if jointed:
+        _lessen_joints(s, tables, h)
     searches = whole // SEARCH_SWEEPS
     sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):

@@ -204,6 +204,13 @@ def scale_impulse(joint: Any, factor: float) -> None:
             impulse[i] *= factor
 
 
+@kernel(forceinline=True)
+def is_spring(s: Any, joint: Any) -> bool:
+    """Whether a joint begins with no impulse of the substep before: a spring's force is given."""
+    kinds = array_at(s.springs_at, (6,), np.uint64)
+    return bool(joint.kind == kinds[0] or joint.kind == kinds[3])
+
+
 @kernel
 def keep_impulse(joint: Any) -> None:
     """Take down what the joint starts from."""

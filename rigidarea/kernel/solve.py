@@ -14,7 +14,7 @@ import numpy as np
 
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import LEFT, LOOK, MOVED, STRAIGHT_WAY
+from .constants import HIT, LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
@@ -387,6 +387,35 @@ def warm_start(tables: Tables) -> None:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         push(row, tables.bodies[row.a], tables.bodies[row.b], row.l1, row.l2, row.lt)
+
+
+@kernel(forceinline=True)
+def usable(body: Any, h: float) -> float:
+    """Which part of what a body begins a substep with moves it by no more than HIT of itself, the kick counted in.
+
+    What balances kicks, and itself, is usable; what has borne against something that has come off since would shoot
+    the body.
+    """
+    way = abs(body.vx - body.came_vx + body.kick_x) + abs(body.vy - body.came_vy + body.kick_y)
+    way += abs(body.w - body.came_w + body.kick_w) * body.extent
+    most = HIT * body.extent
+    return float(most / (h * way)) if body.mobile and h * way > most > 0.0 else 1.0
+
+
+@kernel
+def lessen(tables: Tables, h: float) -> None:
+    """Of what rows begin with, only what is usable."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        part = min(usable(a, h), usable(b, h))
+        if part < 1.0:
+            d1, d2, dt = (part - 1.0) * row.l1, (part - 1.0) * row.l2, (part - 1.0) * row.lt
+            row.l1 += d1
+            row.l2 += d2
+            row.lt += dt
+            push(row, a, b, d1, d2, dt)
 
 
 @kernel
