@@ -17,9 +17,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.blows import blows, calm_bounces
-from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, MOST_SUBSTEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
+from ..kernel.constants import MOST_SUBSTEPS
 from ..kernel.islands import (
     FINEST,
     company,
@@ -27,35 +25,20 @@ from ..kernel.islands import (
     demand,
     everybody,
     next_turn,
-    note,
     number,
     part,
     share_kicks,
     spare,
 )
 from ..kernel.jit import callback, kernel
-from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.meet import DONE
 from ..kernel.memory import array_at
 from ..kernel.passed import return_what_passed
 from ..kernel.place import place
-from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
-    common,
-    drift,
-    find_near,
     finish,
     finite,
-    gather,
-    held_back,
-    join,
-    kick,
-    kinetic,
-    lessen,
-    pace,
     respond_explicitly,
-    sweep,
-    usable,
-    warm_start,
 )
 from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
@@ -75,25 +58,17 @@ from ..kernel.tables import (
 )
 from ..kernel.verdict import wait_for_verdicts
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
+from .jointed import write_motion, write_place
 from .joints import (
-    APPLY,
-    APPLY_CACHED,
-    PRE_STEP,
-    add_impulse,
     give_back,
     hide,
-    is_spring,
     joints_of,
     keep_impulse,
     restore_impulse,
-    run,
-    scale_impulse,
 )
 from .record import (
     BROKEN,
     MORE_KEPT,
-    MORE_PAIRS,
-    MORE_REGIONS,
     MORE_WORK,
     ask,
     begin,
@@ -107,6 +82,7 @@ from .record import (
     user_data,
     words,
 )
+from .substep import find_contacts, near_pairs, substeps
 
 _cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
 _step = function("cpSpaceStep", types.void(types.uintp, types.float64))
@@ -193,158 +169,6 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
     return bool(s.broken < 0)
 
 
-@kernel(forceinline=True)
-def write_place(s: Any, body: Any) -> None:
-    """Put a body where the solve has taken it."""
-    p = floats(body.address + s.body_position, 2)
-    p[0] = body.x
-    p[1] = body.y
-    floats(body.address + s.body_angle, 1)[0] = body.angle
-    t = floats(body.address + s.body_transform, 6)
-    t[0] = body.c
-    t[1] = body.s
-    t[2] = -body.s
-    t[3] = body.c
-    t[4] = body.ox
-    t[5] = body.oy
-
-
-@kernel(forceinline=True)
-def write_motion(s: Any, body: Any) -> None:
-    """Give it its velocity."""
-    v = floats(body.address + s.body_velocity, 2)
-    v[0] = body.vx
-    v[1] = body.vy
-    floats(body.address + s.body_spin, 1)[0] = body.w
-
-
-@kernel(forceinline=True)
-def _read_velocity(s: Any, body: Any) -> None:
-    v = floats(body.address + s.body_velocity, 2)
-    body.vx = v[0]
-    body.vy = v[1]
-    body.w = floats(body.address + s.body_spin, 1)[0]
-
-
-@kernel
-def _joint(s: Any, tables: Tables, joint: Any, which: int, x: float) -> None:
-    """One function of one joint, on the velocities of the solve."""
-    if joint.a >= 0:
-        write_motion(s, tables.bodies[joint.a])
-    if joint.b >= 0:
-        write_motion(s, tables.bodies[joint.b])
-    run(joint, which, x)
-    if joint.a >= 0:
-        _read_velocity(s, tables.bodies[joint.a])
-    if joint.b >= 0:
-        _read_velocity(s, tables.bodies[joint.b])
-
-
-@kernel
-def _joints(s: Any, tables: Tables, which: int, x: float) -> None:
-    for joint in joints_of(s):
-        if joint.mine:
-            _joint(s, tables, joint, which, x)
-
-
-@kernel(forceinline=True)
-def _substeps_of(tables: Tables, joint: Any) -> int:
-    """The substeps in which a joint is solved: those of what it moves."""
-    n = 0
-    for i in (joint.a, joint.b):
-        if i >= 0:
-            n = max(n, tables.bodies[i].steps)
-    return int(n)
-
-
-@kernel
-def _own_joints(s: Any, tables: Tables) -> int:
-    """Which joints belong to the present turn: how many."""
-    turn = tables.counters[TURN]
-    count = 0
-    for joint in joints_of(s):
-        joint.mine = 0
-        if joint.taken and (turn == 0 or _substeps_of(tables, joint) == turn):
-            joint.mine = 1
-            count += 1
-    return count
-
-
-@kernel
-def _start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
-    """The joints as they are where the bodies are now, and what they did last.
-
-    n: in the first of n substeps; 0: in another. What they did in the last frame is kept as its sum.
-    """
-    for joint in joints_of(s):
-        if joint.mine:
-            if joint.a >= 0:
-                write_place(s, tables.bodies[joint.a])
-            if joint.b >= 0:
-                write_place(s, tables.bodies[joint.b])
-    for joint in joints_of(s):
-        if joint.mine:
-            if n > 0:
-                scale_impulse(joint, 1.0 / n)
-            _joint(s, tables, joint, PRE_STEP, h)
-
-
-@kernel
-def _lessen_joints(s: Any, tables: Tables, h: float) -> None:
-    """Of what joints begin with, only what is usable."""
-    for joint in joints_of(s):
-        if joint.mine and not is_spring(s, joint):
-            part = 1.0
-            for i in (joint.a, joint.b):
-                if i >= 0:
-                    part = min(part, usable(tables.bodies[i], h))
-            if part < 1.0:
-                _joint(s, tables, joint, APPLY_CACHED, part - 1.0)
-                scale_impulse(joint, part)
-
-
-@kernel
-def _find_near(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near. Whether there was memory for them."""
-    g = floats(space + s.space_gravity, 2)
-    while find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1]) != DONE:
-        if not ask(s, MORE_PAIRS):
-            return False
-    return True
-
-
-@kernel
-def _contacts(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
-    if not _find_near(s, space, h, time):
-        return False
-    load_tables(s).counters[SUBSTEP] += 1
-    load_tables(s).counters[ROWS] = 0
-    start = 0
-    while True:
-        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
-        if status == DONE:
-            return True
-        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
-            return False
-
-
-@kernel
-def _join(s: Any, h: float, first: bool) -> int:
-    """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
-    start = 0
-    total = 0
-    while True:
-        status, start, joined = join(
-            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start, first
-        )
-        total += joined
-        if status == DONE:
-            return total
-        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
-            return -1
-
-
 @kernel
 def _everybody(s: Any, space: int) -> None:
     """All bodies go through the substeps together."""
@@ -359,119 +183,12 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
         return False
     _everybody(s, space)
     share_kicks(load_tables(s), 1)
-    if not _contacts(s, space, dt, dt):
+    if not find_contacts(s, space, dt, dt):
         return False
     tables = load_tables(s)
     s.contacts = tables.counters[ROWS]
     respond_explicitly(tables)
     finish(tables, load_law(s), s.frame, dt, True)
-    return True
-
-
-@kernel
-def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
-    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was memory for it.
-
-    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
-    """
-    if _join(s, h, True) < 0:  # before the warm start: what that adds is no speed at which anybody comes
-        return False
-    tables = load_tables(s)
-    if tables.counters[ROWS] == 0 and not jointed:
-        return True  # nothing that could change a velocity
-    mass, x, y = common(tables)
-    energy = kinetic(tables, x, y)
-    small = pace(load_law(s), mass, energy, h)
-    warm_start(tables)
-    if jointed:
-        _joints(s, tables, APPLY_CACHED, 1.0)
-    lessen(tables, h)
-    if jointed:
-        _lessen_joints(s, tables, h)
-    searches = whole // SEARCH_SWEEPS
-    sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
-    for more in range(1 + MORE_SWEEPS):
-        look = 1 if more == 0 else 0
-        wait = 1
-        moved = 0.0
-        for k in range(sweeps):
-            if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h, False)
-                if joined < 0:
-                    return False
-                wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
-                look += wait
-                tables = load_tables(s)
-            moved = sweep(tables, k % 2 == 0)
-            if jointed:
-                _joints(s, tables, APPLY, h)
-            elif k > 0 and moved <= SETTLED * small:
-                return True
-            if k == 0:
-                search_together(tables, searches)
-                if moved > small and blows(tables, load_law(s), h):
-                    search_together(tables, searches)
-        gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
-        if moved <= small and not gained:
-            break
-        if gained:
-            calm_bounces(tables)
-    return True
-
-
-@kernel(forceinline=True)
-def _relaxing(sweeps: int) -> int:
-    """How many sweeps of a substep come after positions are settled."""
-    return (sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
-
-
-@kernel
-def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
-    """Bodies are moved by what takes overlaps apart, and go on without that speed."""
-    if not begin_to_relax(tables):
-        return
-    mass, x, y = common(tables)
-    small = pace(load_law(s), mass, kinetic(tables, x, y), h)
-    for k in range(whole):
-        moved = sweep(tables, k % 2 == 0)
-        if jointed:
-            _joints(s, tables, APPLY, h)
-        if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
-            break
-    end_relaxing(tables, h)
-
-
-@kernel
-def _substeps(s: Any, space: int, dt: float, n: int) -> bool:
-    """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
-    h = dt / n
-    tables = load_tables(s)
-    joints = _own_joints(s, tables)
-    sweeps = s.sweeps
-    if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
-        sweeps *= max(1, s.substeps // n)
-    share_kicks(tables, n)
-    for i in range(n):
-        drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
-        kick(load_tables(s), s.frame)
-        if not _contacts(s, space, h, dt - i * h):
-            return False
-        tables = load_tables(s)
-        if joints > 0:
-            _start_joints(s, tables, h, n if i == 0 else 0)
-        if not _solve(s, h, sweeps, joints > 0):
-            return False
-        tables = load_tables(s)
-        _relax(s, tables, h, sweeps, joints > 0)
-        if joints > 0:
-            for joint in joints_of(s):
-                if joint.mine:
-                    add_impulse(joint)
-        finish(tables, load_law(s), s.frame, h, i == n - 1)
-    tables = load_tables(s)
-    drift(tables, s.frame, 0.5 * h)
-    note(tables, n)
-    s.contacts += tables.counters[ROWS]
     return True
 
 
@@ -536,7 +253,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
     """
     g = floats(space + s.space_gravity, 2)
     load_tables(s).counters[TURN] = 0
-    if not _find_near(s, space, dt, dt):
+    if not near_pairs(s, space, dt, dt):
         return 0
     tables = load_tables(s)
     if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
@@ -554,14 +271,14 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
     taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
-        return int(taken) if _substeps(s, space, dt, taken) else 0
+        return int(taken) if substeps(s, space, dt, taken) else 0
     most = max(turn, s.substeps)
     if not _keep(s):
         return 0
     last = load_tables(s).counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
     while turn > 0:
         load_tables(s).counters[SUBSTEP] = last - turn
-        if not _substeps(s, space, dt, turn):
+        if not substeps(s, space, dt, turn):
             return 0
         turn = next_turn(load_tables(s), turn, g[0], g[1])
     if load_tables(s).counters[MET] and _again(
@@ -569,7 +286,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
     ):  # (where tables have grown, the next frame finds what has met)
         s.contacts = 0
         _everybody(s, space)
-        if not _substeps(s, space, dt, most):
+        if not substeps(s, space, dt, most):
             return 0
         taken = most
     return int(taken)
@@ -603,7 +320,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         tables.counters[ANEW] and tables.counters[TOOTHED] > 0
     ):  # teeth ask for substeps before the first one looks
         tables.counters[TURN] = 0
-        if not _find_near(s, space, dt, dt):
+        if not near_pairs(s, space, dt, dt):
             return False
     n = demand(load_pool(s), load_tables(s), load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     tables = load_tables(s)
@@ -614,7 +331,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
         _everybody(s, space)
-        if not _keep(s) or not _substeps(s, space, dt, n):
+        if not _keep(s) or not substeps(s, space, dt, n):
             return False
         while 2 * n <= MOST_SUBSTEPS:
             _see(s)
@@ -622,7 +339,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 break
             n *= 2
             s.contacts = 0
-            if not _substeps(s, space, dt, n):
+            if not substeps(s, space, dt, n):
                 return False
             if _difference(s) <= s.tolerance:
                 break
@@ -630,7 +347,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         n = _turns(s, space, dt, n)
     else:
         _everybody(s, space)
-        if not _substeps(s, space, dt, n):
+        if not substeps(s, space, dt, n):
             return False
     if n == 0 or not _wait_for_verdicts(s, dt):
         return False

@@ -1,0 +1,182 @@
+"""The substeps of a frame: drift, kick, overlap, rows, sweeps, relaxing, drift; contacts and joints together."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..kernel.blows import blows, calm_bounces
+from ..kernel.conjugate import search_together
+from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
+from ..kernel.islands import note, share_kicks
+from ..kernel.jit import kernel
+from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.relax import begin_to_relax, end_relaxing
+from ..kernel.solve import (
+    common,
+    drift,
+    find_near,
+    finish,
+    gather,
+    held_back,
+    join,
+    kick,
+    kinetic,
+    lessen,
+    pace,
+    sweep,
+    warm_start,
+)
+from ..kernel.tables import ROWS, SUBSTEP, Tables
+from ..store import load_law, load_pool, load_tables, load_work
+from .jointed import lessen_joints, own_joints, run_joints, start_joints
+from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
+from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats
+
+
+@kernel
+def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
+    """Find the pairs that are near. Whether there was memory for them."""
+    g = floats(space + s.space_gravity, 2)
+    while find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1]) != DONE:
+        if not ask(s, MORE_PAIRS):
+            return False
+    return True
+
+
+@kernel
+def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
+    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
+    if not near_pairs(s, space, h, time):
+        return False
+    load_tables(s).counters[SUBSTEP] += 1
+    load_tables(s).counters[ROWS] = 0
+    start = 0
+    while True:
+        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
+        if status == DONE:
+            return True
+        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
+            return False
+
+
+@kernel
+def _join(s: Any, h: float, first: bool) -> int:
+    """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
+    start = 0
+    total = 0
+    while True:
+        status, start, joined = join(
+            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start, first
+        )
+        total += joined
+        if status == DONE:
+            return total
+        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
+            return -1
+
+
+@kernel
+def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
+    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was memory for it.
+
+    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
+    """
+    if _join(s, h, True) < 0:  # before the warm start: what that adds is no speed at which anybody comes
+        return False
+    tables = load_tables(s)
+    if tables.counters[ROWS] == 0 and not jointed:
+        return True  # nothing that could change a velocity
+    mass, x, y = common(tables)
+    energy = kinetic(tables, x, y)
+    small = pace(load_law(s), mass, energy, h)
+    warm_start(tables)
+    if jointed:
+        run_joints(s, tables, APPLY_CACHED, 1.0)
+    lessen(tables, h)
+    if jointed:
+        lessen_joints(s, tables, h)
+    searches = whole // SEARCH_SWEEPS
+    sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
+    for more in range(1 + MORE_SWEEPS):
+        look = 1 if more == 0 else 0
+        wait = 1
+        moved = 0.0
+        for k in range(sweeps):
+            if k == look:  # less and less often, as long as nobody joins
+                joined = _join(s, h, False)
+                if joined < 0:
+                    return False
+                wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
+                look += wait
+                tables = load_tables(s)
+            moved = sweep(tables, k % 2 == 0)
+            if jointed:
+                run_joints(s, tables, APPLY, h)
+            elif k > 0 and moved <= SETTLED * small:
+                return True
+            if k == 0:
+                search_together(tables, searches)
+                if moved > small and blows(tables, load_law(s), h):
+                    search_together(tables, searches)
+        gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
+        if moved <= small and not gained:
+            break
+        if gained:
+            calm_bounces(tables)
+    return True
+
+
+@kernel(forceinline=True)
+def _relaxing(sweeps: int) -> int:
+    """How many sweeps of a substep come after positions are settled."""
+    return (sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
+
+
+@kernel
+def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
+    """Bodies are moved by what takes overlaps apart, and go on without that speed."""
+    if not begin_to_relax(tables):
+        return
+    mass, x, y = common(tables)
+    small = pace(load_law(s), mass, kinetic(tables, x, y), h)
+    for k in range(whole):
+        moved = sweep(tables, k % 2 == 0)
+        if jointed:
+            run_joints(s, tables, APPLY, h)
+        if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
+            break
+    end_relaxing(tables, h)
+
+
+@kernel
+def substeps(s: Any, space: int, dt: float, n: int) -> bool:
+    """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
+    h = dt / n
+    tables = load_tables(s)
+    joints = own_joints(s, tables)
+    sweeps = s.sweeps
+    if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
+        sweeps *= max(1, s.substeps // n)
+    share_kicks(tables, n)
+    for i in range(n):
+        drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
+        kick(load_tables(s), s.frame)
+        if not find_contacts(s, space, h, dt - i * h):
+            return False
+        tables = load_tables(s)
+        if joints > 0:
+            start_joints(s, tables, h, n if i == 0 else 0)
+        if not _solve(s, h, sweeps, joints > 0):
+            return False
+        tables = load_tables(s)
+        _relax(s, tables, h, sweeps, joints > 0)
+        if joints > 0:
+            for joint in joints_of(s):
+                if joint.mine:
+                    add_impulse(joint)
+        finish(tables, load_law(s), s.frame, h, i == n - 1)
+    tables = load_tables(s)
+    drift(tables, s.frame, 0.5 * h)
+    note(tables, n)
+    s.contacts += tables.counters[ROWS]
+    return True
