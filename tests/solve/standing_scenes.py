@@ -18,9 +18,9 @@ def ladder_limit(slope):
     return 1 / (2 * math.tan(slope))
 
 
-def ladder(share, engine=ENGINE, slope=LADDER, length=2.0, thick=0.1, iterations=None):
+def ladder(share, engine=ENGINE, slope=LADDER, length=2.0, thick=0.1, iterations=None, **settings):
     """A rhombus of 1 kg whose tips touch floor and wall, at `share` of the friction limit."""
-    world = World(G, friction=share * ladder_limit(slope), engine=engine, iterations=iterations)
+    world = World(G, friction=share * ladder_limit(slope), engine=engine, iterations=iterations, **settings)
     world.floor()
     wall = world.block(-1.0, -1.0, 0.0, 5.0)
     wall.friction = 0.0
@@ -140,14 +140,14 @@ def overhang_stiffness(share, count=5, height=0.2):
 # --- cards ---
 
 
-def card_house(storeys=3, slope=CARD, engine=ENGINE, friction=0.8, iterations=None):
+def card_house(storeys=3, slope=CARD, engine=ENGINE, friction=0.8, iterations=None, **settings):
     """Tents of two cards each, `storeys` of them side by side at the bottom, flat cards between storeys.
 
     A card is 0.02 x 1. Tents: the upper corners touch; feet stand on the floor, or on the flat cards over the tops
     below. The most friction wanted is that of a card under no load but its own at its foot, tan(slope)/2, up to
     tan(slope) = 0.36 where all its load comes from above.
     """
-    world = World(G, friction=friction, engine=engine, iterations=iterations)
+    world = World(G, friction=friction, engine=engine, iterations=iterations, **settings)
     world.floor()
     length, thick, mass = 1.0, 0.02, 1.0
     half_x = (thick * math.cos(slope) + length * math.sin(slope)) / 2

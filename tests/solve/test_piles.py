@@ -40,9 +40,9 @@ def pit(kind, count, seed=0, engine=ENGINE, friction=0.5, iterations=None):
     return world
 
 
-def pyramid(rows, engine=ENGINE, friction=0.5, side=1.0, gravity=10.0, iterations=None):
+def pyramid(rows, engine=ENGINE, friction=0.5, side=1.0, gravity=10.0, iterations=None, **settings):
     """rows (rows + 1)/2 boxes, each on two, a tenth of a side between neighbours."""
-    world = World(gravity, friction=friction, engine=engine, iterations=iterations)
+    world = World(gravity, friction=friction, engine=engine, iterations=iterations, **settings)
     world.floor(half=1000.0 * side)
     for row in range(rows):
         for i in range(rows - row):
