@@ -7,6 +7,7 @@ are not put back.
 
 from __future__ import annotations
 
+import gc
 import random
 import runpy
 import sys
@@ -93,6 +94,7 @@ class Host:
             raise FileNotFoundError(f"there is no file {str(target)!r}")
         self._install()
         before = sys.argv, sys.path[:]
+        gc.collect()  # our garbage is not to bring on its first collection: some count on a late one
         sys.argv = [str(target), *arguments]
         try:
             if is_file:
