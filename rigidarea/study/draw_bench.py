@@ -55,23 +55,14 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
         return []
     figure, ax = plt.subplots(figsize=(10, 1.6 + 0.34 * len(rows)), layout="constrained")
     kinds = (
-        ("frame_ms_median", "rigidarea-default", "rigidarea, the default"),
-        ("native_1_ms", "pymunk", "pymunk, one step a frame"),
-        ("native_4_ms", "pymunk", "pymunk, four"),
-        ("box2d_ms", "box2d", "Box2D v3, four substeps"),
+        ("frame_ms_median", "rigidarea-default", "rigidarea, the default", {"ms": 11, "zorder": 3}),
+        ("native_1_ms", "pymunk", "pymunk, one step a frame", {"ms": 8}),
+        ("native_4_ms", "pymunk", "pymunk, four", {"ms": 8, "mfc": "white"}),
+        ("box2d_ms", "box2d", "Box2D v3, four substeps", {"ms": 8}),
     )
-    for key, peer, label in kinds:
+    for key, peer, label, look in kinds:
         found = [(row[key] / row["native_1_ms"], y) for y, row in enumerate(rows) if row[key]]
-        look = (
-            {"mfc": "white"}
-            if key == "native_4_ms"
-            else {"zorder": 3, "ms": 11}
-            if key == kinds[0][0]
-            else {}
-        )
-        ax.plot(
-            *zip(*found), ls="", label=label, marker=marker(peer), color=colour(peer), **{"ms": 8, **look}
-        )
+        ax.plot(*zip(*found), ls="", marker=marker(peer), color=colour(peer), label=label, **look)
     for y, row in enumerate(rows):
         ax.text(
             1.01,
