@@ -253,3 +253,19 @@ def test_a_bar_that_friction_turns_round_gains_no_energy(angle, mu):
             before = world.kinetic()
             world.step(None, frames=60)
             assert world.kinetic() <= 1.01 * before
+
+
+@pytest.mark.parametrize("steps", [1, None])
+def test_a_bar_that_hits_a_free_box_gains_no_energy(steps):
+    """The same between two free bodies, in pixels."""
+    most = 0.0
+    for angle in (0.3, 0.5, 0.7, 0.9):
+        for slide in (0.0, 90.0, 180.0):
+            for mu in (0.3, 0.6, 1.0):
+                world = World(friction=mu, elasticity=1.0)
+                world.box((0, 0), (60, 60), mass=2.0)
+                world.box((0, 60), (60, 4), angle=angle, velocity=(slide, -300.0))
+                before = world.kinetic()
+                world.step(steps, frames=60)
+                most = max(most, world.kinetic() / before)
+    assert most <= 1.01
