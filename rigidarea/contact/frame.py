@@ -229,7 +229,7 @@ def _difference(s: Any) -> float:
             seen = floats(s.seen_at + 24 * i, 3)
             dx = body.x - seen[0]
             dy = body.y - seen[1]
-            most = max(most, (dx * dx + dy * dy) ** 0.5 / body.extent + abs(body.angle - seen[2]))
+            most = max(most, math.sqrt(dx * dx + dy * dy) / body.extent + abs(body.angle - seen[2]))
     return most
 
 

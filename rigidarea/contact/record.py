@@ -18,7 +18,7 @@ from ..chipmunk import function
 from ..kernel.broad import extents
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
-from ..kernel.place import place
+from ..kernel.place import place, shift
 from ..kernel.tables import (
     ANEW,
     BODIES,
@@ -110,12 +110,17 @@ def read_place(s: Any, address: int, body: Any) -> None:
     """Where a body is."""
     p = floats(address + s.body_position, 2)
     cog = floats(address + s.body_cog, 2)
+    angle = floats(address + s.body_angle, 1)[0]
+    turned = angle != body.angle or (body.c == 0.0 and body.s == 0.0)
     body.x = p[0]
     body.y = p[1]
-    body.angle = floats(address + s.body_angle, 1)[0]
+    body.angle = angle
     body.cog_x = cog[0]
     body.cog_y = cog[1]
-    place(body)
+    if turned:
+        place(body)
+    else:
+        shift(body)
 
 
 @kernel(forceinline=True)
@@ -209,7 +214,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     """The first thing in a frame: everything as it is. Whether it could be taken down."""
     s.frame = np.int64(timestamp(space))
     g = floats(space + s.space_gravity, 2)
-    s.gravity = (g[0] * g[0] + g[1] * g[1]) ** 0.5
+    s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
     s.broken = -1
     hook = words(s.global_handler + s.handler_pre_solve, 1)

@@ -26,7 +26,7 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
-from ..kernel.tables import ROWS, SUBSTEP, Tables
+from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, Tables
 from ..store import load_law, load_pool, load_tables, load_work
 from .jointed import lessen_joints, own_joints, run_joints, start_joints
 from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
@@ -50,6 +50,7 @@ def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
         return False
     load_tables(s).counters[SUBSTEP] += 1
     load_tables(s).counters[ROWS] = 0
+    load_tables(s).counters[BOUNCES] = 0
     start = 0
     while True:
         status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
@@ -113,16 +114,19 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
             if jointed:
                 run_joints(s, tables, APPLY, h)
             elif k > 0 and moved <= SETTLED * small:
-                return True
+                if tables.counters[BOUNCES] == 0:
+                    return True
+                break
             if k == 0:
-                search_together(tables, searches)
+                search_together(tables, min(1, searches), False)
                 if moved > small and blows(tables, load_law(s), h):
-                    search_together(tables, searches)
+                    search_together(tables, searches, False)
+            elif k == 1:
+                search_together(tables, searches - 1, True)
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
-        if moved <= small and not gained:
+        less = gained and tables.counters[BOUNCES] > 0 and calm_bounces(tables)
+        if (not gained and moved <= small) or (not less and moved <= SETTLED * small):
             break
-        if gained:
-            calm_bounces(tables)
     return True
 
 

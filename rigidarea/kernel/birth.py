@@ -130,16 +130,14 @@ def hit(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     Or so fast that it bounces, where a bounce is what was before.
     """
     u = closing(r, a, b, 1.0)
-    if u > 0.0 and _bounced(law, pair, r):
-        stiffness = region_stiffness(law, r.stiffness, r.chord)
-        if u > _slow(law, (closing(r, a, b, 0.0) - u) / h, stiffness * inverse_mass(r, a, b), h):
-            return True
-    if law.followed == math.inf or u * h <= max(r.depth, HIT * min(size_of(a), size_of(b))):
+    pushed = abs(closing(r, a, b, 0.0) - u) / h
+    if u <= REST_KICKS * max(law.gravity, pushed) * h:  # in a stack both fall alike: gravity counts
         return False
-    pushed = max(
-        law.gravity, abs(closing(r, a, b, 0.0) - u) / h
-    )  # in a stack both fall alike: gravity counts
-    return bool(u > REST_KICKS * pushed * h)
+    if _bounced(law, pair, r):
+        stiffness = region_stiffness(law, r.stiffness, r.chord)
+        if u > _slow(law, pushed, stiffness * inverse_mass(r, a, b), h):
+            return True
+    return bool(law.followed < math.inf and u * h > max(r.depth, HIT * min(size_of(a), size_of(b))))
 
 
 @kernel(forceinline=True)

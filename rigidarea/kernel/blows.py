@@ -61,15 +61,16 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
 
 
 @kernel
-def _give_back_less(row: Any, r: Any, a: Any, b: Any) -> None:
-    """A bounce that has added energy is to leave more slowly: friction that turned the slip round had work to give.
+def _give_back_less(row: Any, r: Any, a: Any, b: Any) -> bool:
+    """Whether a bounce has added energy: it is to leave more slowly then.
 
-    Newton's restitution does not know that (T. R. Kane, "A dynamics puzzle", Stanford Mechanics Alumni Club Newsletter,
-    1984). The work is -l (v + v')/2 at each end, and of friction likewise; slower by d at the ends it is l d / 2 less.
+    Friction that has turned the slip round had work to give, of which Newton's restitution does not know (T. R. Kane,
+    "A dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984). The work is -l (v + v')/2 at each end, and of
+    friction likewise; slower by d at the ends it is l d / 2 less.
     """
     normal = row.l1 + row.l2
     if r.mode != STRUCK or normal == 0.0 or drives(a) or drives(b):
-        return
+        return False
     vx = a.vx + a.came_vx - b.vx - b.came_vx
     vy = a.vy + a.came_vy - b.vy - b.came_vy
     wa = a.w + a.came_w
@@ -78,14 +79,18 @@ def _give_back_less(row: Any, r: Any, a: Any, b: Any) -> None:
     slip = vy * row.nx - vx * row.ny + wa * row.lean_a - wb * row.lean_b
     turn = (wa - wb) * (row.l1 * row.e1 + row.l2 * row.e2)
     gain = -0.5 * (normal * v - turn + row.lt * slip)
-    if gain > 0.0:
-        row.t1 = max(row.t1, min(0.0, row.t1 + 2.0 * gain / normal))
-        row.t2 = max(row.t2, min(0.0, row.t2 + 2.0 * gain / normal))
+    if gain <= 0.0:
+        return False
+    row.t1 = max(row.t1, min(0.0, row.t1 + 2.0 * gain / normal))
+    row.t2 = max(row.t2, min(0.0, row.t2 + 2.0 * gain / normal))
+    return True
 
 
 @kernel
-def calm_bounces(tables: Tables) -> None:
-    """No bounce adds energy."""
+def calm_bounces(tables: Tables) -> bool:
+    """No bounce adds energy: whether one did."""
+    less = False
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        _give_back_less(row, tables.regions[row.region], tables.bodies[row.a], tables.bodies[row.b])
+        less |= _give_back_less(row, tables.regions[row.region], tables.bodies[row.a], tables.bodies[row.b])
+    return less

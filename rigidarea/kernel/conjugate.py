@@ -105,27 +105,40 @@ def _left(m: Any, x: float, y: float, w: float) -> tuple[float, float, float]:
     )
 
 
-@kernel
+@kernel(forceinline=True)
 def _take(
     m: Any, f: Any,
     x1: float, y1: float, w1: float, x2: float, y2: float, w2: float, xt: float, yt: float, wt: float,
 ) -> None:  # fmt: skip
     """Take from a body the mobility that a row with the given responses holds: M -= G D G^T."""
-    ax1 = f.d11 * x1 + f.d12 * x2 + f.d1t * xt
-    ax2 = f.d12 * x1 + f.d22 * x2 + f.d2t * xt
-    axt = f.d1t * x1 + f.d2t * x2 + f.dtt * xt
-    ay1 = f.d11 * y1 + f.d12 * y2 + f.d1t * yt
-    ay2 = f.d12 * y1 + f.d22 * y2 + f.d2t * yt
-    ayt = f.d1t * y1 + f.d2t * y2 + f.dtt * yt
-    aw1 = f.d11 * w1 + f.d12 * w2 + f.d1t * wt
-    aw2 = f.d12 * w1 + f.d22 * w2 + f.d2t * wt
-    awt = f.d1t * w1 + f.d2t * w2 + f.dtt * wt
-    m.mxx -= ax1 * x1 + ax2 * x2 + axt * xt
-    m.mxy -= ax1 * y1 + ax2 * y2 + axt * yt
-    m.myy -= ay1 * y1 + ay2 * y2 + ayt * yt
-    m.mxw -= ax1 * w1 + ax2 * w2 + axt * wt
-    m.myw -= ay1 * w1 + ay2 * w2 + ayt * wt
-    m.mww -= aw1 * w1 + aw2 * w2 + awt * wt
+    ax1 = f.d11 * x1 + f.d1t * xt
+    ay1 = f.d11 * y1 + f.d1t * yt
+    aw1 = f.d11 * w1 + f.d1t * wt
+    axt = f.d1t * x1 + f.dtt * xt
+    ayt = f.d1t * y1 + f.dtt * yt
+    awt = f.d1t * w1 + f.dtt * wt
+    if f.second:
+        ax1 += f.d12 * x2
+        ay1 += f.d12 * y2
+        aw1 += f.d12 * w2
+        axt += f.d2t * x2
+        ayt += f.d2t * y2
+        awt += f.d2t * w2
+        ax2 = f.d12 * x1 + f.d22 * x2 + f.d2t * xt
+        ay2 = f.d12 * y1 + f.d22 * y2 + f.d2t * yt
+        aw2 = f.d12 * w1 + f.d22 * w2 + f.d2t * wt
+        m.mxx -= ax2 * x2
+        m.mxy -= ax2 * y2
+        m.myy -= ay2 * y2
+        m.mxw -= ax2 * w2
+        m.myw -= ay2 * w2
+        m.mww -= aw2 * w2
+    m.mxx -= ax1 * x1 + axt * xt
+    m.mxy -= ax1 * y1 + axt * yt
+    m.myy -= ay1 * y1 + ayt * yt
+    m.mxw -= ax1 * w1 + axt * wt
+    m.myw -= ay1 * w1 + ayt * wt
+    m.mww -= aw1 * w1 + awt * wt
 
 
 @kernel
@@ -203,26 +216,30 @@ def take_part(tables: Tables) -> None:
         mb = tables.mobility[row.b]
         nx = row.nx
         ny = row.ny
-        wa1 = row.arm_a - row.e1
-        wa2 = row.arm_a - row.e2
-        wb1 = row.arm_b - row.e1
-        wb2 = row.arm_b - row.e2
-        f.ax1, f.ay1, f.aw1 = _left(ma, nx, ny, wa1)
-        f.ax2, f.ay2, f.aw2 = _left(ma, nx, ny, wa2)
+        wa = row.arm_a - row.e1
+        wb = row.arm_b - row.e1
+        f.ax1, f.ay1, f.aw1 = _left(ma, nx, ny, wa)
         f.axt, f.ayt, f.awt = _left(ma, -ny, nx, row.lean_a)
-        f.bx1, f.by1, f.bw1 = _left(mb, nx, ny, wb1)
-        f.bx2, f.by2, f.bw2 = _left(mb, nx, ny, wb2)
+        f.bx1, f.by1, f.bw1 = _left(mb, nx, ny, wb)
         f.bxt, f.byt, f.bwt = _left(mb, -ny, nx, row.lean_b)
-        x1 = f.ax1 + f.bx1
-        y1 = f.ay1 + f.by1
-        x2 = f.ax2 + f.bx2
-        y2 = f.ay2 + f.by2
-        s11 = nx * x1 + ny * y1 + wa1 * f.aw1 + wb1 * f.bw1
-        s12 = nx * x2 + ny * y2 + wa1 * f.aw2 + wb1 * f.bw2
-        s22 = nx * x2 + ny * y2 + wa2 * f.aw2 + wb2 * f.bw2
-        s1t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa1 * f.awt + wb1 * f.bwt
-        s2t = nx * (f.axt + f.bxt) + ny * (f.ayt + f.byt) + wa2 * f.awt + wb2 * f.bwt
-        stt = nx * (f.ayt + f.byt) - ny * (f.axt + f.bxt) + row.lean_a * f.awt + row.lean_b * f.bwt
+        xt = f.axt + f.bxt
+        yt = f.ayt + f.byt
+        s11 = nx * (f.ax1 + f.bx1) + ny * (f.ay1 + f.by1) + wa * f.aw1 + wb * f.bw1
+        s1t = nx * xt + ny * yt + wa * f.awt + wb * f.bwt
+        stt = nx * yt - ny * xt + row.lean_a * f.awt + row.lean_b * f.bwt
+        s12 = 0.0
+        s22 = 0.0
+        s2t = 0.0
+        if f.second:
+            va = row.arm_a - row.e2
+            vb = row.arm_b - row.e2
+            f.ax2, f.ay2, f.aw2 = _left(ma, nx, ny, va)
+            f.bx2, f.by2, f.bw2 = _left(mb, nx, ny, vb)
+            x2 = f.ax2 + f.bx2
+            y2 = f.ay2 + f.by2
+            s12 = nx * x2 + ny * y2 + wa * f.aw2 + wb * f.bw2
+            s22 = nx * x2 + ny * y2 + va * f.aw2 + vb * f.bw2
+            s2t = nx * xt + ny * yt + va * f.awt + vb * f.bwt
         _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e22, s2t, stt + f.et, LEAST_GIVE * row.weight)
         _take(ma, f, f.ax1, f.ay1, f.aw1, f.ax2, f.ay2, f.aw2, f.axt, f.ayt, f.awt)
         _take(mb, f, f.bx1, f.by1, f.bw1, f.bx2, f.by2, f.bw2, f.bxt, f.byt, f.bwt)
@@ -276,20 +293,30 @@ def _up(tables: Tables) -> None:
         v = ux * row.nx + uy * row.ny + (ma.w * row.arm_a - mb.w * row.arm_b)
         turn = ma.w - mb.w
         r1 = f.r1 - (v - turn * row.e1)
-        r2 = f.r2 - (v - turn * row.e2)
         rt = f.rt - (uy * row.nx - ux * row.ny + (ma.w * row.lean_a - mb.w * row.lean_b))
-        z1 = f.d11 * r1 + f.d12 * r2 + f.d1t * rt
-        z2 = f.d12 * r1 + f.d22 * r2 + f.d2t * rt
-        zt = f.d1t * r1 + f.d2t * r2 + f.dtt * rt
+        z1 = f.d11 * r1 + f.d1t * rt
+        zt = f.d1t * r1 + f.dtt * rt
+        f.z2 = 0.0
+        if f.second:
+            r2 = f.r2 - (v - turn * row.e2)
+            z2 = f.d12 * r1 + f.d22 * r2 + f.d2t * rt
+            z1 += f.d12 * r2
+            zt += f.d2t * r2
+            f.z2 = z2
+            ma.x += f.ax2 * z2
+            ma.y += f.ay2 * z2
+            ma.w += f.aw2 * z2
+            mb.x -= f.bx2 * z2
+            mb.y -= f.by2 * z2
+            mb.w -= f.bw2 * z2
         f.z1 = z1
-        f.z2 = z2
         f.zt = zt
-        ma.x += f.ax1 * z1 + f.ax2 * z2 + f.axt * zt
-        ma.y += f.ay1 * z1 + f.ay2 * z2 + f.ayt * zt
-        ma.w += f.aw1 * z1 + f.aw2 * z2 + f.awt * zt
-        mb.x -= f.bx1 * z1 + f.bx2 * z2 + f.bxt * zt
-        mb.y -= f.by1 * z1 + f.by2 * z2 + f.byt * zt
-        mb.w -= f.bw1 * z1 + f.bw2 * z2 + f.bwt * zt
+        ma.x += f.ax1 * z1 + f.axt * zt
+        ma.y += f.ay1 * z1 + f.ayt * zt
+        ma.w += f.aw1 * z1 + f.awt * zt
+        mb.x -= f.bx1 * z1 + f.bxt * zt
+        mb.y -= f.by1 * z1 + f.byt * zt
+        mb.w -= f.bw1 * z1 + f.bwt * zt
 
 
 @kernel
@@ -306,11 +333,14 @@ def _down(tables: Tables) -> float:
         ma = tables.mobility[row.a]
         mb = tables.mobility[row.b]
         g1 = f.ax1 * ma.x + f.ay1 * ma.y + f.aw1 * ma.w - (f.bx1 * mb.x + f.by1 * mb.y + f.bw1 * mb.w)
-        g2 = f.ax2 * ma.x + f.ay2 * ma.y + f.aw2 * ma.w - (f.bx2 * mb.x + f.by2 * mb.y + f.bw2 * mb.w)
         gt = f.axt * ma.x + f.ayt * ma.y + f.awt * ma.w - (f.bxt * mb.x + f.byt * mb.y + f.bwt * mb.w)
-        f.z1 -= f.d11 * g1 + f.d12 * g2 + f.d1t * gt
-        f.z2 -= f.d12 * g1 + f.d22 * g2 + f.d2t * gt
-        f.zt -= f.d1t * g1 + f.d2t * g2 + f.dtt * gt
+        if f.second:
+            g2 = f.ax2 * ma.x + f.ay2 * ma.y + f.aw2 * ma.w - (f.bx2 * mb.x + f.by2 * mb.y + f.bw2 * mb.w)
+            f.z1 -= f.d12 * g2
+            f.z2 -= f.d12 * g1 + f.d22 * g2 + f.d2t * gt
+            f.zt -= f.d2t * g2
+        f.z1 -= f.d11 * g1 + f.d1t * gt
+        f.zt -= f.d1t * g1 + f.dtt * gt
         total += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
         _give(row, f, ma, mb)
     return total
@@ -441,12 +471,13 @@ def _go(tables: Tables, part: float) -> None:
 
 
 @kernel
-def search_together(tables: Tables, steps: int) -> None:
-    """So many steps for all rows that bear."""
+def search_together(tables: Tables, steps: int, known: bool) -> None:
+    """So many steps for all rows that bear; `known`: those that did in the search before."""
     if tables.counters[ROWS] == 0:
         return
     before = 0.0
     for _ in range(steps):
-        if before == 0.0:
+        if before == 0.0 and not known:
             take_part(tables)
+        known = False
         before = descend(tables, before)

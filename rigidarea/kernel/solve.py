@@ -23,6 +23,7 @@ from .row import make_row, push, settle, visit
 from .tables import (
     ANEW,
     BODIES,
+    BOUNCES,
     DRIFTS,
     FIRST,
     FIXED,
@@ -31,6 +32,7 @@ from .tables import (
     MET,
     NEAR,
     ROWS,
+    STRUCK,
     SUBSTEP,
     TURN,
     TURNED,
@@ -286,6 +288,7 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
         row.a = first
         row.b = second
         make_row(row, region, law, tables.bodies[first], tables.bodies[second], pair, h)
+        counters[BOUNCES] += region.mode == STRUCK
         r = region.next
     return True
 

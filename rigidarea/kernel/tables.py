@@ -240,11 +240,11 @@ REGION = record(
 #: searches and substeps so far; pairs that are near; rows of this substep; body pairs kept apart by joints; the first
 #: substep of this frame; 1: search anew. Of turns (`islands`): bodies that are live; where the live pairs begin in
 #: `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by turns; 1: two turns have met.
-#: Shapes with teeth or slots.
+#: Shapes with teeth or slots; rows of this substep that bounce.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
-LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED = range(12, 19)
-COUNTERS = 19
+LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
+COUNTERS = 20
 
 
 class Law(NamedTuple):

@@ -65,9 +65,9 @@ def test_an_elastic_chain_against_a_wall(steps):
         assert last > 0.99
 
 
-def gas(steps, seconds, count=60, engine=ENGINE):
+def gas(steps, seconds, count=60, engine=ENGINE, seed=20):
     """Kinetic energy over its start of equal elastic discs in a box: its median over the last ten frames."""
-    draw = np.random.default_rng(20)
+    draw = np.random.default_rng(seed)
     world = World(stiffness=1e5, elasticity=1.0, engine=engine)
     columns, pitch = 8, 1.4
     side = columns * pitch
@@ -102,11 +102,13 @@ def test_a_wall_that_sends_a_disc_back_at_another_gives_nothing(steps):
     assert all(b.velocity.x < 0 for b in world.bodies)
 
 
-@pytest.mark.parametrize("seconds", [5, pytest.param(60, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    "seconds, seed", [(5, 20), *(pytest.param(60, n, marks=pytest.mark.slow) for n in range(20, 26))]
+)
 @pytest.mark.parametrize("steps", [4, None])
-def test_a_gas_of_elastic_discs_keeps_its_energy(steps, seconds):
+def test_a_gas_of_elastic_discs_keeps_its_energy(steps, seconds, seed):
     """e = 1, no friction: 1 % of kinetic energy, some 3 of 60 discs being in touch (and out of it within 10 frames)."""
-    assert gas(steps, seconds) == pytest.approx(1.0, abs=0.01)
+    assert gas(steps, seconds, seed=seed) == pytest.approx(1.0, abs=0.01)
 
 
 @area_only
