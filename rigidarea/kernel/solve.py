@@ -14,7 +14,7 @@ import numpy as np
 
 from .apart import find_axis, gap_along
 from .broad import search, somebody_left
-from .constants import HIT, LEFT, MOVED, STRAIGHT_WAY
+from .constants import HIT, LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
@@ -266,15 +266,15 @@ def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
 @kernel
 def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
     """How far apart a pair is in h at least (length); nothing, or less, where it may overlap then."""
-    apart = _boxes_apart(tables, pair, -h)
     if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
-        return apart
+        return _boxes_apart(tables, pair, -h)
     nx = a.c * pair.axis_x - a.s * pair.axis_y
     ny = a.s * pair.axis_x + a.c * pair.axis_y
     closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
     closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
     closing += abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
-    return max(apart, pair.gap - h * closing)
+    apart = pair.gap - h * closing
+    return apart if apart > 0.0 else _boxes_apart(tables, pair, -h)
 
 
 @kernel
@@ -347,10 +347,11 @@ def gather(
 
 @kernel
 def _stray(tables: Tables, h: float) -> None:
-    """Note how far the sweeps so far may send a point of each live body off its way in the next h."""
+    """Note how far a point of each live body may go in the next h, and how far off its way the sweeps have sent it."""
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        body.way = h * (abs(body.vx) + abs(body.vy) + abs(body.kick_x) + abs(body.kick_y) + abs(body.w) * arm)
         body.strayed = h * (
             abs(body.vx - body.came_vx) + abs(body.vy - body.came_vy) + abs(body.w - body.came_w) * arm
         )
@@ -363,14 +364,23 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
     if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
         near.room = np.inf
         return False
+    strayed = a.strayed + b.strayed
     near.room = 0.0
+    known = 0.0
+    if pair.head >= 0:
+        known = 0.0 if seats else LOOK * min(a.extent, b.extent)
+    elif pair.parted == tables.counters[SUBSTEP]:
+        known = pair.gap
+    if a.way + b.way < known:
+        near.room = known - (a.way + b.way) - strayed
+        return False
     if pair.head >= 0 and not seats:
         way = little(tables, pair, a, b, h)
         if way >= 0.0 or jumped(tables, pair, a, b, h) == 1:
-            near.room = way - (a.strayed + b.strayed)
+            near.room = way - strayed
             return False  # it has met already, and turns too little to come down elsewhere
     apart = _stays_apart(pool, tables, pair, a, b, h)
-    near.room = apart - (a.strayed + b.strayed)
+    near.room = apart - strayed
     return bool(apart <= 0.0)
 
 

@@ -41,6 +41,7 @@ BODY = record(
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
+        ("way", "f8"),  # how far a point of it may go in the next drift (length)
         ("strayed", "f8"),  # how far the sweeps may send a point of it off its way in the next drift (length)
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
