@@ -16,7 +16,7 @@ from .apart import find_axis, gap_along
 from .broad import search, somebody_left
 from .constants import HIT, LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, has_seats, jumped, little, meet, meet_ahead, pose_of
+from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
 from .pool import Pool
 from .row import make_row, push, settle, visit
@@ -278,6 +278,18 @@ def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float
 
 
 @kernel
+def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How far apart along its axis a pair is that goes on for h as it does (length); less, where it may turn far."""
+    least = little(tables, pair, a, b, h)
+    if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
+        return 0.0
+    ia = tables.shapes[pair.a].outline
+    ib = tables.shapes[pair.b].outline
+    rel = seen_from(pool.heads[ia], earlier(a, -h), pool.heads[ib], earlier(b, -h))
+    return float(min(least, gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)))
+
+
+@kernel
 def _farthest(pool: Pool, shape: Any, body: Any) -> float:
     """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
     head = pool.heads[shape.outline]
@@ -380,6 +392,8 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
             near.room = way - strayed
             return False  # it has met already, and turns too little to come down elsewhere
     apart = _stays_apart(pool, tables, pair, a, b, h)
+    if apart <= 0.0 and pair.head < 0:
+        apart = _apart_then(pool, tables, pair, a, b, h)
     near.room = apart - strayed
     return bool(apart <= 0.0)
 

@@ -177,12 +177,12 @@ NEIGHBOURS = record(
             "f8",
         ),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
+        ("a", "u4"),  # rows of the two bodies
+        ("b", "u4"),
         (
-            "a",
-            "i4",
-        ),  # rows of the two bodies, and by how much they may stray in this substep unseen (`join`; length)
-        ("b", "i4"),
-        ("room", "f8"),
+            "room",
+            "f8",
+        ),  # so far they may stray in this substep, the two together, until `join` must look (length)
     ]
 )
 
