@@ -18,7 +18,7 @@ from .kernel.overlap import LOOP, Work
 from .kernel.place import Pose, overlap_of_outlines
 from .kernel.pool import HEAD, Pool
 from .kernel.row import ROW
-from .kernel.tables import BODY, PAIR, REGION, SHAPE, Law, Tables
+from .kernel.tables import BODY, NEIGHBOURS, PAIR, REGION, SHAPE, Law, Tables
 
 BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
 #: Arrays by the named tuple that they belong to.
@@ -243,7 +243,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.factors_at, (s.factors_n,), FACTOR),
         array_at(s.mobility_at, (s.mobility_n,), MOBILITY),
         array_at(s.live_at, (s.live_n,), np.int32),
-        array_at(s.near_at, (s.near_n,), np.int32),
+        array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.sorted_at, (s.sorted_n,), np.int32),
         array_at(s.keys_at, (s.keys_n,), np.int64),

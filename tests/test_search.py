@@ -40,7 +40,7 @@ def searched(store: Store, time: float) -> set[tuple[int, int]]:
     while broad.search(store.pool, store.tables, time, -1) == broad.GROW_PAIRS:
         store.grow_pairs()
     t = store.tables
-    near = t.pairs[t.near[: t.counters[tables.NEAR]]]
+    near = t.pairs[t.near["pair"][: t.counters[tables.NEAR]]]
     found = {(min(a, b), max(a, b)) for a, b in zip(near["a"].tolist(), near["b"].tolist())}
     assert len(found) == len(near)  # none twice
     return found

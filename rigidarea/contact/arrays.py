@@ -24,6 +24,7 @@ from ..kernel.tables import (
     FREE_REGION,
     FREE_REGIONS,
     NEAR,
+    NEIGHBOURS,
     PAIR,
     REGION,
     SHAPE,
@@ -64,7 +65,7 @@ class Store:
             np.zeros(0, FACTOR),
             np.zeros(16, MOBILITY),
             np.zeros(16, np.int32),
-            np.zeros(0, np.int32),
+            np.zeros(1, NEIGHBOURS),
             np.zeros((JOINTS, 2), np.int32),
             np.zeros(0, np.int32),
             np.full(64, -1, np.int64),
@@ -126,7 +127,7 @@ class Store:
         size = 64
         while size < 2 * len(new):  # at most half full
             size *= 2
-        near = np.zeros(len(new), np.int32)
+        near = np.zeros(len(new) + 1, NEIGHBOURS)
         near[: len(self.tables.near)] = self.tables.near
         self.tables = self.tables._replace(
             pairs=new, near=near, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
@@ -308,7 +309,7 @@ class Store:
         """Pairs that have ended are near no more."""
         tables = self.tables
         near = tables.near[: tables.counters[NEAR]]
-        near = near[tables.pairs["a"][near] >= 0]
+        near = near[tables.pairs["a"][near["pair"]] >= 0]
         tables.near[: len(near)] = near
         tables.counters[NEAR] = len(near)
 

@@ -51,7 +51,7 @@ def rouse(space: int, dt: float) -> None:
             return
     tables = load_tables(s)
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         if (a.kind == FIXED) == (b.kind == FIXED) or not may_touch(tables, pair, -ahead):

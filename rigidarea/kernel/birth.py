@@ -292,8 +292,12 @@ def expect(
     b: Any,
     ahead: float,
     h: float,
+    first: bool,
 ) -> bool:
-    """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither."""
+    """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither.
+
+    A bounce only at the first look (`meet_ahead`).
+    """
     region.stiffness = pair.stiffness
     stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
     inverse = inverse_mass(region, a, b)
@@ -310,7 +314,11 @@ def expect(
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
-        return touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0) and region.back >= -0.5 * h
+        return (
+            first
+            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0)
+            and region.back >= -0.5 * h
+        )
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same

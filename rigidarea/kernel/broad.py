@@ -124,7 +124,6 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
         order[j] = me
     counters[SEARCH] += 1
     mark = counters[SEARCH]
-    near = 0
     for i in range(n):
         one = shapes[order[i]]
         if one.outline < 0:
@@ -151,9 +150,6 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
                     return GROW_PAIRS
                 p = new_pair(tables, order[i], order[j])
             tables.pairs[p].near = mark
-            near += 1
-    if near > len(tables.near):
-        return GROW_PAIRS
     k = 0
     ended = 0
     left = pairs_in_use(tables)
@@ -164,7 +160,7 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
         if pair.a >= 0:
             left -= 1
             if pair.near == mark:
-                tables.near[k] = p
+                tables.near[k].pair = p
                 k += 1
             elif pair.stamp != frame:
                 end_pair(tables, p)

@@ -95,7 +95,7 @@ def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, 
     if not free or tables.counters[TOOTHED] == 0:
         return most
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         wants = _past_teeth(pool, tables, work, pair, dt)
         if wants > 1:
             for shape in (pair.a, pair.b):
@@ -131,7 +131,7 @@ def company(tables: Tables, least: int) -> None:
         if body.kind != FIXED:
             body.wants = max(body.wants, least)
     for k in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[k]]
+        pair = tables.pairs[tables.near[k].pair]
         tables.bodies[tables.shapes[pair.a].body].steps = 1
         tables.bodies[tables.shapes[pair.b].body].steps = 1
 
@@ -172,7 +172,7 @@ def part(tables: Tables) -> None:
     for i in range(tables.counters[BODIES]):
         tables.bodies[i].island = i
     for k in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[k]]
+        pair = tables.pairs[tables.near[k].pair]
         connect(tables, tables.shapes[pair.a].body, tables.shapes[pair.b].body)
 
 
@@ -202,10 +202,10 @@ def number(tables: Tables, gx: float, gy: float) -> int:
                 numbers = 2
     moved = counters[TURNED] == 0
     for k in range(counters[NEAR]):
-        pair = tables.pairs[tables.near[k]]
+        pair = tables.pairs[tables.near[k].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
-        moved |= pair.turn != turn_of(a, b)
+        moved |= tables.near[k].turn != turn_of(a, b)
     counters[TURNED] = 1
     if moved:
         arrange(tables, gx, gy)

@@ -19,6 +19,7 @@ from .motion import (
     centre_of,
     earlier,
     jumped,
+    little,
     meets_within,
     overlap_ahead,
     overlap_before,
@@ -59,6 +60,7 @@ __all__ = [
     "earlier",
     "inverse_mass",
     "jumped",
+    "little",
     "meet",
     "meet_ahead",
     "meets_within",
@@ -419,9 +421,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     while r >= 0:  # after the loops have been read: looking for the touch takes the work
         region = regions[r]
         after = region.next
-        if expect(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h) and (
-            region.mode == NEARING or (first and old < 0)
-        ):
+        if expect(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h, first and old < 0):
             steer(pair, region, a, b)
             region.next = pair.head
             pair.head = r

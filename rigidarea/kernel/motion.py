@@ -51,6 +51,17 @@ def centre_of(body: Any, pose: Pose) -> tuple[float, float]:
 
 
 @kernel
+def little(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How much farther the two may move or turn in h, and cannot have `jumped` (length)."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
+    dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
+    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    return float(LOOK * min(sa.extent, sb.extent) - h * (abs(dx) + abs(dy) + turn))
+
+
+@kernel
 def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
     sa = tables.shapes[pair.a]

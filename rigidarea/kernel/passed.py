@@ -68,7 +68,7 @@ def _hold(pool: Pool, pair: Any, kept: int, line: Any, wall: Any, shape: Any, bo
 def return_what_passed(pool: Pool, tables: Tables, frame: int) -> None:
     """After a frame: what has passed a segment that it collides with is where it was before, and goes back."""
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         sa = tables.shapes[pair.a]
         sb = tables.shapes[pair.b]
         if sa.mirror < 0 and sb.mirror < 0:

@@ -16,7 +16,7 @@ from .apart import find_axis, gap_along
 from .broad import search, somebody_left
 from .constants import HIT, LEFT, LOOK, MOVED, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, has_seats, jumped, meet, meet_ahead, pose_of
+from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import place, seen_from, shift
 from .pool import Pool
 from .row import make_row, push, settle, visit
@@ -106,7 +106,8 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
     near = tables.near
     n = tables.counters[NEAR]
     for i in range(n):
-        pair = tables.pairs[near[i]]
+        one = near[i]
+        pair = tables.pairs[one.pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         x = 0.0
@@ -118,22 +119,22 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
             x += b.x
             y += b.y
         share = 0.5 if a.mobile and b.mobile else 1.0
-        pair.order = share * (ux * x + uy * y)
-        pair.beside = share * abs(ux * y - uy * x)
-        pair.turn = turn_of(a, b) if tables.counters[TURNED] else 0
-        if pair.turn < 0:
+        one.order = share * (ux * x + uy * y)
+        one.beside = share * abs(ux * y - uy * x)
+        one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
+        if one.turn < 0:
             tables.counters[MET] = 1
     gap = 1
     while gap < n:
         gap = 3 * gap + 1
     while gap > 0:  # Shell's sort, in place
         for i in range(gap, n):
-            p = near[i]
+            _set(near[n], near[i])
             j = i
-            while j >= gap and _after(tables.pairs[near[j - gap]], tables.pairs[p]):
-                near[j] = near[j - gap]
+            while j >= gap and _after(near[j - gap], near[n]):
+                _set(near[j], near[j - gap])
                 j -= gap
-            near[j] = p
+            _set(near[j], near[n])
         gap //= 3
     line_up(tables, gx, gy)
     bound(tables)
@@ -182,13 +183,21 @@ def bound(tables: Tables) -> None:
     counters = tables.counters
     turn = counters[TURN]
     first = 0
-    while first < counters[NEAR] and tables.pairs[tables.near[first]].turn < turn:
+    while first < counters[NEAR] and tables.near[first].turn < turn:
         first += 1
     last = first
-    while last < counters[NEAR] and tables.pairs[tables.near[last]].turn == turn:
+    while last < counters[NEAR] and tables.near[last].turn == turn:
         last += 1
     counters[FIRST] = first
     counters[LAST] = last
+
+
+@kernel(forceinline=True)
+def _set(one: Any, other: Any) -> None:
+    one.pair = other.pair
+    one.turn = other.turn
+    one.order = other.order
+    one.beside = other.beside
 
 
 @kernel(forceinline=True)
@@ -201,8 +210,11 @@ def _after(one: Any, other: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def may_touch(tables: Tables, pair: Any, h: float) -> bool:
-    """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
+def _boxes_apart(tables: Tables, pair: Any, h: float) -> float:
+    """How far the boxes of two shapes stay apart on the way that they have come in the last h (negative: that they go).
+
+    Nothing, or less, where they meet (length).
+    """
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     a = tables.bodies[sa.body]
@@ -210,12 +222,18 @@ def may_touch(tables: Tables, pair: Any, h: float) -> bool:
     dx = h * (a.vx - b.vx)
     dy = h * (a.vy - b.vy)
     turn = abs(h) * (abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y))
-    return bool(
-        sa.left - max(0.0, dx) <= sb.right + turn
-        and sa.right - min(0.0, dx) >= sb.left - turn
-        and sa.bottom - max(0.0, dy) <= sb.top + turn
-        and sa.top - min(0.0, dy) >= sb.bottom - turn
+    return max(
+        (sa.left - max(0.0, dx)) - (sb.right + turn),
+        (sb.left - turn) - (sa.right - min(0.0, dx)),
+        (sa.bottom - max(0.0, dy)) - (sb.top + turn),
+        (sb.bottom - turn) - (sa.top - min(0.0, dy)),
     )
+
+
+@kernel
+def may_touch(tables: Tables, pair: Any, h: float) -> bool:
+    """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
+    return _boxes_apart(tables, pair, h) <= 0.0
 
 
 @kernel
@@ -248,16 +266,29 @@ def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
 
 
 @kernel
-def _cannot_meet(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
-    """Whether a pair that is apart closes too slowly to overlap in the next h."""
+def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How far apart a pair is in h at least (length); nothing, or less, where it may overlap then."""
     if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
-        return False
+        return _boxes_apart(tables, pair, -h)
     nx = a.c * pair.axis_x - a.s * pair.axis_y
     ny = a.s * pair.axis_x + a.c * pair.axis_y
     closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
     closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
     closing += abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
-    return bool(h * closing < pair.gap)
+    apart = pair.gap - h * closing
+    return apart if apart > 0.0 else _boxes_apart(tables, pair, -h)
+
+
+@kernel
+def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How far apart along its axis a pair is that goes on for h as it does (length); less, where it may turn far."""
+    least = little(tables, pair, a, b, h)
+    if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
+        return 0.0
+    ia = tables.shapes[pair.a].outline
+    ib = tables.shapes[pair.b].outline
+    rel = seen_from(pool.heads[ia], earlier(a, -h), pool.heads[ib], earlier(b, -h))
+    return float(min(least, gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)))
 
 
 @kernel
@@ -300,7 +331,7 @@ def gather(
     """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
     counters = tables.counters
     for i in range(max(start, counters[FIRST]), counters[LAST]):
-        p = tables.near[i]
+        p = tables.near[i].pair
         pair = tables.pairs[p]
         sa = tables.shapes[pair.a]
         sb = tables.shapes[pair.b]
@@ -330,18 +361,44 @@ def gather(
 
 
 @kernel
-def _fastest(tables: Tables, h: float) -> tuple[float, float]:
-    """No point of a live body goes farther in h than the first (length); no live body is thinner than the second."""
-    most = 0.0
-    least = np.inf
+def _stray(tables: Tables, h: float) -> None:
+    """Note how far a point of each live body may go in the next h, and how far off its way the sweeps have sent it."""
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
-        if body.extent > 0.0:
-            arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
-            speed = abs(body.vx) + abs(body.vy) + abs(body.kick_x) + abs(body.kick_y) + abs(body.w) * arm
-            most = max(most, h * speed)
-            least = min(least, body.extent)
-    return most, least
+        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        body.way = h * (abs(body.vx) + abs(body.vy) + abs(body.kick_x) + abs(body.kick_y) + abs(body.w) * arm)
+        body.strayed = h * (
+            abs(body.vx - body.came_vx) + abs(body.vy - body.came_vy) + abs(body.w - body.came_w) * arm
+        )
+
+
+@kernel
+def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float, seats: bool) -> bool:
+    """Whether a pair must be asked if it overlaps in h. If not, by how much more the two may stray until it must."""
+    pair = tables.pairs[near.pair]
+    if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+        near.room = np.inf
+        return False
+    strayed = a.strayed + b.strayed
+    near.room = 0.0
+    known = 0.0
+    if pair.head >= 0:
+        known = 0.0 if seats else LOOK * min(a.extent, b.extent)
+    elif pair.parted == tables.counters[SUBSTEP]:
+        known = pair.gap
+    if a.way + b.way < known:
+        near.room = known - (a.way + b.way) - strayed
+        return False
+    if pair.head >= 0 and not seats:
+        way = little(tables, pair, a, b, h)
+        if way >= 0.0 or jumped(tables, pair, a, b, h) == 1:
+            near.room = way - strayed
+            return False  # it has met already, and turns too little to come down elsewhere
+    apart = _stays_apart(pool, tables, pair, a, b, h)
+    if apart <= 0.0 and pair.head < 0:
+        apart = _apart_then(pool, tables, pair, a, b, h)
+    near.room = apart - strayed
+    return bool(apart <= 0.0)
 
 
 @kernel
@@ -355,31 +412,26 @@ def join(
     """
     counters = tables.counters
     before = counters[ROWS]
-    most, least = _fastest(tables, h)
-    still = 2.0 * most <= LOOK * least  # nobody turns or passes far enough to be `jumped`
+    _stray(tables, h)
     for i in range(max(start, counters[FIRST]), counters[LAST]):
-        p = tables.near[i]
-        pair = tables.pairs[p]
+        near = tables.near[i]
+        if first:
+            near.a = tables.shapes[tables.pairs[near.pair].a].body
+            near.b = tables.shapes[tables.pairs[near.pair].b].body
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
+        if not first and a.strayed + b.strayed < near.room:
+            continue
+        pair = tables.pairs[near.pair]
+        if not _look_ahead(pool, tables, near, a, b, h, first and pair.seats) or not allowed(
+            tables, pair, frame
+        ):
+            continue
         old = pair.head
-        if old >= 0:
-            if still and not (first and pair.seats):
-                continue
-        elif pair.parted == counters[SUBSTEP] and 2.0 * most < pair.gap:
-            continue
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
-            continue
-        if old >= 0 and not (first and pair.seats) and jumped(tables, pair, a, b, h) == 1:
-            continue  # it has met already, and turns too little to come down elsewhere
-        if _cannot_meet(pool, tables, pair, a, b, h) or not may_touch(tables, pair, -h):
-            continue
-        if not allowed(tables, pair, frame):
-            continue
-        status = meet_ahead(pool, tables, work, law, p, h, first)
+        status = meet_ahead(pool, tables, work, law, near.pair, h, first)
         if status != DONE:
             return status, i, counters[ROWS] - before
-        if not _add_rows(tables, law, p, h, old):
+        if not _add_rows(tables, law, near.pair, h, old):
             return GROW_REGIONS, i, counters[ROWS] - before
     return DONE, counters[LAST], counters[ROWS] - before
 

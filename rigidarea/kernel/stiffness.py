@@ -136,14 +136,14 @@ def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
         if body.stamp == frame and body.inverse_mass > 0.0:
             most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         load = bear(pair, dt, _most(a, b, most))
         a.load = max(a.load, load)
         b.load = max(b.load, load)
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
         carry(pair, min(a.load, b.load), dt, _most(a, b, most))

@@ -32,11 +32,17 @@ BODY = record(
         ("oy", "f8"),
         ("cog_x", "f8"),  # centre of gravity, body frame (length)
         ("cog_y", "f8"),
+        ("reach", "f8"),  # no point of its shapes is farther from its origin (length)
+        ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
+        ("came_vy", "f8"),
+        ("came_w", "f8"),
         ("vx", "f8"),  # (length/time)
         ("vy", "f8"),
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
+        ("way", "f8"),  # how far a point of it may go in the next drift (length)
+        ("strayed", "f8"),  # how far the sweeps may send a point of it off its way in the next drift (length)
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
         ("gain_w", "f8"),
@@ -45,9 +51,6 @@ BODY = record(
         ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
-        ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
-        ("came_vy", "f8"),
-        ("came_w", "f8"),
         ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
         ("free", "i4"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
@@ -65,7 +68,6 @@ BODY = record(
             "f8",
         ),  # how long it has moved by itself: since the user last set its place or velocity (time)
         ("extent", "f8"),  # smallest extent of its shapes (length)
-        ("reach", "f8"),  # no point of them is farther from its origin (length)
         ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
         ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
         ("asked", "i4"),  # substeps a frame that the user wants for its island, at least; 0: none
@@ -127,7 +129,6 @@ PAIR = record(
         ("bore_t", "f8"),
         ("bore_stamp", "i8"),  # in which substep that was
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
-        ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
         ("kept_b", "i4"),
@@ -163,12 +164,26 @@ PAIR = record(
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
         ("pressed", "f8"),  # the force when it was last made stiffer
         ("held", "f8"),  # for how many frames on end the force has grown by that
+    ],
+)
+
+#: A pair that may touch: what is asked of all of them again and again, in one row.
+NEIGHBOURS = record(
+    [
+        ("pair", "i4"),
+        ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
         (
             "order",
             "f8",
         ),  # where it comes in a sweep: its height at the last search, then how far off the middle
         ("beside", "f8"),
-    ],
+        ("a", "u4"),  # rows of the two bodies
+        ("b", "u4"),
+        (
+            "room",
+            "f8",
+        ),  # so far they may stray in this substep, the two together, until `join` must look (length)
+    ]
 )
 
 #: What a region is doing: resting; an impact that the steps follow; a bounce shorter than the step, over by its end;
@@ -272,7 +287,9 @@ class Tables(NamedTuple):
     factors: np.ndarray  # (n,) FACTOR, of the rows
     mobility: np.ndarray  # (n,) MOBILITY, of the bodies
     live: np.ndarray  # (n,) int32: bodies that go through the substeps now
-    near: np.ndarray  # (n,) int32: pairs that may touch, in the order of the sweeps
+    near: (
+        np.ndarray
+    )  # (n,) NEIGHBOURS: pairs that may touch, in the order of the sweeps; room for all, and one
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
     keys: np.ndarray  # (m,) int64: hash table of pairs, a << 32 | b, a < b; -1: empty
@@ -366,7 +383,6 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.stamp = -1
         pair.verdict = 1
         pair.arbiter = 0
-        pair.turn = 0
         pair.steer_c = 1.0
         pair.steer_s = 0.0
         pair.jx = 0.0

@@ -75,7 +75,7 @@ def wait_for_verdicts(
     Near pairs from tables.near[start] on: (DONE or GROW_WORK, where it stopped).
     """
     for i in range(start, tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i]]
+        pair = tables.pairs[tables.near[i].pair]
         if pair.stamp == frame or not _heard(tables, pair):
             continue
         sa = tables.shapes[pair.a]
