@@ -9,16 +9,15 @@ from ..kernel.conjugate import search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
+from ..kernel.join import gather, join
 from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.order import find_near
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     common,
     drift,
-    find_near,
     finish,
-    gather,
     held_back,
-    join,
     kick,
     kinetic,
     lessen,

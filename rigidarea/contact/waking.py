@@ -8,8 +8,9 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.jit import callback
+from ..kernel.join import may_touch
 from ..kernel.meet import DONE, meets_within
-from ..kernel.solve import find_near, may_touch
+from ..kernel.order import find_near
 from ..kernel.tables import FIXED, NEAR, TURN
 from ..store import load_pool, load_tables, load_work, row_of_body
 from .record import MORE_PAIRS, MORE_WORK, ask, floats, members, notice, state_of, user_data

@@ -18,10 +18,10 @@ from .clearance import clearance
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .jit import kernel
 from .motion import earlier, pose_of
+from .order import arrange, bound, line_up, turn_of
 from .place import seen_from
 from .pool import Pool
 from .sides import shown_sides
-from .solve import arrange, bound, line_up, turn_of
 from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TOOTHED, TURN, TURNED, Law, Tables
 from .work import Work
 

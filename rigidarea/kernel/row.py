@@ -492,7 +492,8 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
         slip = slipping(r, a, b, 0.0) - row.tt + row.slid
         most = row.friction * normal / h
         r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
-    flying = r.mode == REST and row.alpha == 0.0 and row.theta == 0.0  # sent back while it flies off: not borne
+    # sent back while it flies off: that is not borne
+    flying = r.mode == REST and row.alpha == 0.0 and row.theta == 0.0
     r.l1 = 0.0 if flying else row.l1
     r.l2 = 0.0 if flying else row.l2
     r.lt = 0.0 if flying else row.lt

@@ -1,0 +1,249 @@
+"""Which near pairs have rows in a substep: those that overlap, and those that would after its drift.
+
+Whoever is looked at ahead leaves what parts it: it is looked at anew once the sweeps have used that up.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from .apart import find_axis, gap_along
+from .constants import LOOK, STRAIGHT_WAY
+from .jit import kernel
+from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
+from .place import seen_from
+from .pool import Pool
+from .row import make_row
+from .tables import BOUNCES, FIRST, LAST, LIVE, ROWS, STRUCK, SUBSTEP, Law, Tables
+from .verdict import allowed
+from .work import Work
+
+
+@kernel(forceinline=True)
+def _boxes_apart(tables: Tables, pair: Any, h: float) -> float:
+    """How far the boxes of two shapes stay apart on the way that they have come in the last h (negative: that they go).
+
+    Nothing, or less, where they meet (length).
+    """
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    dx = h * (a.vx - b.vx)
+    dy = h * (a.vy - b.vy)
+    turn = abs(h) * (abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y))
+    return max(
+        (sa.left - max(0.0, dx)) - (sb.right + turn),
+        (sb.left - turn) - (sa.right - min(0.0, dx)),
+        (sa.bottom - max(0.0, dy)) - (sb.top + turn),
+        (sb.bottom - turn) - (sa.top - min(0.0, dy)),
+    )
+
+
+@kernel
+def may_touch(tables: Tables, pair: Any, h: float) -> bool:
+    """Whether the boxes of two shapes meet, on the way that they have come in the last h (negative: that they go)."""
+    return _boxes_apart(tables, pair, h) <= 0.0
+
+
+@kernel
+def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what parted a pair in the substep before parts it now, and did on the way."""
+    if pair.axis_x == 0.0 and pair.axis_y == 0.0:
+        return False
+    stamp = tables.counters[SUBSTEP]
+    if jumped(tables, pair, a, b, h) > 1 and (
+        pair.parted != stamp - 1 or h * max(abs(a.w), abs(b.w)) > STRAIGHT_WAY
+    ):
+        return False
+    ia = tables.shapes[pair.a].outline
+    ib = tables.shapes[pair.b].outline
+    rel = seen_from(pool.heads[ia], pose_of(a), pool.heads[ib], pose_of(b))
+    pair.gap = gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)
+    pair.parted = stamp
+    return bool(pair.gap > 0.0)
+
+
+@kernel
+def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
+    """Look for what parts a pair that does not overlap."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    if sa.mirror < 0 and sb.mirror < 0:
+        rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
+        find_axis(pool, sa.outline, sb.outline, rel, pair)
+        pair.parted = tables.counters[SUBSTEP]
+
+
+@kernel
+def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How far apart a pair is in h at least (length); nothing, or less, where it may overlap then."""
+    if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
+        return _boxes_apart(tables, pair, -h)
+    nx = a.c * pair.axis_x - a.s * pair.axis_y
+    ny = a.s * pair.axis_x + a.c * pair.axis_y
+    closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
+    closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
+    closing += abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
+    apart = pair.gap - h * closing
+    return apart if apart > 0.0 else _boxes_apart(tables, pair, -h)
+
+
+@kernel
+def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How far apart along its axis a pair is that goes on for h as it does (length); less, where it may turn far."""
+    least = little(tables, pair, a, b, h)
+    if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
+        return 0.0
+    ia = tables.shapes[pair.a].outline
+    ib = tables.shapes[pair.b].outline
+    rel = seen_from(pool.heads[ia], earlier(a, -h), pool.heads[ib], earlier(b, -h))
+    return float(min(least, gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)))
+
+
+@kernel
+def _farthest(pool: Pool, shape: Any, body: Any) -> float:
+    """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
+    head = pool.heads[shape.outline]
+    dx = head.x - body.cog_x
+    dy = head.y - body.cog_y
+    own = 0.0 if head.disc else head.radius
+    return float(math.sqrt(dx * dx + dy * dy) + own)
+
+
+@kernel
+def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
+    """Rows for the regions of pair p, up to region `until` (-1: for all); False: no room for them."""
+    counters = tables.counters
+    pair = tables.pairs[p]
+    first = tables.shapes[pair.a].body
+    second = tables.shapes[pair.b].body
+    r = pair.head
+    while r != until:
+        region = tables.regions[r]
+        if counters[ROWS] == len(tables.rows):
+            return False
+        row = tables.rows[counters[ROWS]]
+        counters[ROWS] += 1
+        row.region = r
+        row.a = first
+        row.b = second
+        make_row(row, region, law, tables.bodies[first], tables.bodies[second], pair, h)
+        counters[BOUNCES] += region.mode == STRUCK
+        r = region.next
+    return True
+
+
+@kernel
+def gather(
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
+) -> tuple[int, int]:
+    """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
+    counters = tables.counters
+    for i in range(max(start, counters[FIRST]), counters[LAST]):
+        p = tables.near[i].pair
+        pair = tables.pairs[p]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        if a.stamp != frame and b.stamp != frame:
+            continue
+        if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+            continue
+        if pair.head < 0 and (not may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
+            continue
+        if not allowed(tables, pair, frame):
+            if pair.stamp != frame:
+                pair.waited = h if pair.waiting != frame else pair.waited + h
+                pair.waiting = frame
+            continue
+        status = meet(pool, tables, work, law, p, h)
+        if status != DONE:
+            return status, i
+        if pair.head < 0:
+            _part(pool, tables, pair, a, b)
+            continue
+        pair.seats = has_seats(pool, tables, pair)
+        if not _add_rows(tables, law, p, h, -1):
+            return GROW_REGIONS, i
+    return DONE, counters[LAST]
+
+
+@kernel
+def _stray(tables: Tables, h: float) -> None:
+    """Note how far a point of each live body may go in the next h, and how far off its way the sweeps have sent it."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        body.way = h * (abs(body.vx) + abs(body.vy) + abs(body.kick_x) + abs(body.kick_y) + abs(body.w) * arm)
+        body.strayed = h * (
+            abs(body.vx - body.came_vx) + abs(body.vy - body.came_vy) + abs(body.w - body.came_w) * arm
+        )
+
+
+@kernel
+def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float, seats: bool) -> bool:
+    """Whether a pair must be asked if it overlaps in h. If not, by how much more the two may stray until it must."""
+    pair = tables.pairs[near.pair]
+    if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+        near.room = np.inf
+        return False
+    strayed = a.strayed + b.strayed
+    near.room = 0.0
+    known = 0.0
+    if pair.head >= 0:
+        known = 0.0 if seats else LOOK * min(a.extent, b.extent)
+    elif pair.parted == tables.counters[SUBSTEP]:
+        known = pair.gap
+    if a.way + b.way < known:
+        near.room = known - (a.way + b.way) - strayed
+        return False
+    if pair.head >= 0 and not seats:
+        way = little(tables, pair, a, b, h)
+        if way >= 0.0 or jumped(tables, pair, a, b, h) == 1:
+            near.room = way - strayed
+            return False  # it has met already, and turns too little to come down elsewhere
+    apart = _stays_apart(pool, tables, pair, a, b, h)
+    if apart <= 0.0 and pair.head < 0:
+        apart = _apart_then(pool, tables, pair, a, b, h)
+    near.room = apart - strayed
+    return bool(apart <= 0.0)
+
+
+@kernel
+def join(
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, first: bool
+) -> tuple[int, int, int]:
+    """Rows for pairs that the velocities, as solved so far, would bring to overlap in the next drift.
+
+    So what stands at touch is held from the start, and a blow goes on from body to body within the substep. Returns
+    (DONE or GROW_..., where it stopped, how many rows joined).
+    """
+    counters = tables.counters
+    before = counters[ROWS]
+    _stray(tables, h)
+    for i in range(max(start, counters[FIRST]), counters[LAST]):
+        near = tables.near[i]
+        if first:
+            near.a = tables.shapes[tables.pairs[near.pair].a].body
+            near.b = tables.shapes[tables.pairs[near.pair].b].body
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
+        if not first and a.strayed + b.strayed < near.room:
+            continue
+        pair = tables.pairs[near.pair]
+        if not _look_ahead(pool, tables, near, a, b, h, first and pair.seats) or not allowed(
+            tables, pair, frame
+        ):
+            continue
+        old = pair.head
+        status = meet_ahead(pool, tables, work, law, near.pair, h, first)
+        if status != DONE:
+            return status, i, counters[ROWS] - before
+        if not _add_rows(tables, law, near.pair, h, old):
+            return GROW_REGIONS, i, counters[ROWS] - before
+    return DONE, counters[LAST], counters[ROWS] - before

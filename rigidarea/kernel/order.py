@@ -1,0 +1,159 @@
+"""In which order near pairs and bodies are taken: from the bottom to the top, by places alone, turn by turn."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from .broad import search, somebody_left
+from .jit import kernel
+from .meet import DONE
+from .pool import Pool
+from .tables import (
+    ANEW,
+    FIRST,
+    FIXED,
+    LAST,
+    LIVE,
+    MET,
+    NEAR,
+    TURN,
+    TURNED,
+    Tables,
+)
+
+#: What a kernel may ask for before it can go on.
+GROW_PAIRS = 3
+
+
+@kernel
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> int:
+    """Search pairs again if somebody has left the boxes of the last search. DONE or GROW_PAIRS."""
+    left = somebody_left(pool, tables, frame, h)
+    if not (left or tables.counters[ANEW]):
+        return DONE
+    if search(pool, tables, max(time, 2.0 * h), frame) < 0:
+        return GROW_PAIRS
+    tables.counters[ANEW] = 0
+    arrange(tables, gx, gy)
+    return DONE
+
+
+@kernel(forceinline=True)
+def up(gx: float, gy: float) -> tuple[float, float]:
+    """The unit vector against gravity."""
+    size = math.hypot(gx, gy)
+    return (-gx / size, -gy / size) if size > 0.0 else (0.0, 1.0)
+
+
+@kernel
+def arrange(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first.
+
+    Where a frame is made of turns (`islands`), turn by turn.
+    """
+    ux, uy = up(gx, gy)
+    near = tables.near
+    n = tables.counters[NEAR]
+    for i in range(n):
+        one = near[i]
+        pair = tables.pairs[one.pair]
+        a = tables.bodies[tables.shapes[pair.a].body]
+        b = tables.bodies[tables.shapes[pair.b].body]
+        x = 0.0
+        y = 0.0
+        if a.mobile:
+            x += a.x
+            y += a.y
+        if b.mobile:
+            x += b.x
+            y += b.y
+        share = 0.5 if a.mobile and b.mobile else 1.0
+        one.order = share * (ux * x + uy * y)
+        one.beside = share * abs(ux * y - uy * x)
+        one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
+        if one.turn < 0:
+            tables.counters[MET] = 1
+    gap = 1
+    while gap < n:
+        gap = 3 * gap + 1
+    while gap > 0:  # Shell's sort, in place
+        for i in range(gap, n):
+            _set(near[n], near[i])
+            j = i
+            while j >= gap and _after(near[j - gap], near[n]):
+                _set(near[j], near[j - gap])
+                j -= gap
+            _set(near[j], near[n])
+        gap //= 3
+    line_up(tables, gx, gy)
+    bound(tables)
+
+
+@kernel
+def line_up(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the live bodies in the same way: sums over them then do not depend on who came first either."""
+    ux, uy = up(gx, gy)
+    live = tables.live
+    n = tables.counters[LIVE]
+    gap = 1
+    while gap < n:
+        gap = 3 * gap + 1
+    while gap > 0:
+        for i in range(gap, n):
+            k = live[i]
+            j = i
+            while j >= gap and _above(tables.bodies[live[j - gap]], tables.bodies[k], ux, uy):
+                live[j] = live[j - gap]
+                j -= gap
+            live[j] = k
+        gap //= 3
+
+
+@kernel(forceinline=True)
+def _above(one: Any, other: Any, ux: float, uy: float) -> bool:
+    here = ux * one.x + uy * one.y
+    there = ux * other.x + uy * other.y
+    if here != there:
+        return bool(here > there)
+    return bool(abs(ux * one.y - uy * one.x) > abs(ux * other.y - uy * other.x))
+
+
+@kernel
+def turn_of(a: Any, b: Any) -> int:
+    """The turn to which a pair of bodies belongs; -1: to two."""
+    if a.kind == FIXED or b.kind == FIXED or a.steps == b.steps:
+        return int(max(a.steps, b.steps))
+    return -1
+
+
+@kernel
+def bound(tables: Tables) -> None:
+    """Where in `near` the pairs of the present turn are."""
+    counters = tables.counters
+    turn = counters[TURN]
+    first = 0
+    while first < counters[NEAR] and tables.near[first].turn < turn:
+        first += 1
+    last = first
+    while last < counters[NEAR] and tables.near[last].turn == turn:
+        last += 1
+    counters[FIRST] = first
+    counters[LAST] = last
+
+
+@kernel(forceinline=True)
+def _set(one: Any, other: Any) -> None:
+    one.pair = other.pair
+    one.turn = other.turn
+    one.order = other.order
+    one.beside = other.beside
+
+
+@kernel(forceinline=True)
+def _after(one: Any, other: Any) -> bool:
+    if one.turn != other.turn:
+        return bool(one.turn > other.turn)
+    if one.order != other.order:
+        return bool(one.order > other.order)
+    return bool(one.beside > other.beside)
