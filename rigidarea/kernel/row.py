@@ -32,7 +32,7 @@ from .jit import kernel
 from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
 from .stiffness import area_allowed
-from .tables import IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
+from .tables import BOUNCED, IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .turning import turning_speed
 
 ROW = record(
@@ -142,7 +142,8 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where it has been pushed already: others lie there.
+    so much further on it is put (`shift`). Not where others lie, who bore it a substep ago; off whom it only bounced
+    then, they are still near, and it is put no further than from one look to the next.
     """
     back = r.back
     row.alpha = 0.0
@@ -171,7 +172,11 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     row.alpha_t = 0.0
     row.tt = surface
-    if not ((a.mobile and a.pushed) or (b.mobile and b.pushed)):
+    pushed = max(a.pushed if a.mobile else 0, b.pushed if b.mobile else 0)
+    least = least_extent(a, b)
+    way = abs(a.vx - b.vx) + abs(a.vy - b.vy) + (abs(a.w) + abs(b.w)) * least
+    near = abs(back) * way <= LOOK * least
+    if pushed == 0 or (pushed == BOUNCED and near):
         row.shift = back
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time

@@ -56,17 +56,30 @@ def over(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> tuple[
 
 
 @kernel
-def _faces(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int) -> int:
+def _faces(
+    pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int, kept: int, way: float
+) -> int:
     """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
 
     The solid lies to the left of outline i's first edge, the segment, and the other outline's middle decides: the
     solid is on the far side of it. `before`: what it showed when it was last looked at, 0: nothing. It shows that for
     as long as the other one is over the segment and may reach through it: what tumbles has its middle on either side.
+    `kept`: on which side of it the other one has stayed when the last frame ended (`passed`), 0: not known. What
+    bounces off one wall of a corner has its middle over neither, and may have gone a substep's `way` (length) too far.
     """
     height, along, length = over(pool, i, pose, other, other_pose)
-    if before != 0 and abs(height) < pool.heads[other].radius and 0.0 <= along <= length:
+    radius = pool.heads[other].radius
+    if kept != 0 and abs(height) < radius + way:
+        return -kept
+    if before != 0 and abs(height) < radius and 0.0 <= along <= length:
         return before
     return 1 if height <= 0.0 else -1
+
+
+@kernel(forceinline=True)
+def _way(body: Any, pose: Pose) -> float:
+    """How far a body is from where it was (length)."""
+    return math.sqrt((body.ox - pose.x) ** 2 + (body.oy - pose.y) ** 2)
 
 
 @kernel
@@ -79,14 +92,15 @@ def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pos
     sb = tables.shapes[pair.b]
     ia = sa.outline
     ib = sb.outline
+    way = _way(tables.bodies[sa.body], pose_a) + _way(tables.bodies[sb.body], pose_b)
     if sa.mirror >= 0:
         if pair.head < 0 or pair.side_a == 0:
-            pair.side_a = _faces(pool, ia, pose_a, ib, pose_b, pair.side_a)
+            pair.side_a = _faces(pool, ia, pose_a, ib, pose_b, pair.side_a, pair.kept_a, way)
         if pair.side_a < 0:
             ia = sa.mirror
     if sb.mirror >= 0:
         if pair.head < 0 or pair.side_b == 0:
-            pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b)
+            pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b, pair.kept_b, way)
         if pair.side_b < 0:
             ib = sb.mirror
     return ia, ib

@@ -14,7 +14,7 @@ from .constants import HIT, LEFT, MOVED
 from .jit import kernel
 from .place import place, shift
 from .row import push, settle, visit
-from .tables import BODIES, DRIFTS, LIVE, ROWS, Law, Tables
+from .tables import BODIES, BORNE, BOUNCED, DRIFTS, LIVE, ROWS, STRUCK, Law, Tables
 
 
 @kernel
@@ -175,8 +175,11 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if row.l1 + row.l2 > 0.0:
-            tables.bodies[row.a].pushed = 1
-            tables.bodies[row.b].pushed = 1
+            what = BOUNCED if tables.regions[row.region].mode == STRUCK else BORNE
+            a = tables.bodies[row.a]
+            b = tables.bodies[row.b]
+            a.pushed = max(a.pushed, what)
+            b.pushed = max(b.pushed, what)
 
 
 @kernel

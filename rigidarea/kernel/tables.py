@@ -51,7 +51,7 @@ BODY = record(
         ("kick_x", "f8"),  # and in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
-        ("pushed", "i4"),  # 1: a contact has pushed it in the substep before
+        ("pushed", "i4"),  # BOUNCED or BORNE: what contacts did to it in the substep before; 0: nothing
         ("free", "i4"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
@@ -132,6 +132,8 @@ PAIR = record(
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
         ("kept_b", "i4"),
+        ("now_a", "i4"),  # the same of this frame
+        ("now_b", "i4"),
         ("side_b", "i4"),
         ("near", "i8"),  # search that last found it near
         (
@@ -189,6 +191,9 @@ NEIGHBOURS = record(
 #: What a region is doing: resting; an impact that the steps follow; a bounce shorter than the step, over by its end;
 #: an overlap yet to come, that the next drift would bring.
 REST, IMPACT, STRUCK, NEARING = 0, 1, 2, 3
+
+#: What contacts have done to a body: it bounced; they bear it.
+BOUNCED, BORNE = 1, 2
 
 #: How a region at rest has come to be deeper than its load presses it: put there by hand; pressed in by a blow that has
 #: nothing to give back.
