@@ -50,26 +50,34 @@ def centre_of(body: Any, pose: Pose) -> tuple[float, float]:
     )
 
 
-@kernel
-def little(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
-    """How much farther the two may move or turn in h, and cannot have `jumped` (length)."""
+@kernel(forceinline=True)
+def _motion(tables: Tables, pair: Any, a: Any, b: Any) -> tuple[float, float, float]:
+    """How fast A's centre moves relative to B's, the kick taken off, and the outlines' ends turn (length/time)."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
     dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
-    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
-    return float(LOOK * min(sa.extent, sb.extent) - h * (abs(dx) + abs(dy) + turn))
+    return dx, dy, abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+
+
+@kernel(forceinline=True)
+def _most_unseen(tables: Tables, pair: Any) -> float:
+    """So far a pair may move between two looks (length)."""
+    return LOOK * min(tables.shapes[pair.a].extent, tables.shapes[pair.b].extent)
+
+
+@kernel
+def little(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
+    """How much farther the two may move or turn in h, and cannot have `jumped` (length)."""
+    dx, dy, turn = _motion(tables, pair, a, b)
+    return float(_most_unseen(tables, pair) - h * (abs(dx) + abs(dy) + turn))
 
 
 @kernel
 def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
-    sa = tables.shapes[pair.a]
-    sb = tables.shapes[pair.b]
-    dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
-    dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
-    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
-    least = LOOK * min(sa.extent, sb.extent)
+    dx, dy, turn = _motion(tables, pair, a, b)
+    least = _most_unseen(tables, pair)
     if h * (abs(dx) + abs(dy) + turn) <= least:
         return 1
     n = h * (math.sqrt(dx * dx + dy * dy) + turn) / least

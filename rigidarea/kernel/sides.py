@@ -77,9 +77,10 @@ def _faces(
 
 
 @kernel(forceinline=True)
-def _way(body: Any, pose: Pose) -> float:
-    """How far a body is from where it was (length)."""
-    return math.sqrt((body.ox - pose.x) ** 2 + (body.oy - pose.y) ** 2)
+def _way(a: Any, pose_a: Pose, b: Any, pose_b: Pose) -> float:
+    """How far two bodies are from where they were, together (length)."""
+    way = math.sqrt((a.ox - pose_a.x) ** 2 + (a.oy - pose_a.y) ** 2)
+    return way + math.sqrt((b.ox - pose_b.x) ** 2 + (b.oy - pose_b.y) ** 2)
 
 
 @kernel
@@ -92,14 +93,17 @@ def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pos
     sb = tables.shapes[pair.b]
     ia = sa.outline
     ib = sb.outline
-    way = _way(tables.bodies[sa.body], pose_a) + _way(tables.bodies[sb.body], pose_b)
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
     if sa.mirror >= 0:
         if pair.head < 0 or pair.side_a == 0:
+            way = _way(a, pose_a, b, pose_b)
             pair.side_a = _faces(pool, ia, pose_a, ib, pose_b, pair.side_a, pair.kept_a, way)
         if pair.side_a < 0:
             ia = sa.mirror
     if sb.mirror >= 0:
         if pair.head < 0 or pair.side_b == 0:
+            way = _way(a, pose_a, b, pose_b)
             pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b, pair.kept_b, way)
         if pair.side_b < 0:
             ib = sb.mirror
