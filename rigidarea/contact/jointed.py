@@ -44,14 +44,18 @@ def _read_velocity(s: Any, body: Any) -> None:
     body.w = floats(body.address + s.body_spin, 1)[0]
 
 
-@kernel
-def run_joint(s: Any, tables: Tables, joint: Any, which: int, x: float) -> None:
-    """One function of one joint, on the velocities of the solve."""
+@kernel(forceinline=True)
+def _hand_over(s: Any, tables: Tables, joint: Any) -> None:
+    """Give a joint's bodies the velocities of the solve."""
     if joint.a >= 0:
         write_motion(s, tables.bodies[joint.a])
     if joint.b >= 0:
         write_motion(s, tables.bodies[joint.b])
-    run(joint, which, x)
+
+
+@kernel(forceinline=True)
+def _take_over(s: Any, tables: Tables, joint: Any) -> None:
+    """What joints have made of them."""
     if joint.a >= 0:
         _read_velocity(s, tables.bodies[joint.a])
     if joint.b >= 0:
@@ -60,9 +64,16 @@ def run_joint(s: Any, tables: Tables, joint: Any, which: int, x: float) -> None:
 
 @kernel
 def run_joints(s: Any, tables: Tables, which: int, x: float) -> None:
+    """One function of each of the turn's joints, in their order, on the velocities of the solve."""
     for joint in joints_of(s):
         if joint.mine:
-            run_joint(s, tables, joint, which, x)
+            _hand_over(s, tables, joint)
+    for joint in joints_of(s):
+        if joint.mine:
+            run(joint, which, x)
+    for joint in joints_of(s):
+        if joint.mine:
+            _take_over(s, tables, joint)
 
 
 @kernel(forceinline=True)
@@ -100,11 +111,9 @@ def start_joints(s: Any, tables: Tables, h: float, n: int) -> None:
                 write_place(s, tables.bodies[joint.a])
             if joint.b >= 0:
                 write_place(s, tables.bodies[joint.b])
-    for joint in joints_of(s):
-        if joint.mine:
             if n > 0:
                 scale_impulse(joint, 1.0 / n)
-            run_joint(s, tables, joint, PRE_STEP, h)
+    run_joints(s, tables, PRE_STEP, h)
 
 
 @kernel
@@ -117,5 +126,7 @@ def lessen_joints(s: Any, tables: Tables, h: float) -> None:
                 if i >= 0:
                     part = min(part, usable(tables.bodies[i], h))
             if part < 1.0:
-                run_joint(s, tables, joint, APPLY_CACHED, part - 1.0)
+                _hand_over(s, tables, joint)
+                run(joint, APPLY_CACHED, part - 1.0)
+                _take_over(s, tables, joint)
                 scale_impulse(joint, part)

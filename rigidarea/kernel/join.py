@@ -50,6 +50,33 @@ def may_touch(tables: Tables, pair: Any, h: float) -> bool:
 
 
 @kernel
+def somebody_touches(tables: Tables) -> bool:
+    """Whether a pair of the turn overlapped when it was last looked at."""
+    for i in range(tables.counters[FIRST], tables.counters[LAST]):
+        if tables.pairs[tables.near[i].pair].head >= 0:
+            return True
+    return False
+
+
+@kernel
+def nobody_comes_near(tables: Tables, time: float) -> bool:
+    """Whether no two boxes of the turn's near pairs meet, so long before now or after it."""
+    for i in range(tables.counters[FIRST], tables.counters[LAST]):
+        pair = tables.pairs[tables.near[i].pair]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        a = tables.bodies[sa.body]
+        b = tables.bodies[sb.body]
+        speed = abs(a.vx - b.vx) + abs(a.vy - b.vy) + abs(a.gain_x - b.gain_x) + abs(a.gain_y - b.gain_y)
+        speed += (abs(a.w) + abs(a.gain_w)) * (a.reach + abs(a.cog_x) + abs(a.cog_y))
+        speed += (abs(b.w) + abs(b.gain_w)) * (b.reach + abs(b.cog_x) + abs(b.cog_y))
+        apart = max(sa.left - sb.right, sb.left - sa.right, sa.bottom - sb.top, sb.bottom - sa.top)
+        if apart <= time * speed:
+            return False
+    return True
+
+
+@kernel
 def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
     """Whether what parted a pair in the substep before parts it now, and did on the way."""
     if pair.axis_x == 0.0 and pair.axis_y == 0.0:

@@ -13,6 +13,8 @@ import copy
 from collections.abc import Iterator
 from typing import Any
 
+from llvmlite import binding
+from numba.core import config
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 
@@ -45,7 +47,17 @@ class _Whole(JITCodeLibrary):  # type: ignore[misc]
 
 
 class _Codegen(JITCPUCodegen):  # type: ignore[misc]
-    """numba's own, with a library class that `compiling` sets."""
+    """numba's own, with a library class that `compiling` sets.
+
+    Loops are left as they are: they go over a handful of points, and vectorized and unrolled the code is half as long
+    again, and cold in every frame of a game.
+    """
+
+    def _pass_builder(self, **kwargs: Any) -> Any:
+        tuning = binding.create_pipeline_tuning_options(kwargs.get("opt", config.OPT))
+        tuning.loop_vectorization = tuning.slp_vectorization = False
+        tuning.loop_unrolling = tuning.loop_interleaving = False
+        return binding.create_pass_builder(self._tm, tuning)
 
     def set_env(self, env_name: str, env: Any) -> None:
         if self._library_class is not _Part:
