@@ -6,7 +6,7 @@ from typing import Any
 
 from ..kernel.blows import blows, calm_bounces
 from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED, STILL
+from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, join, nobody_comes_near, somebody_touches
@@ -114,7 +114,7 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 run_joints(s, tables, APPLY, h)
                 if more > 0 and moved <= small:
                     break
-            elif moved <= (STILL if k == 0 else SETTLED) * small:
+            elif k > 0 and moved <= SETTLED * small:
                 if tables.counters[BOUNCES] == 0:
                     return True
                 break

@@ -83,8 +83,6 @@ LEFT = 0.1
 MOVED = 0.003
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
 SETTLED = 5e-3
-#: What a first sweep has changed by no more than this is at rest: it was solved when the substep began.
-STILL = 1e-8
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.2
