@@ -33,7 +33,7 @@ from ..kernel.islands import (
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE
 from ..kernel.memory import array_at
-from ..kernel.passed import return_what_passed
+from ..kernel.passed import return_what_passed, somebody_flew_off, went_far
 from ..kernel.place import place
 from ..kernel.solve import (
     finish,
@@ -293,6 +293,17 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
 
 
 @kernel
+def _whom_it_met(s: Any, space: int, dt: float) -> bool:
+    """Near is also whom a blow has sent somebody past since the last search. Whether there was memory for that."""
+    if not somebody_flew_off(load_pool(s), load_tables(s), s.frame):
+        return True
+    counters = load_tables(s).counters
+    counters[TURN] = 0
+    counters[ANEW] = 1
+    return bool(near_pairs(s, space, dt, dt))
+
+
+@kernel
 def _wait_for_verdicts(s: Any, dt: float) -> bool:
     """What has passed a shape that the user is to be asked about goes back to it. Whether there was memory for that."""
     start = 0
@@ -349,9 +360,13 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         _everybody(s, space)
         if not substeps(s, space, dt, n):
             return False
-    if n == 0 or not _wait_for_verdicts(s, dt):
+    if n == 0:
         return False
-    return_what_passed(load_pool(s), load_tables(s), s.frame)
+    far, lines = went_far(load_tables(s), s.frame)
+    if (far and not _whom_it_met(s, space, dt)) or not _wait_for_verdicts(s, dt):
+        return False
+    if far or lines:
+        return_what_passed(load_pool(s), load_tables(s), s.frame, far)
     if s.stiffness_given == 0:
         adapt_stiffness(load_tables(s), load_law(s), s.frame, dt)
     s.taken = n

@@ -10,12 +10,13 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import MARGIN
+from .constants import LOOK, MARGIN
 from .jit import entry, kernel
 from .pool import Pool
 from .tables import (
     APART,
     BODIES,
+    DRIFTS,
     FIXED,
     FREE_PAIRS,
     NEAR,
@@ -87,7 +88,10 @@ def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
 
 @kernel
 def _widen(pool: Pool, tables: Tables, time: float) -> None:
-    """A new box for every shape: where it is, where it was and will be within `time`, and some room."""
+    """A new box for every shape: where it is, where it was and will be within `time`, and some room.
+
+    And where it has been in this frame, if that is farther than it is seen.
+    """
     for i in range(tables.counters[SHAPES]):
         shape = tables.shapes[i]
         if shape.outline < 0:
@@ -100,6 +104,14 @@ def _widen(pool: Pool, tables: Tables, time: float) -> None:
         shape.low_y = shape.bottom - dy
         shape.high_x = shape.right + dx
         shape.high_y = shape.top + dy
+        if body.kind == DRIFTS:
+            dx = body.x - body.old_x
+            dy = body.y - body.old_y
+            if abs(dx) + abs(dy) > LOOK * shape.extent:
+                shape.low_x -= max(0.0, dx)
+                shape.low_y -= max(0.0, dy)
+                shape.high_x -= min(0.0, dx)
+                shape.high_y -= min(0.0, dy)
 
 
 @kernel

@@ -74,6 +74,27 @@ def little(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
 
 
 @kernel
+def seen_whole(tables: Tables, pair: Any) -> bool:
+    """Whether a pair has moved so little in a frame that it cannot have `jumped`."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    dx = 0.0
+    dy = 0.0
+    turn = 0.0
+    if a.kind == DRIFTS:
+        dx = a.x - a.old_x
+        dy = a.y - a.old_y
+        turn = abs(a.angle - a.old_a) * (sa.half_x + sa.half_y)
+    if b.kind == DRIFTS:
+        dx -= b.x - b.old_x
+        dy -= b.y - b.old_y
+        turn += abs(b.angle - b.old_a) * (sb.half_x + sb.half_y)
+    return bool(abs(dx) + abs(dy) + turn <= _most_unseen(tables, pair))
+
+
+@kernel
 def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
     """Into how many looks the last substep's motion must be cut so that the pair cannot pass unseen; 1: none."""
     dx, dy, turn = _motion(tables, pair, a, b)

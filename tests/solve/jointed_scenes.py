@@ -238,7 +238,10 @@ def run(seed: int, frames: int, attached: bool) -> Seen:
     fastest, who, frame = 0.0, -1, -1
     gone: set[int] = set()
     for i in range(frames):
-        scene.step(i)
+        try:
+            scene.step(i)
+        except ra.SimulationError:
+            return Seen(math.inf, -1, i, len(gone), False)
         for k, b in enumerate(bodies):
             speed = math.hypot(*b.velocity)
             if not math.isfinite(speed + sum(b.position) + b.angular_velocity):

@@ -36,12 +36,16 @@ def test_a_card_of_two_millimetres_at_50_metres_a_second(angle, steps):
             assert card.position.y > -0.01, i
 
 
-def room(seed, speed=1e4, radius=0.0):
-    """Eight boxes of 30 px in a room of four segments; at 1e4 px/s they go 167 px a frame."""
+def room(seed, speed=1e4, radius=0.0, blocks=False):
+    """Eight boxes of 30 px in a room of four segments, or blocks 10 px thick; at 1e4 px/s they go 167 px a frame."""
     world = World(elasticity=0.9, friction=0.3, stiffness=1e5)
     corners = [(0, 0), (600, 0), (600, 400), (0, 400)]
     for a, b in zip(corners, corners[1:] + corners[:1]):
-        world.segment(a, b, radius)
+        if not blocks:
+            world.segment(a, b, radius)
+    if blocks:
+        for box in ((-10, -10, 610, 0), (600, -10, 610, 410), (-10, 400, 610, 410), (-10, -10, 0, 410)):
+            world.block(*box)
     for i in range(8):
         aim = 0.7 + i + 0.13 * seed
         velocity = (speed * math.cos(aim), speed * math.sin(aim))
@@ -60,38 +64,42 @@ def test_boxes_at_ten_thousand_pixels_a_second_at_segments(steps):
 
 
 @pytest.mark.slow
-def test_few_leave_a_room_of_thin_walls():
-    """200 rooms, 1.5 s each: with no more than ten anybody is out (8 were seen; 15 while a body that one wall had put
-    back counted as gone past the other wall of the corner), and nobody ever gains energy.
+@pytest.mark.parametrize("radius, blocks", [(0.0, False), (5.0, False), (0.0, True)])
+@pytest.mark.parametrize("speed", [1e3, 3e3, 1e4])
+def test_nobody_leaves_a_room(speed, radius, blocks):
+    """200 rooms, 1.5 s each: all stay inside (while only what was through a thin segment was sent back, 8 of 200 thin
+    rooms lost somebody at 1e4 px/s, and half of the thick ones).
+
+    Energy: in thin rooms it never grows at 1e4 px/s. Else it does in some, by 2 % at 3,000 px/s; in 7 of 200 of thick
+    segments at 1e4, and there by 26 times once, where two walls of a corner press on one box from opposite sides.
     """
-    out = 0
+    left = set()
+    gained = set()
     for seed in range(200):
-        world = room(seed)
+        world = room(seed, speed, radius, blocks)
         start = world.kinetic()
-        inside = True
         for _ in range(90):
             world.step(None)
-            assert world.kinetic() <= start, seed
-            inside &= all(-22.3 < b.position.x < 622.3 and -22.3 < b.position.y < 422.3 for b in world.bodies)
-        out += not inside
-    assert out <= 10
+            if world.kinetic() > start:
+                gained.add(seed)
+            if not all(-22.3 < b.position.x < 622.3 and -22.3 < b.position.y < 422.3 for b in world.bodies):
+                left.add(seed)
+    assert not left
+    if speed == 1e4 and not (radius or blocks):
+        assert not gained
+    assert len(gained) <= 20
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "speed, radius, most", [(1e3, 0.0, 0), (1e3, 5.0, 0), (3e3, 0.0, 0), (3e3, 5.0, 4), (1e4, 5.0, 40)]
-)
-def test_how_many_leave_rooms_of_thicker_walls_or_slower(speed, radius, most):
-    """Of 60 rooms; 0, 0, 0, 3 and 33 were seen."""
-    out = 0
+@pytest.mark.parametrize("radius, blocks", [(0.0, False), (5.0, False), (0.0, True)])
+def test_nobody_leaves_a_room_at_a_hundred_thousand_pixels_a_second(radius, blocks):
+    """1,670 px a frame, nearly three rooms: 60 rooms, 1.5 s each, all inside."""
     for seed in range(60):
-        world = room(seed, speed, radius)
-        inside = True
+        world = room(seed, 1e5, radius, blocks)
         for _ in range(90):
             world.step(None)
-            inside &= all(-22.3 < b.position.x < 622.3 and -22.3 < b.position.y < 422.3 for b in world.bodies)
-        out += not inside
-    assert out <= most
+            for b in world.bodies:
+                assert -22.3 < b.position.x < 622.3 and -22.3 < b.position.y < 422.3, seed
 
 
 def test_what_is_put_on_the_other_side_of_a_segment_falls_from_there():
