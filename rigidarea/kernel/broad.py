@@ -55,6 +55,14 @@ def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, floa
     return low_x, low_y, high_x, high_y
 
 
+@kernel(forceinline=True)
+def swing(shape: Any, body: Any) -> float:
+    """How fast a body's spin carries the middle of a shape's box about its centre (length/time)."""
+    x = 0.5 * (shape.left + shape.right) - body.x
+    y = 0.5 * (shape.bottom + shape.top) - body.y
+    return float(abs(body.w) * (abs(x) + abs(y)))
+
+
 @kernel
 def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
     """Whether a shape that moves leaves its box, h before now or h after it. Renews the boxes of the turn's shapes."""
@@ -74,8 +82,9 @@ def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
         shape.bottom = low_y
         shape.right = high_x
         shape.top = high_y
-        dx = h * abs(body.vx)
-        dy = h * abs(body.vy)
+        carried = swing(shape, body)
+        dx = h * (abs(body.vx) + carried)
+        dy = h * (abs(body.vy) + carried)
         if (
             low_x - dx < shape.low_x
             or low_y - dy < shape.low_y
@@ -98,8 +107,9 @@ def _widen(pool: Pool, tables: Tables, time: float) -> None:
             continue
         body = tables.bodies[shape.body]
         shape.left, shape.bottom, shape.right, shape.top = box_of(pool, shape, body)
-        dx = time * abs(body.vx) + MARGIN * shape.extent
-        dy = time * abs(body.vy) + MARGIN * shape.extent
+        carried = swing(shape, body)
+        dx = time * (abs(body.vx) + carried) + MARGIN * shape.extent
+        dy = time * (abs(body.vy) + carried) + MARGIN * shape.extent
         shape.low_x = shape.left - dx
         shape.low_y = shape.bottom - dy
         shape.high_x = shape.right + dx

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from .apart import find_axis, gap_along
+from .broad import swing
 from .constants import LOOK, STRAIGHT_WAY
 from .jit import kernel
 from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
@@ -34,7 +35,8 @@ def _boxes_apart(tables: Tables, pair: Any, h: float) -> float:
     b = tables.bodies[sb.body]
     dx = h * (a.vx - b.vx)
     dy = h * (a.vy - b.vy)
-    turn = abs(h) * (abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y))
+    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    turn = abs(h) * (turn + swing(sa, a) + swing(sb, b))
     return max(
         (sa.left - max(0.0, dx)) - (sb.right + turn),
         (sb.left - turn) - (sa.right - min(0.0, dx)),

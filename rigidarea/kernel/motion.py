@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .broad import swing
 from .constants import LOOK, MOST_LOOKS
 from .jit import kernel
 from .patch import deepest_of
@@ -57,7 +58,8 @@ def _motion(tables: Tables, pair: Any, a: Any, b: Any) -> tuple[float, float, fl
     sb = tables.shapes[pair.b]
     dx = (a.vx - a.kick_x) - (b.vx - b.kick_x)
     dy = (a.vy - a.kick_y) - (b.vy - b.kick_y)
-    return dx, dy, abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    turn = abs(a.w) * (sa.half_x + sa.half_y) + abs(b.w) * (sb.half_x + sb.half_y)
+    return dx, dy, turn + swing(sa, a) + swing(sb, b)
 
 
 @kernel(forceinline=True)

@@ -56,6 +56,26 @@ def test_free_flight_is_exact(steps):
     assert body.velocity == pytest.approx((3, 2 - G), rel=1e-12) and body.angle == pytest.approx(0.5)
 
 
+@pytest.mark.parametrize("steps", [1, 4, None])
+def test_who_turns_is_seen_to_come(steps):
+    """A frame in which nobody can come near anybody takes no substeps; a tip far off its body's centre comes near.
+
+    Within one turn it must meet a peg in its way, whatever its speed (100 arms, of 1 to 3 at 3 to 30 rad/s).
+    """
+    draw = np.random.default_rng(8)
+    for _ in range(100):
+        arm, spin, ahead = draw.uniform(1.0, 3.0), draw.uniform(3.0, 30.0), draw.uniform(0.7, 5.5)
+        world = World(stiffness=1e6, elasticity=1.0)
+        body = world.add(pymunk.Body(1.0, 1.0), spin=spin)
+        tip = pymunk.Circle(body, 0.2, (arm, 0.0))
+        peg = pymunk.Circle(world.space.static_body, 0.2, (arm * math.cos(ahead), arm * math.sin(ahead)))
+        tip.elasticity = peg.elasticity = 1.0
+        world.space.add(tip, peg)
+        while body.angle < 2 * math.pi and body.angular_velocity == spin:
+            world.step(steps)
+        assert body.angular_velocity < spin, (arm, spin, ahead)
+
+
 def test_sweeps_are_the_spaces_iterations():
     """Forces under a heavy crate after 1 s, off statics: more sweeps bring them nearer, 60 to 5 %."""
     off = []
