@@ -3,8 +3,8 @@
 Contacts are met where bodies first touch (`motion`), once a substep for each pair. What turns by radians in a substep
 may come down with another corner before the next, in a corner of a room a second wall may be met behind the first, and
 a blow may send somebody on who has been met already. That is seen by the way of a body's middle: where it has entered
-what nothing moves, or is beyond a segment, the body goes back to where the frame has found it, and its speed into what
-it has entered is returned.
+what does not move, or is beyond a segment that nothing moves (a kinematic body's too), the body goes back to where the
+frame has found it, and its speed into what it has entered is returned.
 """
 
 from __future__ import annotations
