@@ -178,3 +178,24 @@ def test_a_folder_that_others_could_fill_is_not_used(how, homeless, tmp_path):
 def test_the_users_own_folder_comes_first(homeless, tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "mine"))
     assert cache.folder("abc") == str(tmp_path / "mine" / "rigidarea" / "abc")
+
+
+def test_a_module_is_compiled_again_when_what_it_imports_changes(tmp_path):
+    from rigidarea.kernel import jit
+
+    def imported(source: str) -> set[str]:
+        (tmp_path / "some.py").write_text(source)
+        jit._imports.cache_clear()
+        return {path.name for path in jit._imports(tmp_path / "some.py")[1]}
+
+    assert imported("from rigidarea.kernel.arc import on_arc") == {"arc.py"}
+    assert imported("def f():\n    from rigidarea.kernel import (\n        arc,\n        disc,\n    )\n") == {
+        "arc.py",
+        "disc.py",
+        "__init__.py",
+    }
+    kernels = ROOT / "rigidarea" / "kernel"
+    assert kernels / "tables.py" in jit._imports(kernels / "row.py")[1]
+    assert ROOT / "rigidarea" / "store.py" in jit._imports(ROOT / "rigidarea" / "contact" / "record.py")[1]
+    folders = {jit.cache_folder(path) for path in kernels.glob("*.py")}
+    assert len(folders) == len(list(kernels.glob("*.py")))  # names and contents differ

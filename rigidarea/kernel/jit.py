@@ -1,9 +1,9 @@
 """How this package compiles: cached on disk by the content of its sources; kernels without reference counts.
 
-numba's cache notices when the file of a function changes, not when a file that it calls into does. So the cache
-lives in a folder named after a hash of all our sources that compile anything: a new version never runs an old
-version's machine code, and an install that cannot be written to needs no writing. What is in the folder, and whose it
-is: `cache`.
+numba's cache notices when the file of a function changes, not when a file that it calls into does. So the machine code
+of a module lives in a folder named after a hash of its source and of all of ours that it imports, directly or not: a
+new version never runs an old version's machine code, what has not changed is not compiled again, and an install that
+cannot be written to needs no writing. What is in the folder, and whose it is: `cache`.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from __future__ import annotations
 import ctypes
 import functools
 import hashlib
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -21,18 +22,43 @@ from numba.core.registry import CPUDispatcher, cpu_target
 
 from . import cache, whole
 
+_ROOT = Path(__file__).resolve().parent.parent
 
-@functools.lru_cache(maxsize=1)
-def cache_folder() -> str:
-    """Where the machine code is kept: see `cache.folder`."""
+
+#: An import from this package (nothing in it imports another way): dots, module, names. Reading syntax trees takes 1 s.
+_IMPORT = re.compile(rf"^ *from (\.+|{_ROOT.name}\.?)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
+
+
+@functools.cache
+def _imports(source: Path) -> tuple[bytes, tuple[Path, ...]]:
+    """A source's text, and the sources of this package that it imports, at its top or in functions."""
+    text = source.read_bytes()
+    found = set()
+    for dots, module, names in _IMPORT.findall(text.decode()):
+        folder = source.parents[len(dots) - 1] if dots[0] == "." else _ROOT
+        folder = folder.joinpath(*module.split("."))
+        inner = [folder / f"{name}.py" for name in re.findall(r"\w+", names)]
+        found.update(
+            path for path in (*inner, folder.with_suffix(".py"), folder / "__init__.py") if path.is_file()
+        )
+    return text, tuple(sorted(found - {_ROOT / "__init__.py"}))
+
+
+@functools.cache
+def cache_folder(source: Path) -> str:
+    """Where the machine code of a source's functions is kept: see `cache.folder`."""
+    met, left = {source}, [source]
+    while left:
+        new = set(_imports(left.pop())[1]) - met
+        met |= new
+        left += new
     digest = hashlib.sha256(numba.__version__.encode() + cache.FORMAT)
-    root = Path(__file__).parent.parent
-    for source in sorted(root.rglob("*.py")):
-        text = source.read_bytes()
-        if source.parent.name == "kernel" or b"jit import" in text:  # numbers too are compiled in
-            digest.update(source.relative_to(root).as_posix().encode() + text)
-    cache.notice.folder = cache.folder(digest.hexdigest()[:16])
-    return cache.notice.folder
+    for path in sorted(met):
+        name = path.relative_to(_ROOT) if _ROOT in path.parents else Path(path.name)
+        digest.update(name.as_posix().encode() + _imports(path)[0])
+    found = cache.folder(digest.hexdigest()[:16])
+    cache.notice.folder = str(Path(found).parent)
+    return found
 
 
 def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[..., Any]:
@@ -45,7 +71,8 @@ def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[...,
         if function is None:
             return functools.partial(compile_cached, **options)
         before = numba.config.CACHE_DIR, caching.IndexDataCacheFile
-        numba.config.CACHE_DIR, caching.IndexDataCacheFile = cache_folder(), cache.CheckedFile
+        numba.config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename).resolve())
+        caching.IndexDataCacheFile = cache.CheckedFile
         try:
             decorate = functools.partial(compiler(cache=True, **options), function)
             if at_once:
