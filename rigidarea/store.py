@@ -13,6 +13,7 @@ import numpy as np
 
 from .kernel.conjugate import FACTOR, MOBILITY
 from .kernel.jit import entry, kernel
+from .kernel.joint import JOINT
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work
 from .kernel.place import Pose, overlap_of_outlines
@@ -45,31 +46,6 @@ OFFSETS = [
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
 
-#: A joint of the space while a frame has it.
-JOINT = record(
-    [
-        ("address", "u8"),
-        ("kind", "u8"),  # its class, a struct of Chipmunk's of four functions
-        ("pre_solve", "u8"),  # the user's callback; 0: none
-        ("taken", "i4"),  # 1: since that, until the report, we run it
-        ("mine", "i4"),  # 1: taken, and of the turn that is being solved
-        ("a", "i4"),  # rows of its bodies; -1: not ours
-        ("b", "i4"),
-        ("at", "i4"),  # where it keeps its impulse (bytes), and how many numbers that is; -1: unknown
-        ("count", "i4"),
-        ("x", "f8"),  # impulse summed over the frame
-        ("y", "f8"),
-        ("force_at", "i4"),  # where a spring keeps its force function, if that is the user's; 0: it has none
-        ("asked", "i4"),  # 1: that has been asked in this frame
-        ("force_func", "u8"),
-        ("force", "f8"),  # what it has said
-        ("start_x", "f8"),  # what it started from
-        ("start_y", "f8"),
-    ]
-)
-#: Kinds of joints.
-KINDS = 10
-
 STATE = record(
     [(f"{name}_at", "u8") for name in _ARRAYS]
     + [(f"{name}_n", "i8") for name in _ARRAYS]
@@ -93,8 +69,6 @@ STATE = record(
         ("asked_y", "f8"),
         ("ask_at", "u8"),  # Python's ear
         ("hold_at", "u8"),
-        ("springs_at", "u8"),  # what `chipmunk.springs` has found, and our own force function
-        ("spring_at", "u8"),
         ("seize_at", "u8"),
         ("idle_kind", "u8"),  # the class of a joint that we run
         ("seized_kind", "u8"),  # the same, of one that Chipmunk is to prepare
@@ -111,10 +85,11 @@ STATE = record(
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
+        ("before", "f8"),  # length of the last frame (time); 0: there was none
         ("stop", "i8"),  # 1: something waits in Python
         ("seen_at", "u8"),  # room for every body's place
         ("scratch_at", "u8"),  # room for what nobody reads
-        ("kinds_at", "u8"),  # joints' classes, where they keep their impulse, and how many numbers that is
+        ("kinds_at", "u8"),  # what `chipmunk.kinds_of_joints` has found
     ],
 )
 
@@ -246,6 +221,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.sorted_at, (s.sorted_n,), np.int32),
+        array_at(s.joints_at, (s.joints_n,), JOINT),
         array_at(s.keys_at, (s.keys_n,), np.int64),
         array_at(s.values_at, (s.values_n,), np.int32),
         array_at(s.counters_at, (s.counters_n,), np.int64),

@@ -11,6 +11,7 @@ import numpy as np
 
 from ..kernel.broad import extents
 from ..kernel.conjugate import FACTOR, MOBILITY
+from ..kernel.joint import JOINT
 from ..kernel.overlap import enlarged, fits, new_work
 from ..kernel.pool import HEAD, HasRings, Pool, pack
 from ..kernel.row import ROW
@@ -34,7 +35,7 @@ from ..kernel.tables import (
     new_pair,
     rehash,
 )
-from ..store import JOINT, STATE, enter_bodies
+from ..store import STATE, enter_bodies
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
@@ -68,6 +69,7 @@ class Store:
             np.zeros(1, NEIGHBOURS),
             np.zeros((JOINTS, 2), np.int32),
             np.zeros(0, np.int32),
+            np.zeros(JOINTS, JOINT),
             np.full(64, -1, np.int64),
             np.zeros(64, np.int32),
             np.zeros(COUNTERS, np.int64),
@@ -76,7 +78,6 @@ class Store:
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
-        self.joints = np.zeros(JOINTS, JOINT)
         self._kept: dict[str, np.ndarray] = {}
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._free: list[int] = []  # rows of shapes that are gone
@@ -93,7 +94,7 @@ class Store:
     def sizes(self) -> dict[str, int]:
         """What each array takes (bytes)."""
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **self._kept}
-        own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows", "joints")}
+        own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows")}
         return {name: array.nbytes for name, array in {**arrays, **own}.items()}
 
     def keep(self) -> None:
@@ -106,7 +107,7 @@ class Store:
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        own = ("slots", "body_keys", "body_rows", "joints")
+        own = ("slots", "body_keys", "body_rows")
         mine = {name: getattr(self, name) for name in own} | self._kept
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
         state = self.state[0]
@@ -145,17 +146,24 @@ class Store:
         new["next"][-1] = self.tables.counters[FREE_REGION]
         self.tables.counters[FREE_REGION] = len(old)
         self.tables.counters[FREE_REGIONS] += len(new) - len(old)
-        rows = np.zeros(len(new), ROW)
+        self.tables = self.tables._replace(regions=new)
+        self._grow_rows()
+
+    def _grow_rows(self) -> None:
+        """A row for every region and every joint."""
+        size = len(self.tables.regions) + len(self.tables.joints)
+        rows = np.zeros(size, ROW)
         rows[: len(self.tables.rows)] = self.tables.rows
-        self.tables = self.tables._replace(regions=new, rows=rows, factors=np.zeros(len(new), FACTOR))
+        self.tables = self.tables._replace(rows=rows, factors=np.zeros(size, FACTOR))
         self.sync()
 
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
-        if n > len(self.joints):
-            self.joints = np.zeros(2 * n, JOINT)
-            self.tables = self.tables._replace(apart=np.zeros((2 * n, 2), np.int32))
-            self.sync()
+        if n > len(self.tables.joints):
+            self.tables = self.tables._replace(
+                apart=np.zeros((2 * n, 2), np.int32), joints=np.zeros(2 * n, JOINT)
+            )
+            self._grow_rows()
 
     def grow_work(self) -> None:
         """Twice the room for crossings."""

@@ -13,7 +13,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, kinds_of_joints, layout, normal_of, springs
+from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
@@ -76,9 +76,7 @@ class AreaContact:
         state["handler_count"] = state["shape_count"] = -1
         self._scratch = np.zeros(8)
         self._answer(record.MORE_KEPT)
-        self._kinds = np.array(kinds_of_joints(), np.int64)
-        self._springs = np.array(springs(), np.uint64)
-        state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
+        self._kinds = np.array(kinds_of_joints(), np.uint64)
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["seize_at"] = joints.seize.address
         own = weakref.ref(self)  # C keeps no Python object alive

@@ -33,6 +33,7 @@ from ..kernel.islands import (
 from ..kernel.jit import callback, kernel
 from ..kernel.meet import DONE
 from ..kernel.memory import array_at
+from ..kernel.order import order_joints
 from ..kernel.passed import return_what_passed, somebody_flew_off, went_far
 from ..kernel.place import place
 from ..kernel.solve import (
@@ -58,14 +59,7 @@ from ..kernel.tables import (
 )
 from ..kernel.verdict import wait_for_verdicts
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
-from .jointed import write_motion, write_place
-from .joints import (
-    give_back,
-    hide,
-    joints_of,
-    keep_impulse,
-    restore_impulse,
-)
+from .joints import give_back, hide, joints_of, read_joints
 from .record import (
     BROKEN,
     MORE_KEPT,
@@ -81,6 +75,8 @@ from .record import (
     timestamp,
     user_data,
     words,
+    write_motion,
+    write_place,
 )
 from .substep import find_contacts, near_pairs, substeps
 
@@ -183,7 +179,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
         return False
     _everybody(s, space)
     share_kicks(load_tables(s), 1)
-    if not find_contacts(s, space, dt, dt):
+    if not find_contacts(s, space, dt, dt, False):
         return False
     tables = load_tables(s)
     s.contacts = tables.counters[ROWS]
@@ -195,12 +191,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 @kernel
 def _keep(s: Any) -> bool:
     """Take down what a frame starts from. Whether there is room for it."""
-    if not keep_tables(s, False) and not (ask(s, MORE_KEPT) and keep_tables(s, False)):
-        return False
-    for joint in joints_of(s):
-        if joint.taken:
-            keep_impulse(joint)
-    return True
+    return bool(keep_tables(s, False) or (ask(s, MORE_KEPT) and keep_tables(s, False)))
 
 
 @kernel
@@ -212,9 +203,7 @@ def _again(s: Any) -> bool:
     tables.counters[ANEW] = 1
     tables.counters[NEAR] = 0
     rehash(tables)
-    for joint in joints_of(s):
-        if joint.taken:
-            restore_impulse(joint)
+    read_joints(s, tables, False)
     return True
 
 
@@ -327,6 +316,8 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     if not _start(s, space, load_tables(s)):
         return False
     tables = load_tables(s)
+    read_joints(s, tables, True)
+    order_joints(tables)
     if (
         tables.counters[ANEW] and tables.counters[TOOTHED] > 0
     ):  # teeth ask for substeps before the first one looks
@@ -435,6 +426,7 @@ def solve(constraint: int, coefficient: float) -> None:
     s = state_of(space)
     iterations = array_at(space, (1,), np.int32)
     s.sweeps = iterations[0]
+    s.before = time_step(space) / coefficient if coefficient > 0.0 else 0.0
     if s.frame == np.int64(timestamp(space)) and not s.failed:
         _whole_frame(s, space)
     if s.explicit == 0:  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's

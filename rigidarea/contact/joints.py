@@ -19,17 +19,17 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.jit import callback, kernel
+from ..kernel.joint import JOINT, KINDS, RATCHET, spring_reach
 from ..kernel.memory import array_at, caller
-from ..kernel.tables import ANEW, APART, BODIES, Tables
-from ..store import JOINT, KINDS, STATE, row_of_body
+from ..kernel.tables import ANEW, APART, BODIES, JOINTS, TURN, Tables
+from ..store import STATE, row_of_body
 
 _user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 _call_user = caller(types.void(types.uintp, types.uintp))
-_call = caller(types.void(types.uintp, types.float64))
 _call_force = caller(types.float64(types.uintp, types.float64))
 
-#: Places of a class's functions.
-PRE_STEP, APPLY_CACHED, APPLY = 0, 1, 2
+#: Numbers of a `chipmunk.JointKind`.
+KIND_WORDS = 7
 
 
 @kernel(inline="always")
@@ -71,39 +71,17 @@ def prepared(constraint: int, dt: float) -> None:
     s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
     k = _joint_of(s, constraint)
     if k >= 0:
-        _words(constraint, 1)[0] = joints_of(s)[k].kind
+        _words(constraint, 1)[0] = joints_of(s)[k].own_class
 
 
-@kernel
-def _ask_once(s: Any, joint: Any) -> None:
-    """For this frame a spring's force function, if it is the user's, is ours, which asks it once (`spring`)."""
-    joint.force_at = 0
-    kinds = array_at(s.springs_at, (6,), np.uint64)
-    for i in range(0, 6, 3):
-        if kinds[i] == joint.kind:
-            own = _words(joint.address + np.int64(kinds[i + 1]), 1)
-            if own[0] != kinds[i + 2]:
-                joint.force_at = np.int64(kinds[i + 1])
-                joint.force_func = own[0]
-                joint.asked = 0
-                own[0] = s.spring_at
-
-
-@callback(types.float64(types.uintp, types.float64))
-def spring(constraint: int, x: float) -> float:
-    """In the place of a spring's force function of the user's: what it says in the first substep holds for the frame.
-
-    x: distance or angle.
-    """
-    s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
-    k = _joint_of(s, constraint)
-    if k < 0:
-        return 0.0
-    joint = joints_of(s)[k]
-    if joint.asked == 0:
-        joint.asked = 1
-        joint.force = _call_force(joint.force_func, constraint, x)
-    return float(joint.force)
+@kernel(forceinline=True)
+def _kind_of(s: Any, joint: Any) -> int:
+    """Which kind of joint it is (`kernel.joint`); -1: none that is known."""
+    kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.uint64)
+    for k in range(KINDS):
+        if kinds[k, 0] == joint.own_class:
+            return k
+    return -1
 
 
 @kernel
@@ -119,28 +97,20 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
         bodies = _words(address + s.constraint_a, 2)
         before = _words(address + s.constraint_pre_solve, 1)
         joint.address = address
-        joint.kind = _words(address, 1)[0]
+        joint.own_class = _words(address, 1)[0]
         joint.pre_solve = before[0]
         joint.taken = 0
         joint.a = row_of_body(s, bodies[0])
         joint.b = row_of_body(s, bodies[1])
-        joint.x = 0.0
-        joint.y = 0.0
-        joint.at = -1
-        joint.count = 0
-        kinds = array_at(s.kinds_at, (3 * KINDS,), np.int64)
-        for k in range(KINDS):
-            if np.uint64(kinds[k]) == joint.kind:
-                joint.at = kinds[KINDS + k]
-                joint.count = kinds[2 * KINDS + k]
+        joint.kind = _kind_of(s, joint)
         before[0] = s.seize_at
-        _ask_once(s, joint)
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
             if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
                 tables.counters[ANEW] = 1
             tables.apart[apart, 0] = joint.a
             tables.apart[apart, 1] = joint.b
             apart += 1
+    tables.counters[JOINTS] = s.joint_count
     if apart != tables.counters[APART]:
         tables.counters[ANEW] = 1
         tables.counters[APART] = apart
@@ -153,21 +123,70 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
 
 
 @kernel
+def read_joints(s: Any, tables: Tables, ask: bool) -> None:
+    """The joints' parameters as the frame's solve finds them, and what they did last; `ask`: springs of the user's."""
+    kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)
+    for joint in joints_of(s):
+        joint.x = 0.0
+        joint.y = 0.0
+        if not joint.taken or joint.kind < 0:
+            continue
+        limits = array_at(joint.address + s.constraint_collide - 24, (3,), np.float64)
+        joint.max_force = limits[0]
+        joint.error_bias = limits[1]
+        joint.max_bias = limits[2]
+        kind = kinds[joint.kind]
+        given = array_at(joint.address + kind[3], (kind[4],), np.float64)
+        for i in range(kind[4]):
+            joint.p[i] = given[i]
+        impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
+        joint.jx = impulse[0]
+        joint.jy = impulse[kind[2] - 1]
+        joint.step = s.before
+        if ask and joint.a >= 0 and joint.b >= 0:
+            joint.asked = 0
+            if kind[5] > 0:
+                force = _words(joint.address + kind[5], 1)[0]
+                if force != np.uint64(kind[6]):
+                    joint.asked = 1
+                    reach = spring_reach(joint, tables.bodies[joint.a], tables.bodies[joint.b])
+                    joint.force = _call_force(force, joint.address, reach)
+
+
+@kernel(forceinline=True)
+def _substeps_of(tables: Tables, joint: Any) -> int:
+    """The substeps in which a joint is solved: those of what it moves."""
+    return int(max(tables.bodies[joint.a].steps, tables.bodies[joint.b].steps))
+
+
+@kernel
+def own_joints(s: Any, tables: Tables) -> int:
+    """Which joints belong to the present turn: how many."""
+    turn = tables.counters[TURN]
+    count = 0
+    for joint in joints_of(s):
+        joint.mine = 0
+        ours = joint.taken and joint.kind >= 0 and joint.a >= 0 and joint.b >= 0
+        if ours and (turn == 0 or _substeps_of(tables, joint) == turn):
+            joint.mine = 1
+            count += 1
+    return count
+
+
+@kernel
 def give_back(s: Any, joint: Any) -> None:
     """The joint as it was, its impulse that of the whole frame."""
     if joint.taken:
-        _words(joint.address, 1)[0] = joint.kind
+        _words(joint.address, 1)[0] = joint.own_class
         joint.taken = 0
-        if joint.count > 0:
-            impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        if joint.kind >= 0:
+            kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.kind]
+            impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
             impulse[0] = joint.x
-            if joint.count > 1:
+            if kind[2] > 1:
                 impulse[1] = joint.y
-    if joint.force_at > 0:
-        own = _words(joint.address + np.int64(joint.force_at), 1)
-        if own[0] == s.spring_at:
-            own[0] = joint.force_func
-        joint.force_at = 0
+            if joint.kind == RATCHET:
+                array_at(joint.address + kind[3], (1,), np.float64)[0] = joint.p[0]
     before = _words(joint.address + s.constraint_pre_solve, 1)
     if before[0] == s.seize_at:
         before[0] = joint.pre_solve
@@ -193,55 +212,3 @@ def seize(constraint: int, space: int) -> None:
         _call_user(joint.pre_solve, constraint, space)
     joint.taken = 1
     _words(constraint, 1)[0] = s.seized_kind
-
-
-@kernel
-def scale_impulse(joint: Any, factor: float) -> None:
-    """What the joint starts from: of the last frame's sum, a substep's share."""
-    if joint.count > 0:
-        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
-        for i in range(joint.count):
-            impulse[i] *= factor
-
-
-@kernel(forceinline=True)
-def is_spring(s: Any, joint: Any) -> bool:
-    """Whether a joint begins with no impulse of the substep before: a spring's force is given."""
-    kinds = array_at(s.springs_at, (6,), np.uint64)
-    return bool(joint.kind == kinds[0] or joint.kind == kinds[3])
-
-
-@kernel
-def keep_impulse(joint: Any) -> None:
-    """Take down what the joint starts from."""
-    if joint.count > 0:
-        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
-        joint.start_x = impulse[0]
-        joint.start_y = impulse[joint.count - 1]
-
-
-@kernel
-def restore_impulse(joint: Any) -> None:
-    """The joint as it started."""
-    joint.x = 0.0
-    joint.y = 0.0
-    if joint.count > 0:
-        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
-        impulse[joint.count - 1] = joint.start_y
-        impulse[0] = joint.start_x
-
-
-@kernel
-def add_impulse(joint: Any) -> None:
-    """Sum up what it has done in a substep."""
-    if joint.count > 0:
-        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
-        joint.x += impulse[0]
-        if joint.count > 1:
-            joint.y += impulse[1]
-
-
-@kernel(forceinline=True)
-def run(joint: Any, which: int, x: float) -> None:
-    """One of its own functions."""
-    _call(_words(joint.kind, 4)[which], joint.address, x)

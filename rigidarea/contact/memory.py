@@ -131,7 +131,6 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         pairs=pairs,
         regions=regions,
         near=memory.near.copy(),
-        rows=store.tables.rows[: len(regions)],
         sorted=np.concatenate((order, rest)).astype(np.int32),
     )
     tables.bodies["since"] = np.inf

@@ -135,6 +135,31 @@ def read_motion(s: Any, address: int, body: Any) -> None:
 
 
 @kernel(forceinline=True)
+def write_place(s: Any, body: Any) -> None:
+    """Put a body where the solve has taken it."""
+    p = floats(body.address + s.body_position, 2)
+    p[0] = body.x
+    p[1] = body.y
+    floats(body.address + s.body_angle, 1)[0] = body.angle
+    t = floats(body.address + s.body_transform, 6)
+    t[0] = body.c
+    t[1] = body.s
+    t[2] = -body.s
+    t[3] = body.c
+    t[4] = body.ox
+    t[5] = body.oy
+
+
+@kernel(forceinline=True)
+def write_motion(s: Any, body: Any) -> None:
+    """Give it its velocity."""
+    v = floats(body.address + s.body_velocity, 2)
+    v[0] = body.vx
+    v[1] = body.vy
+    floats(body.address + s.body_spin, 1)[0] = body.w
+
+
+@kernel(forceinline=True)
 def notice(s: Any, address: int, body: Any) -> None:
     """A body that is awake, as it is now, and whether it has been set so by the user."""
     x, y, angle = body.x, body.y, body.angle

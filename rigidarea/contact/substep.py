@@ -10,6 +10,7 @@ from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS,
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, join, nobody_comes_near, somebody_touches
+from ..kernel.joint import free_turning, geometric_stiffness
 from ..kernel.meet import DONE, GROW_WORK
 from ..kernel.order import find_near
 from ..kernel.relax import begin_to_relax, end_relaxing
@@ -27,8 +28,7 @@ from ..kernel.solve import (
 )
 from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, Tables
 from ..store import load_law, load_pool, load_tables, load_work
-from .jointed import lessen_joints, own_joints, run_joints, start_joints
-from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
+from .joints import own_joints
 from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats
 
 
@@ -43,7 +43,7 @@ def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
 
 
 @kernel
-def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
+def find_contacts(s: Any, space: int, h: float, time: float, jointed: bool) -> bool:
     """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
     if not near_pairs(s, space, h, time):
         return False
@@ -52,7 +52,7 @@ def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
     load_tables(s).counters[BOUNCES] = 0
     start = 0
     while True:
-        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
+        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start, jointed)
         if status == DONE:
             return True
         if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
@@ -84,19 +84,17 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     if _join(s, h, True) < 0:  # before the warm start: what that adds is no speed at which anybody comes
         return False
     tables = load_tables(s)
-    if tables.counters[ROWS] == 0 and not jointed:
+    if tables.counters[ROWS] == 0:
         return True  # nothing that could change a velocity
     mass, x, y = common(tables)
     energy = kinetic(tables, x, y)
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
-    if jointed:
-        run_joints(s, tables, APPLY_CACHED, 1.0)
     lessen(tables, h)
-    if jointed:
-        lessen_joints(s, tables, h)
     searches = whole // SEARCH_SWEEPS
-    sweeps = whole if jointed else max(1, whole - 2 * searches - _relaxing(whole))
+    if jointed:
+        searches = 6
+    sweeps = max(1, whole - 2 * (whole // SEARCH_SWEEPS) - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -110,16 +108,12 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                 look += wait
                 tables = load_tables(s)
             moved = sweep(tables, k % 2 == 0)
-            if jointed:
-                run_joints(s, tables, APPLY, h)
-                if more > 0 and moved <= small:
-                    break
-            elif k > 0 and moved <= SETTLED * small:
+            if k > 0 and moved <= SETTLED * small:
                 if tables.counters[BOUNCES] == 0:
                     return True
                 break
             if k == 0:
-                search_together(tables, min(1, searches), False)
+                search_together(tables, searches if jointed else min(1, searches), False)
                 if moved > small and blows(tables, load_law(s), h):
                     search_together(tables, searches, False)
             elif k == 1:
@@ -138,7 +132,7 @@ def _relaxing(sweeps: int) -> int:
 
 
 @kernel
-def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
+def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
     """Bodies are moved by what takes overlaps apart, and go on without that speed."""
     if not begin_to_relax(tables):
         return
@@ -146,9 +140,7 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
     small = pace(load_law(s), mass, kinetic(tables, x, y), h)
     for k in range(whole):
         moved = sweep(tables, k % 2 == 0)
-        if jointed:
-            run_joints(s, tables, APPLY, h)
-        if moved <= small and (k + 1 >= _relaxing(whole) or (not jointed and moved <= SETTLED * small)):
+        if moved <= small and (k + 1 >= _relaxing(whole) or moved <= SETTLED * small):
             break
     end_relaxing(tables, h)
 
@@ -189,19 +181,17 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
                 _fly(s, dt, 0.5 * (dt - h), n)
                 return True
         kick(load_tables(s), s.frame)
-        if not find_contacts(s, space, h, dt - i * h):
+        if joints > 0:
+            geometric_stiffness(load_tables(s), h, s.followed)
+        if not find_contacts(s, space, h, dt - i * h, joints > 0):
             return False
         tables = load_tables(s)
-        if joints > 0:
-            start_joints(s, tables, h, n if i == 0 else 0)
         if not _solve(s, h, sweeps, joints > 0):
             return False
         tables = load_tables(s)
-        _relax(s, tables, h, sweeps, joints > 0)
+        _relax(s, tables, h, sweeps)
         if joints > 0:
-            for joint in joints_of(s):
-                if joint.mine:
-                    add_impulse(joint)
+            free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)
     tables = load_tables(s)
     drift(tables, s.frame, 0.5 * h)

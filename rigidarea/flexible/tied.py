@@ -71,16 +71,15 @@ class Tied:
             row["hub"] = made.shape is not None and made.shape.hub is not None
         #: Impulse of each joint in the last second half of a frame, by its address.
         self._rest: dict[int, Pair] = {} if before is None else before._rest
-        kinds = kinds_of_joints()
-        n = len(kinds) // 3
+        kinds = {kind.own_class: kind for kind in kinds_of_joints()}
         warm = {} if before is None else {int(r["address"]): (r["warm_x"], r["warm_y"]) for r in before.links}
         self.links: np.ndarray = np.zeros(len(joints), LINK)
         for row, joint in zip(self.links, joints, strict=True):
             row["address"], row["at"] = address_of(joint._constraint), -1
             row["a"], row["b"] = places[id(joint.a)], places[id(joint.b)]
-            kind = int(ffi.cast("uintptr_t *", joint._constraint)[0])
-            if kind in kinds[:n]:
-                row["at"], row["count"] = kinds[n + kinds.index(kind)], kinds[2 * n + kinds.index(kind)]
+            kind = kinds.get(int(ffi.cast("uintptr_t *", joint._constraint)[0]))
+            if kind is not None:
+                row["at"], row["count"] = kind.impulse, kind.impulses
             row["warm_x"], row["warm_y"] = warm.get(int(row["address"]), (0.0, 0.0))
         at = layout()
         self.offsets = np.zeros(1, PLACES)[0]

@@ -55,7 +55,7 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
     for i in range(tables.counters[ROWS]):
         a = tables.bodies[rows[i].a]
         b = tables.bodies[rows[i].b]
-        if (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
+        if rows[i].ends > 0 and (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
             struck |= _struck_at_rest(rows[i], tables.regions[rows[i].region], law, a, b, h)
     return struck
 
@@ -92,5 +92,7 @@ def calm_bounces(tables: Tables) -> bool:
     less = False
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        less |= _give_back_less(row, tables.regions[row.region], tables.bodies[row.a], tables.bodies[row.b])
+        if row.ends > 0:
+            region = tables.regions[row.region]
+            less |= _give_back_less(row, region, tables.bodies[row.a], tables.bodies[row.b])
     return less

@@ -19,6 +19,7 @@ from __future__ import annotations
 from typing import Any
 
 from .jit import kernel
+from .joint import clamp_joint
 from .memory import record
 from .row import push
 from .tables import LIVE, ROWS, Tables
@@ -148,11 +149,17 @@ def _bears(row: Any, f: Any) -> bool:
     given = row.gamma_a == 0.0  # an impact that the steps follow: its force is given
     f.first = not given and row.l1 > 0.0
     f.second = not given and row.ends == 2 and row.l2 > 0.0
-    if row.ends == 2 and not (f.first and f.second):
+    if row.ends == 0:
+        limit = (1.0 - AT_ITS_BOUND) * row.most
+        free = row.l1 * row.l1 + row.lt * row.lt < limit * limit
+        f.first = not given and free and row.low < row.l1 < row.high
+        f.grip = row.grips and free and row.low_t < row.lt < row.high_t
+    elif row.ends == 2 and not (f.first and f.second):
         # what a half open face does follows both of its ends, and both bodies: no energy has that for its slope
         f.first = 0
         f.second = 0
-    f.grip = abs(row.lt) < (1.0 - AT_ITS_BOUND) * most
+    if row.ends > 0:
+        f.grip = abs(row.lt) < (1.0 - AT_ITS_BOUND) * most
     f.p1 = 0.0
     f.p2 = 0.0
     f.pt = 0.0
@@ -398,6 +405,13 @@ def _clamp(tables: Tables, length: float) -> bool:
         l1 = row.l1 + length * f.p1
         l2 = row.l2 + length * f.p2
         lt = row.lt + length * f.pt
+        if row.ends == 0:
+            f.z1, f.zt = clamp_joint(row, l1, lt)
+            whole = whole and f.z1 == l1 and f.zt == lt
+            f.z1 -= row.l1
+            f.z2 = 0.0
+            f.zt -= row.lt
+            continue
         if l1 < 0.0 or l2 < 0.0:
             whole = False
             l1 = max(0.0, l1)

@@ -14,11 +14,12 @@ from .apart import find_axis, gap_along
 from .broad import swing
 from .constants import LOOK, STRAIGHT_WAY
 from .jit import kernel
+from .joint import make_joint_row
 from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import seen_from
 from .pool import Pool
 from .row import make_row
-from .tables import BOUNCES, FIRST, LAST, LIVE, ROWS, STRUCK, SUBSTEP, Law, Tables
+from .tables import BOUNCES, FIRST, JOINTS, LAST, LIVE, ROWS, STRUCK, SUBSTEP, Law, Tables
 from .verdict import allowed
 from .work import Work
 
@@ -167,21 +168,49 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
 
 
 @kernel
-def gather(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
-) -> tuple[int, int]:
-    """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
+def _add_joints(tables: Tables, law: Law, h: float) -> None:
+    """Rows for the turn's joints."""
     counters = tables.counters
-    for i in range(max(start, counters[FIRST]), counters[LAST]):
+    for k in range(counters[JOINTS]):
+        number = tables.joints[k].order
+        joint = tables.joints[number]
+        if joint.mine:
+            row = tables.rows[counters[ROWS]]
+            row.region = number
+            row.a = joint.a
+            row.b = joint.b
+            if make_joint_row(row, joint, tables.bodies[joint.a], tables.bodies[joint.b], h, law.followed):
+                counters[ROWS] += 1
+
+
+@kernel
+def gather(
+    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, jointed: bool
+) -> tuple[int, int]:
+    """Regions and rows of near pairs from tables.near[start] on, and of joints: (DONE or GROW_..., where it stopped).
+
+    Where there are joints, first what bears on what does not move, then the joints, then the other contacts: each
+    finds what carries its bodies (`conjugate`).
+    """
+    counters = tables.counters
+    first = counters[FIRST]
+    last = counters[LAST]
+    size = last - first
+    for n in range(start, 2 * size if jointed else size):
+        i = first + (n - size if n >= size else n)
         p = tables.near[i].pair
         pair = tables.pairs[p]
         sa = tables.shapes[pair.a]
         sb = tables.shapes[pair.b]
         a = tables.bodies[sa.body]
         b = tables.bodies[sb.body]
+        if jointed and n == size:
+            _add_joints(tables, law, h)
         if a.stamp != frame and b.stamp != frame:
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
+            continue
+        if jointed and (n >= size) != (a.inverse_mass > 0.0 and b.inverse_mass > 0.0):
             continue
         if pair.head < 0 and (not may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
             continue
@@ -192,14 +221,16 @@ def gather(
             continue
         status = meet(pool, tables, work, law, p, h)
         if status != DONE:
-            return status, i
+            return status, n
         if pair.head < 0:
             _part(pool, tables, pair, a, b)
             continue
         pair.seats = has_seats(pool, tables, pair)
         if not _add_rows(tables, law, p, h, -1):
-            return GROW_REGIONS, i
-    return DONE, counters[LAST]
+            return GROW_REGIONS, n
+    if jointed and size == 0:
+        _add_joints(tables, law, h)
+    return DONE, last
 
 
 @kernel

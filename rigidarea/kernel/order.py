@@ -13,6 +13,7 @@ from .tables import (
     ANEW,
     FIRST,
     FIXED,
+    JOINTS,
     LAST,
     LIVE,
     MET,
@@ -108,6 +109,59 @@ def line_up(tables: Tables, gx: float, gy: float) -> None:
                 j -= gap
             live[j] = k
         gap //= 3
+
+
+@kernel
+def order_joints(tables: Tables) -> None:
+    """Sort the joints so that what they form without loops is eliminated exactly (`conjugate`): from its ends inwards.
+
+    One after the other whose one body has no joint left but this one (what does not move has none): its mobility is
+    taken for the last time then. In a loop, the first that is left. That is the order of leaves of a tree (D. J. Rose,
+    "Triangulated graphs and the elimination process", J. Math. Anal. Appl. 32 (1970)).
+    """
+    joints = tables.joints
+    bodies = tables.bodies
+    n = tables.counters[JOINTS]
+    for k in range(n):
+        for i in (joints[k].a, joints[k].b):
+            if i >= 0:
+                bodies[i].joints = 0
+                bodies[i].sum_of_joints = 0
+    for k in range(n):
+        joints[k].ordered = 0
+        for i in (joints[k].a, joints[k].b):
+            if i >= 0:
+                bodies[i].joints += 1
+                bodies[i].sum_of_joints += k
+    done = 0
+    seed = 0
+    while done < n:
+        while joints[seed].ordered:
+            seed += 1
+        # a joint of one body that moves, or at an end; else the first left
+        k = seed
+        for j in range(seed, n):
+            if not joints[j].ordered and (_ends_at(tables, joints[j].a) or _ends_at(tables, joints[j].b)):
+                k = j
+                break
+        while k >= 0:
+            joint = joints[k]
+            joint.ordered = 1
+            joints[done].order = k
+            done += 1
+            k = -1
+            for i in (joint.a, joint.b):
+                if i >= 0:
+                    bodies[i].joints -= 1
+                    bodies[i].sum_of_joints -= joints[done - 1].order
+                    if k < 0 and bodies[i].mobile and bodies[i].joints == 1:
+                        k = bodies[i].sum_of_joints
+
+
+@kernel(forceinline=True)
+def _ends_at(tables: Tables, i: int) -> bool:
+    """Whether a body has no other joint, or does not move."""
+    return i < 0 or not tables.bodies[i].mobile or tables.bodies[i].joints == 1
 
 
 @kernel(forceinline=True)

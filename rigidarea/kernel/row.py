@@ -29,6 +29,7 @@ from .birth import drives, flies_off
 from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
+from .joint import solve_joint
 from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
 from .stiffness import area_allowed
@@ -37,10 +38,10 @@ from .turning import turning_speed
 
 ROW = record(
     [
-        ("region", "i4"),
+        ("region", "i4"),  # of a joint: its number
         ("a", "i4"),  # rows of the bodies
         ("b", "i4"),
-        ("ends", "i4"),  # 1 or 2
+        ("ends", "i4"),  # 1 or 2; 0: of a joint
         ("nx", "f8"),
         ("ny", "f8"),
         ("arm_a", "f8"),
@@ -74,6 +75,13 @@ ROW = record(
         ("m22", "f8"),
         ("slip2", "f8"),
         ("l2", "f8"),
+        # of a joint (`joint`), which has m11, m12, m22 of both its unknowns:
+        ("low", "f8"),  # bounds of l1 and lt, and of their size
+        ("high", "f8"),
+        ("low_t", "f8"),
+        ("high_t", "f8"),
+        ("most", "f8"),
+        ("grips", "i4"),  # 1: lt is an unknown
         # not of the sweeps:
         ("was1", "f8"),  # the impulses before contacts are relaxed
         ("was2", "f8"),
@@ -396,7 +404,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
 def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
     """Give the two bodies impulses d1, d2 at the ends and dt along the tangent."""
     normal = d1 + d2
-    turn = 0.0 if row.ends == 1 else d1 * row.e1 + d2 * row.e2
+    turn = 0.0 if row.ends < 2 else d1 * row.e1 + d2 * row.e2
     fx = normal * row.nx - dt * row.ny
     fy = normal * row.ny + dt * row.nx
     a.vx -= fx * a.inverse_mass
@@ -419,6 +427,12 @@ def visit(row: Any, a: Any, b: Any) -> float:
     uy = a.vy - b.vy
     v = ux * row.nx + uy * row.ny + (a.w * row.arm_a - b.w * row.arm_b)
     slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
+    if row.ends == 0:
+        d1, dt = solve_joint(row, v, slip)
+        row.l1 += d1
+        row.lt += dt
+        push(row, a, b, d1, 0.0, dt)
+        return max(abs(d1), abs(dt)) * row.weight
     if row.ends == 1:
         d1 = (row.alpha * (row.f1 - row.l1) + row.gamma_a * (v - row.t1)) * row.det
         d1 = max(d1, -row.l1)
@@ -457,6 +471,8 @@ def stiffen(row: Any) -> bool:
     row.was1 = row.l1
     row.was2 = row.l2
     row.was_t = row.lt
+    if row.ends == 0:
+        return False
     if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
         row.f1 = 0.0
         row.f2 = 0.0

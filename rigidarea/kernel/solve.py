@@ -12,6 +12,7 @@ from typing import Any
 
 from .constants import HIT, LEFT, MOVED
 from .jit import kernel
+from .joint import settle_joint
 from .place import place, shift
 from .row import push, settle, visit
 from .tables import BODIES, BORNE, BOUNCED, DRIFTS, LIVE, ROWS, STRUCK, Law, Tables
@@ -138,7 +139,8 @@ def held_back(tables: Tables, h: float) -> float:
     total = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        total += (row.f1 + row.f2) / h * tables.regions[row.region].depth
+        if row.ends > 0:
+            total += (row.f1 + row.f2) / h * tables.regions[row.region].depth
     return total
 
 
@@ -147,6 +149,9 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
+        if row.ends == 0:
+            settle_joint(tables.joints[row.region], row, h)
+            continue
         region = tables.regions[row.region]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
@@ -174,7 +179,7 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
             body.shift_a = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        if row.l1 + row.l2 > 0.0:
+        if row.ends > 0 and row.l1 + row.l2 > 0.0:
             what = BOUNCED if tables.regions[row.region].mode == STRUCK else BORNE
             a = tables.bodies[row.a]
             b = tables.bodies[row.b]

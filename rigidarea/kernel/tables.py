@@ -41,6 +41,8 @@ BODY = record(
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
+        ("own_inverse_moment", "f8"),  # while joints have it turn more slowly (`geometric_stiffness`)
+        ("tension", "f8"),  # sum over its joints of force times arm (force length)
         ("way", "f8"),  # how far a point of it may go in the next drift (length)
         ("strayed", "f8"),  # how far the sweeps may send a point of it off its way in the next drift (length)
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
@@ -69,6 +71,8 @@ BODY = record(
         ),  # how long it has moved by itself: since the user last set its place or velocity (time)
         ("extent", "f8"),  # smallest extent of its shapes (length)
         ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
+        ("joints", "i4"),  # of them, those that have no place in the order of the sweeps yet (`order_joints`)
+        ("sum_of_joints", "i4"),  # and the sum of their numbers: of one that is left, its own
         ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
         ("asked", "i4"),  # substeps a frame that the user wants for its island, at least; 0: none
         ("wants", "i4"),  # substeps that it wants in this frame
@@ -125,9 +129,6 @@ PAIR = record(
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
-        ("bore", "f8"),  # force along its directions, and across, when it was last found to have parted
-        ("bore_t", "f8"),
-        ("bore_stamp", "i8"),  # in which substep that was
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
@@ -164,8 +165,6 @@ PAIR = record(
         ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
-        ("pressed", "f8"),  # the force when it was last made stiffer
-        ("held", "f8"),  # for how many frames on end the force has grown by that
     ],
 )
 
@@ -260,11 +259,12 @@ REGION = record(
 #: searches and substeps so far; pairs that are near; rows of this substep; body pairs kept apart by joints; the first
 #: substep of this frame; 1: search anew. Of turns (`islands`): bodies that are live; where the live pairs begin in
 #: `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by turns; 1: two turns have met.
-#: Shapes with teeth or slots; rows of this substep that bounce.
+#: Shapes with teeth or slots; rows of this substep that bounce; joints.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
-COUNTERS = 20
+JOINTS = 20
+COUNTERS = 21
 
 
 class Law(NamedTuple):
@@ -297,6 +297,7 @@ class Tables(NamedTuple):
     )  # (n,) NEIGHBOURS: pairs that may touch, in the order of the sweeps; room for all, and one
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
+    joints: np.ndarray  # (n,) JOINT
     keys: np.ndarray  # (m,) int64: hash table of pairs, a << 32 | b, a < b; -1: empty
     values: np.ndarray  # (m,) int32
     counters: np.ndarray  # (COUNTERS,) int64
@@ -400,9 +401,6 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.axis_y = 0.0
         pair.parted = -1
         pair.waiting = -1
-        pair.held = 0.0
-        pair.pressed = 0.0
-        pair.bore_stamp = -1
         _enter(tables, a, b, p)
     return int(p)
 
