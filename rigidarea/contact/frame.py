@@ -203,7 +203,7 @@ def _again(s: Any) -> bool:
     tables.counters[ANEW] = 1
     tables.counters[NEAR] = 0
     rehash(tables)
-    read_joints(s, tables, False)
+    read_joints(s, False)
     return True
 
 
@@ -316,7 +316,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     if not _start(s, space, load_tables(s)):
         return False
     tables = load_tables(s)
-    read_joints(s, tables, True)
+    read_joints(s, True)
     order_joints(tables)
     if (
         tables.counters[ANEW] and tables.counters[TOOTHED] > 0

@@ -123,8 +123,20 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
 
 
 @kernel
-def read_joints(s: Any, tables: Tables, ask: bool) -> None:
-    """The joints' parameters as the frame's solve finds them, and what they did last; `ask`: springs of the user's."""
+def ask_springs(s: Any, tables: Tables) -> None:
+    """What springs' force functions of the user's say where the bodies are now: for the whole frame."""
+    kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)
+    for joint in joints_of(s):
+        if joint.mine and joint.asked == 1:
+            joint.asked = 2
+            force = _words(joint.address + kinds[joint.kind][5], 1)[0]
+            reach = spring_reach(joint, tables.bodies[joint.a], tables.bodies[joint.b])
+            joint.force = _call_force(force, joint.address, reach)
+
+
+@kernel
+def read_joints(s: Any, anew: bool) -> None:
+    """The joints' parameters as the frame's solve finds them, and what they did last. anew: a frame begins."""
     kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)
     for joint in joints_of(s):
         joint.x = 0.0
@@ -143,14 +155,8 @@ def read_joints(s: Any, tables: Tables, ask: bool) -> None:
         joint.jx = impulse[0]
         joint.jy = impulse[kind[2] - 1]
         joint.step = s.before
-        if ask and joint.a >= 0 and joint.b >= 0:
-            joint.asked = 0
-            if kind[5] > 0:
-                force = _words(joint.address + kind[5], 1)[0]
-                if force != np.uint64(kind[6]):
-                    joint.asked = 1
-                    reach = spring_reach(joint, tables.bodies[joint.a], tables.bodies[joint.b])
-                    joint.force = _call_force(force, joint.address, reach)
+        if anew:
+            joint.asked = kind[5] > 0 and _words(joint.address + kind[5], 1)[0] != np.uint64(kind[6])
 
 
 @kernel(forceinline=True)

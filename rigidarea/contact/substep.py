@@ -6,7 +6,7 @@ from typing import Any
 
 from ..kernel.blows import blows, calm_bounces
 from ..kernel.conjugate import search_together
-from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
+from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, join, nobody_comes_near, somebody_touches
@@ -28,7 +28,7 @@ from ..kernel.solve import (
 )
 from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, Tables
 from ..store import load_law, load_pool, load_tables, load_work
-from .joints import own_joints
+from .joints import ask_springs, own_joints
 from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats
 
 
@@ -91,9 +91,7 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
     lessen(tables, h)
-    searches = whole // SEARCH_SWEEPS
-    if jointed:
-        searches = 6
+    enough = mass * (SETTLED * small) ** 2
     sweeps = max(1, whole - 2 * (whole // SEARCH_SWEEPS) - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
@@ -113,11 +111,9 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
                     return True
                 break
             if k == 0:
-                search_together(tables, searches if jointed else min(1, searches), False)
+                search_together(tables, SEARCH_STEPS, enough)
                 if moved > small and blows(tables, load_law(s), h):
-                    search_together(tables, searches, False)
-            elif k == 1:
-                search_together(tables, searches - 1, True)
+                    search_together(tables, SEARCH_STEPS, enough)
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
         less = gained and tables.counters[BOUNCES] > 0 and calm_bounces(tables)
         if (not gained and moved <= small) or (not less and moved <= SETTLED * small):
@@ -182,6 +178,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
                 return True
         kick(load_tables(s), s.frame)
         if joints > 0:
+            ask_springs(s, load_tables(s))
             geometric_stiffness(load_tables(s), h, s.followed)
         if not find_contacts(s, space, h, dt - i * h, joints > 0):
             return False

@@ -354,11 +354,14 @@ def _down(tables: Tables) -> float:
 
 
 @kernel
-def descend(tables: Tables, before: float) -> float:
-    """One step of the search, after `take_part`: what to say `before` in the next; 0 where it must begin anew."""
+def descend(tables: Tables, before: float, enough: float) -> float:
+    """One step of the search, after `take_part`: what to say `before` in the next; 0 where it must begin anew.
+
+    Nothing is done where no more than `enough` is left.
+    """
     _up(tables)
     product = _down(tables)
-    if not product > 0.0:
+    if not product > enough:
         return 0.0
     beta = product / before if before > 0.0 else 0.0
     curvature = 0.0
@@ -485,13 +488,16 @@ def _go(tables: Tables, part: float) -> None:
 
 
 @kernel
-def search_together(tables: Tables, steps: int, known: bool) -> None:
-    """So many steps for all rows that bear; `known`: those that did in the search before."""
+def search_together(tables: Tables, steps: int, enough: float) -> None:
+    """As many steps for all rows that bear, `steps` at the most, until what is left to solve is no more than `enough`.
+
+    A step that is cut short ends it: other rows bear from there on. enough: mass times the square of a speed.
+    """
     if tables.counters[ROWS] == 0:
         return
+    take_part(tables)
     before = 0.0
     for _ in range(steps):
-        if before == 0.0 and not known:
-            take_part(tables)
-        known = False
-        before = descend(tables, before)
+        before = descend(tables, before, enough)
+        if before == 0.0:
+            return

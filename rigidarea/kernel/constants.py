@@ -68,6 +68,8 @@ STRAIGHT_WAY = 0.1
 SPREAD = 1.0
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
+#: Most steps of a search: it ends sooner where it has converged, or an end lets go.
+SEARCH_STEPS = 8
 #: One sweep of so many, rounded up, is for the velocities that are left when positions are right (`relax`).
 RELAX_SWEEPS = 5
 #: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not

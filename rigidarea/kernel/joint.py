@@ -51,7 +51,7 @@ JOINT = record(
         ("max_bias", "f8"),  # (length/time)
         ("p", "f8", (PARAMETERS,)),
         ("force", "f8"),  # of a spring, what the user's function says in this frame
-        ("asked", "i4"),  # 1: there is such a function
+        ("asked", "i4"),  # 1: there is such a function; 2: it has been asked in this frame
         ("jx", "f8"),  # impulse that it did last, as Chipmunk keeps it
         ("jy", "f8"),
         ("step", "f8"),  # in this time; 0: never
