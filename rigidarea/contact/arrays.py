@@ -1,11 +1,16 @@
 """The tables of one attached space: numpy arrays that grow by doubling, and the record by which they are found.
 
 Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are addresses.
+
+Tables change by transactions: a copy (`draft`) is changed, then put in their place (`publish`) by two stores between
+which Python calls nothing. What is raised on the way, a MemoryError or an interrupt, leaves the old ones as they were.
 """
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
@@ -24,6 +29,10 @@ from ..kernel.tables import (
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    MORE_JOINTS,
+    MORE_PAIRS,
+    MORE_REGIONS,
+    MORE_WORK,
     NEAR,
     NEIGHBOURS,
     PAIR,
@@ -35,10 +44,25 @@ from ..kernel.tables import (
     new_pair,
     rehash,
 )
-from ..store import STATE, enter_bodies
+from ..store import KEPT, STATE, enter_bodies
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
+#: Crossings for which there is room from the start, where the largest outline has many points: more come with use.
+MOST_CROSSINGS = 4096
+
+
+def _append_free(following: np.ndarray, counters: np.ndarray, head: int, first: int) -> None:
+    """Rows from `first` on at the end of a free list: who is taken next does not depend on how large the table is."""
+    following[first:] = np.arange(first + 1, len(following) + 1)
+    following[-1] = -1
+    last = int(counters[head])
+    if last < 0:
+        counters[head] = first
+        return
+    while following[last] >= 0:
+        last = int(following[last])
+    following[last] = first
 
 
 class Store:
@@ -75,16 +99,17 @@ class Store:
             np.zeros(COUNTERS, np.int64),
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
+        self.shapes: dict[int, Any] = {}  # the caller's shapes, by Chipmunk's id
+        self.forms: dict[int, Any] = {}  # and how they looked when they were entered
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
-        self._kept: dict[str, np.ndarray] = {}
+        self._kept: dict[str, np.ndarray] = {}  # room for a copy of what a frame changes, and for places
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._free: list[int] = []  # rows of shapes that are gone
         self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
         self._free_bodies: list[int] = []
         self._most = (0, 0)  # points and rings of the largest outline
-        self.keep()
         self.grow_pairs(64)
         self.grow_regions(64)
         end_pair(self.tables, new_pair(self.tables, 0, 1))  # compiled now, not in a frame
@@ -97,34 +122,68 @@ class Store:
         own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows")}
         return {name: array.nbytes for name, array in {**arrays, **own}.items()}
 
-    def keep(self) -> None:
-        """Room for a copy of what a frame changes."""
-        tables = self.tables
-        arrays = {"bodies": tables.bodies, "pairs": tables.pairs, "regions": tables.regions}
-        self._kept = {f"kept_{name}": np.zeros_like(array) for name, array in arrays.items()}
-        self._kept["kept_counters"] = np.zeros_like(tables.counters)
-        self.sync()
+    def draft(self) -> Store:
+        """A copy, to be changed and published. Of what only grows at its end, and of scratch, there is one."""
+        new = copy.copy(self)
+        new.tables = Tables(*(array.copy() for array in self.tables))
+        new.slots = self.slots.copy()
+        for name in ("shapes", "forms", "_fill", "_outlines", "_free", "_bodies", "_free_bodies"):
+            setattr(new, name, getattr(self, name).copy())
+        return new
+
+    def publish(self, new: Store, **facts: int) -> None:
+        """Put a changed draft in the place of what there is. facts: fields of the state record that change with it."""
+        record = new._record()
+        for name, value in facts.items():
+            record[name] = value
+        self.state[0], self.__dict__ = record, new.__dict__
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        own = ("slots", "body_keys", "body_rows")
-        mine = {name: getattr(self, name) for name in own} | self._kept
-        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
-        state = self.state[0]
+        self.state[0] = self._record()
+
+    def _record(self) -> np.record:
+        """The state record of these arrays."""
+        tables = self.tables._asdict()
+        for name in KEPT:
+            if len(self._kept.get(f"kept_{name}", ())) != len(tables[name]):
+                self._kept = {**self._kept, f"kept_{name}": np.zeros_like(tables[name])}
+        if len(self._kept.get("seen", ())) != len(self.tables.bodies):
+            self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
+        own = {name: getattr(self, name) for name in ("slots", "body_keys", "body_rows")}
+        arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
+        record: np.record = self.state.copy()[0]
         for name, array in arrays.items():
-            state[f"{name}_at"] = array.ctypes.data
-            state[f"{name}_n"] = len(array)
+            record[f"{name}_at"] = array.ctypes.data
+            record[f"{name}_n"] = len(array)
+        return record
+
+    def grow(self) -> None:
+        """Make the room that machine code has asked for (counters MORE_...), all of it or none."""
+        new = self.draft()
+        counters = new.tables.counters
+        pairs, regions, joints, work = (
+            int(counters[k]) for k in (MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK)
+        )
+        counters[[MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK]] = 0
+        if pairs > 0:
+            new.grow_pairs(len(new.tables.pairs) + pairs)
+        if regions > 0:
+            new.grow_regions(len(new.tables.regions) + regions)
+        if joints > 0:
+            new.grow_joints(len(new.tables.joints) + joints)
+        if work > 0:
+            new.grow_work()
+        self.publish(new)
 
     def grow_pairs(self, least: int = 0) -> None:
-        """Twice the pairs (at least `least`), the new ones free."""
-        old = self.tables.pairs
+        """Twice the pairs (at least `least`), the new ones free and the last to be taken."""
+        old, counters = self.tables.pairs, self.tables.counters
         new = np.zeros(max(least, 2 * len(old)), PAIR)
         new[: len(old)] = old
-        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
         new["a"][len(old) :] = -1
-        new["next"][-1] = self.tables.counters[FREE_PAIR]
-        self.tables.counters[FREE_PAIR] = len(old)
-        self.tables.counters[FREE_PAIRS] += len(new) - len(old)
+        _append_free(new["next"], counters, FREE_PAIR, len(old))
+        counters[FREE_PAIRS] += len(new) - len(old)
         size = 64
         while size < 2 * len(new):  # at most half full
             size *= 2
@@ -134,18 +193,15 @@ class Store:
             pairs=new, near=near, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
         rehash(self.tables)
-        self.sync()
 
     def grow_regions(self, least: int = 0) -> None:
-        """Twice the regions (at least `least`), the new ones free."""
-        old = self.tables.regions
+        """Twice the regions (at least `least`), the new ones free and the last to be taken."""
+        old, counters = self.tables.regions, self.tables.counters
         new = np.zeros(max(least, 2 * len(old)), REGION)
         new[: len(old)] = old
-        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
         new["stamp"][len(old) :] = -1
-        new["next"][-1] = self.tables.counters[FREE_REGION]
-        self.tables.counters[FREE_REGION] = len(old)
-        self.tables.counters[FREE_REGIONS] += len(new) - len(old)
+        _append_free(new["next"], counters, FREE_REGION, len(old))
+        counters[FREE_REGIONS] += len(new) - len(old)
         self.tables = self.tables._replace(regions=new)
         self._grow_rows()
 
@@ -155,7 +211,6 @@ class Store:
         rows = np.zeros(size, ROW)
         rows[: len(self.tables.rows)] = self.tables.rows
         self.tables = self.tables._replace(rows=rows, factors=np.zeros(size, FACTOR))
-        self.sync()
 
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
@@ -169,7 +224,6 @@ class Store:
         """Twice the room for crossings."""
         points, rings = self._most
         self.work = enlarged(self.work, 2 * points, 2 * rings)
-        self.sync()
 
     def outline(self, outline: HasRings) -> int:
         """The outline's number in the pool; packed the first time it is seen."""
@@ -204,8 +258,9 @@ class Store:
         fill["boxes"] += len(one.boxes)
         fill["heads"] += 1
         self._most = (max(self._most[0], len(one.points)), max(self._most[1], len(one.rings)))
-        if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
-            self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
+        crossings = max(len(self.work.cross), min(4 * self._most[0], MOST_CROSSINGS))
+        if crossings > len(self.work.cross) or not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
+            self.work = new_work(2 * self._most[0], crossings, 2 * self._most[1])
         self._outlines[id(outline)] = h, outline
         return h
 
@@ -282,7 +337,6 @@ class Store:
             np.fromiter(self._bodies.values(), np.int32, len(self._bodies)),
         )
         extents(self.pool, self.tables)
-        self.sync()
 
     def forget(self, idents: Iterable[int], bodies: Iterable[int]) -> None:
         """Free what the tables hold of shapes and bodies that are gone; outlines nobody has go with them in time."""
@@ -326,6 +380,7 @@ class Store:
         kept = {number: outline for number, outline in self._outlines.values()}
         self._outlines = {}
         self._fill |= {"points": 0, "rings": 0, "boxes": 0, "heads": 0}
+        self.pool = Pool(*(np.zeros_like(array) for array in self.pool))  # the old one may be in use
         renumbered = np.full(len(self.pool.heads) + 1, -1)  # the last for "none"
         for number in used:
             renumbered[number] = self.outline(kept[int(number)])

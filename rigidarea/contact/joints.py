@@ -19,7 +19,7 @@ from numba import types
 
 from ..chipmunk import function
 from ..kernel.jit import callback, kernel
-from ..kernel.joint import JOINT, KINDS, RATCHET, spring_reach
+from ..kernel.joint import JOINT, KINDS, RATCHET, ROTARY_SPRING, SPRING, spring_reach
 from ..kernel.memory import array_at, caller
 from ..kernel.tables import ANEW, APART, BODIES, JOINTS, TURN, Tables
 from ..store import STATE, row_of_body
@@ -135,28 +135,36 @@ def ask_springs(s: Any, tables: Tables) -> None:
 
 
 @kernel
-def read_joints(s: Any, anew: bool) -> None:
-    """The joints' parameters as the frame's solve finds them, and what they did last. anew: a frame begins."""
-    kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)
+def read_joint(s: Any, joint: Any) -> None:
+    """A joint's parameters as they are now, and what it did last: that is also what it is given back with."""
+    joint.x = 0.0
+    joint.y = 0.0
+    if joint.kind < 0:
+        return
+    limits = array_at(joint.address + s.constraint_collide - 24, (3,), np.float64)
+    joint.max_force = limits[0]
+    joint.error_bias = limits[1]
+    joint.max_bias = limits[2]
+    kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.kind]
+    given = array_at(joint.address + kind[3], (kind[4],), np.float64)
+    for i in range(kind[4]):
+        joint.p[i] = given[i]
+    impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
+    joint.jx = impulse[0]
+    joint.jy = impulse[kind[2] - 1]
+    joint.step = s.before
+    joint.x = joint.jx
+    joint.y = joint.jy
+
+
+@kernel
+def start_joints(s: Any) -> None:
+    """The joints as the frame's solve finds them; what they will have done begins with nothing."""
     for joint in joints_of(s):
-        joint.x = 0.0
-        joint.y = 0.0
-        if not joint.taken or joint.kind < 0:
-            continue
-        limits = array_at(joint.address + s.constraint_collide - 24, (3,), np.float64)
-        joint.max_force = limits[0]
-        joint.error_bias = limits[1]
-        joint.max_bias = limits[2]
-        kind = kinds[joint.kind]
-        given = array_at(joint.address + kind[3], (kind[4],), np.float64)
-        for i in range(kind[4]):
-            joint.p[i] = given[i]
-        impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
-        joint.jx = impulse[0]
-        joint.jy = impulse[kind[2] - 1]
-        joint.step = s.before
-        if anew:
-            joint.asked = kind[5] > 0 and _words(joint.address + kind[5], 1)[0] != np.uint64(kind[6])
+        if joint.taken:
+            read_joint(s, joint)
+            joint.x = 0.0
+            joint.y = 0.0
 
 
 @kernel(forceinline=True)
@@ -217,4 +225,9 @@ def seize(constraint: int, space: int) -> None:
     if joint.pre_solve != 0:
         _call_user(joint.pre_solve, constraint, space)
     joint.taken = 1
+    read_joint(s, joint)
+    joint.asked = 0
+    if joint.kind == SPRING or joint.kind == ROTARY_SPRING:
+        kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.uint64)[joint.kind]
+        joint.asked = _words(constraint + np.int64(kind[5]), 1)[0] != kind[6]
     _words(constraint, 1)[0] = s.seized_kind

@@ -26,6 +26,8 @@ from ..kernel.tables import (
     FIXED,
     FREE_PAIRS,
     LED,
+    MORE_JOINTS,
+    MORE_PAIRS,
     SEARCH,
     SHAPES,
     Tables,
@@ -35,8 +37,8 @@ from ..kernel.tables import (
 from ..store import STATE, load_pool, load_tables, row_of_body
 from .joints import take_joints
 
-#: What machine code asks Python for.
-REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN, NORMAL = range(8)
+#: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
+REGISTER, GROW, BROKEN, NORMAL = range(4)
 
 user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
@@ -73,7 +75,8 @@ def state_of(space: int) -> Any:
 
 @kernel
 def ask(s: Any, request: int) -> bool:
-    """Ask Python for something; whether it could."""
+    """Ask Python for something; whether it could. If not, what it raised is raised after the step."""
+    s.failed = 1  # until Python says that it has done all of it, whatever interrupts it
     _call_ask(s.ask_at, np.uint64(request))
     return bool(s.failed == 0)
 
@@ -184,6 +187,7 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         x, y, angle = body.x, body.y, body.angle
         notice(s, address, body)
         body.stamp = s.frame
+        body.was_calm = 1 if body.calm > 0 else 0
         body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
@@ -203,12 +207,17 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w
+        force = floats(address + s.body_force, 2)
+        body.old_fx = force[0]
+        body.old_fy = force[1]
+        body.old_torque = floats(address + s.body_torque, 1)[0]
     for i in range(tables.counters[BODIES]):
         body = tables.bodies[i]
         if body.address != 0 and body.stamp != s.frame:
             x, y, angle = body.x, body.y, body.angle
             read_place(s, body.address, body)
             read_motion(s, body.address, body)
+            body.was_calm = 1 if body.calm > 0 else 0
             body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
             asleep |= body.mobile == 1
             body.inverse_mass = 0.0  # asleep, or static
@@ -291,8 +300,10 @@ def begin(s: Any, space: int, dt: float) -> bool:
         extents(load_pool(s), tables)
     if not s.explicit:
         n = len(members(space, s.space_constraints))
-        if n > s.joints_n and not ask(s, MORE_JOINTS):
-            return False
+        if n > s.joints_n:
+            load_tables(s).counters[MORE_JOINTS] = n - s.joints_n
+            if not ask(s, GROW):
+                return False
         take_joints(s, load_tables(s), members(space, s.space_constraints))
     return True
 
@@ -366,7 +377,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     now = np.int64(timestamp(space))
     if s.user_pre_solve != 0:
         _call_hook(s.user_pre_solve, arbiter, space, data)
-    if s.frame != now and not begin(s, space, time_step(space)):
+    if s.frame != now:
+        begin(s, space, time_step(space))
+    if s.failed:
         return
     both = words(arbiter + s.arbiter_shape_a, 2)
     a = _row_of_shape(s, both[0])
@@ -385,7 +398,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         if not solid:
             return
         if tables.counters[FREE_PAIRS] == 0:
-            if not ask(s, MORE_PAIRS):
+            tables.counters[MORE_PAIRS] = 1
+            if not ask(s, GROW):
                 return
             tables = load_tables(s)
         p = new_pair(tables, a, b)

@@ -23,13 +23,16 @@ class Register:
         self._store = store
         self._state = store.state[0]
         self._hook = hook
-        self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
-        self._forms: dict[int, Any] = {}
         self._added: dict[int, tuple[Outline, Any]] = {}
+
+    @property
+    def shapes(self) -> dict[int, pymunk.Shape]:
+        """By Chipmunk's id."""
+        return self._store.shapes
 
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
-        store = self._store
+        store = self._store.draft()
         present = {shape._hashid: shape for shape in space.shapes}
         # not space.static_body, which makes one where there is none
         still = [] if space._static_body is None else [space._static_body]
@@ -40,23 +43,23 @@ class Register:
         for constraint in space.constraints:
             for body in (constraint.a, constraint.b):
                 bodies.setdefault(address_of(body._body), body)
-        gone = self.shapes.keys() - present.keys()
+        gone = store.shapes.keys() - present.keys()
         store.forget(gone, store.known_bodies() - bodies.keys())
         for ident in gone:
-            del self.shapes[ident], self._forms[ident]
-        held = not space._locked and not self._state["explicit"]
-        for address, body in bodies.items():
+            del store.shapes[ident], store.forms[ident]
+        for address in bodies:
             store.body(address)
-            if held:
-                self._hook.hold(body)
         for ident, shape in present.items():
-            if ident not in self.shapes:
-                self._take(shape)
-        self._added.clear()
-        self._hear(space)
+            if ident not in store.shapes:
+                self._take(store, shape)
+        facts = self._hear(store, space)
         store.settle()
-        self._state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
-        self._state["shape_count"] = len(present)
+        counter = lib.cpSpaceGetShapeIDCounter(space._space)
+        self._store.publish(store, shape_counter=counter, shape_count=len(present), **facts)
+        self._added.clear()
+        if not space._locked and not self._state["explicit"]:
+            for body in bodies.values():
+                self._hook.hold(body)
 
     def came(self, shape: pymunk.Shape) -> None:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
@@ -70,7 +73,8 @@ class Register:
         """Of these shapes, those whose geometry has been changed."""
         for shape in shapes:
             self._added.pop(shape._hashid, None)
-            if shape._hashid in self._forms and self._forms[shape._hashid] != _form(shape):
+            known = self._store.forms
+            if shape._hashid in known and known[shape._hashid] != _form(shape):
                 self.refresh(space, shape)
 
     def refresh(self, space: pymunk.Space, shape: pymunk.Shape) -> None:
@@ -80,27 +84,25 @@ class Register:
         """
         if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
             raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
-        Outline.from_pymunk(shape)  # says what is wrong with it while nothing has changed
-        self._store.forget([shape._hashid], ())
-        self._take(shape)
-        self._hear(space)
-        self._store.settle()
+        store = self._store.draft()
+        store.forget([shape._hashid], ())
+        self._take(store, shape)
+        facts = self._hear(store, space)
+        store.settle()
+        self._store.publish(store, **facts)
 
     def largest(self) -> float:
         """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""
         boxes = [shape.bb for shape in self.shapes.values() if _moves(shape)]
         return max((max(bb.right - bb.left, bb.top - bb.bottom) for bb in boxes), default=1.0)
 
-    def _take(self, shape: pymunk.Shape) -> None:
+    def _take(self, store: Store, shape: pymunk.Shape) -> None:
         """Enter a shape into the tables."""
-        if shape._hashid in self._added:
-            outline, form = self._added.pop(shape._hashid)
-        else:
-            outline, form = Outline.from_pymunk(shape), _form(shape)
+        outline, form = self._added.get(shape._hashid) or (Outline.from_pymunk(shape), _form(shape))
         body = shape.body
         assert body is not None
         left, bottom, right, top = outline.bounds
-        self._store.shape(
+        store.shape(
             shape._hashid,
             address_of(shape._shape),
             outline,
@@ -110,12 +112,13 @@ class Register:
             outline.smallest_extent,
             (0.5 * (right - left), 0.5 * (top - bottom)),
         )
-        self.shapes[shape._hashid] = shape
-        self._forms[shape._hashid] = form
+        store.shapes[shape._hashid] = shape
+        store.forms[shape._hashid] = form
 
-    def _hear(self, space: pymunk.Space) -> None:
-        """Which shapes' collision types have callbacks of the user's, that may say no."""
-        self._hook.note_callbacks()
+    def _hear(self, store: Store, space: pymunk.Space) -> dict[str, int]:
+        """Which shapes' collision types have callbacks of the user's, that may say no; facts by which it is known
+        whether there are others.
+        """
         everywhere = space._handlers.get((None, None))
         to_all = everywhere is not None and any(
             getattr(everywhere, phase) is not None
@@ -124,13 +127,12 @@ class Register:
         keys = [key for key in space._handlers if key != (None, None)]
         alone = {a for a, b in keys if b is None}
         pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
-        rows = self._store.slots
-        for ident, shape in self.shapes.items():
+        for ident, shape in store.shapes.items():
             kind = shape.collision_type
-            row = self._store.tables.shapes[rows[ident]]
+            row = store.tables.shapes[store.slots[ident]]
             row["type"], row["heard"] = kind, (to_all or kind in alone) + 2 * (kind in pairs)
         entries = ffi.cast("unsigned int **", address_of(space._space) + int(self._state["space_handlers"]))
-        self._state["handler_count"] = int(entries[0][0])
+        return {"handler_count": int(entries[0][0]), **self._hook.callbacks()}
 
 
 def _form(shape: pymunk.Shape) -> Any:

@@ -16,9 +16,11 @@ from .pool import Pool
 from .tables import (
     APART,
     BODIES,
+    CONCAVE,
     DRIFTS,
     FIXED,
     FREE_PAIRS,
+    MORE_PAIRS,
     NEAR,
     SEARCH,
     SHAPES,
@@ -31,8 +33,6 @@ from .tables import (
     pairs_in_use,
     rehash,
 )
-
-GROW_PAIRS = -1
 
 
 @kernel
@@ -125,8 +125,8 @@ def _widen(pool: Pool, tables: Tables, time: float) -> None:
 
 
 @kernel
-def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
-    """Find all pairs whose boxes meet, the boxes made for `time` of motion: how many; GROW_PAIRS: no room.
+def search(pool: Pool, tables: Tables, time: float, frame: int) -> bool:
+    """Find all pairs whose boxes meet, the boxes made for `time` of motion. False: no room, for MORE_PAIRS of them.
 
     tables.near has them then, in no order. Pairs that are near no more are forgotten, but for those of
     which Chipmunk has told in this frame: a blow may have parted them, and its impulse is yet to be reported.
@@ -145,6 +145,7 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
             j -= 1
         order[j] = me
     counters[SEARCH] += 1
+    counters[MORE_PAIRS] = 0
     mark = counters[SEARCH]
     for i in range(n):
         one = shapes[order[i]]
@@ -169,9 +170,12 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
             p = find_pair(tables, order[i], order[j])
             if p < 0:
                 if counters[FREE_PAIRS] == 0:
-                    return GROW_PAIRS
+                    counters[MORE_PAIRS] += 1
+                    continue
                 p = new_pair(tables, order[i], order[j])
             tables.pairs[p].near = mark
+    if counters[MORE_PAIRS] > 0:
+        return False
     k = 0
     ended = 0
     left = pairs_in_use(tables)
@@ -190,7 +194,7 @@ def search(pool: Pool, tables: Tables, time: float, frame: int) -> int:
     if ended > 0:
         rehash(tables)
     counters[NEAR] = k
-    return k
+    return True
 
 
 @kernel
@@ -214,8 +218,9 @@ def passes(one: Any, other: Any) -> bool:
 
 @entry
 def extents(pool: Pool, tables: Tables) -> None:
-    """Every body's smallest extent and its reach, from its shapes'; how many of these are toothed."""
+    """Every body's smallest extent and its reach, from its shapes'; how many of these are toothed, and not convex."""
     tables.counters[TOOTHED] = 0
+    tables.counters[CONCAVE] = 0
     for i in range(tables.counters[BODIES]):
         tables.bodies[i].extent = 0.0
         tables.bodies[i].reach = 0.0
@@ -226,4 +231,5 @@ def extents(pool: Pool, tables: Tables) -> None:
             body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)
             head = pool.heads[shape.outline]
             tables.counters[TOOTHED] += head.mouth < math.inf
+            tables.counters[CONCAVE] += not head.convex
             body.reach = max(body.reach, abs(head.x) + abs(head.y) + shape.half_x + shape.half_y)

@@ -15,13 +15,34 @@ from .broad import swing
 from .constants import LOOK, STRAIGHT_WAY
 from .jit import kernel
 from .joint import make_joint_row
-from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
+from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import seen_from
 from .pool import Pool
 from .row import make_row
-from .tables import BOUNCES, FIRST, JOINTS, LAST, LIVE, ROWS, STRUCK, SUBSTEP, Law, Tables
+from .tables import (
+    BOUNCES,
+    CONCAVE,
+    FIRST,
+    FREE_PAIRS,
+    FREE_REGIONS,
+    JOINTS,
+    LAST,
+    LIVE,
+    MORE_PAIRS,
+    MORE_REGIONS,
+    NEAR,
+    ROWS,
+    SHAPES,
+    STRUCK,
+    SUBSTEP,
+    Law,
+    Tables,
+)
 from .verdict import allowed
 from .work import Work
+
+#: Rows to spare, of pairs and of regions, beside one of each a shape and a near pair; and regions a concave shape.
+SPARE = 24
 
 
 @kernel(forceinline=True)
@@ -155,6 +176,7 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     while r != until:
         region = tables.regions[r]
         if counters[ROWS] == len(tables.rows):
+            counters[MORE_REGIONS] = 1
             return False
         row = tables.rows[counters[ROWS]]
         counters[ROWS] += 1
@@ -165,6 +187,20 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
         counters[BOUNCES] += region.mode == STRUCK
         r = region.next
     return True
+
+
+@kernel
+def has_room(tables: Tables) -> bool:
+    """Whether there is room for what a frame may come to find beyond what it starts with; if not, for how much more.
+
+    Asked before a frame changes anything: hardly ever does one have to be run again from further on.
+    """
+    counters = tables.counters
+    pairs = counters[SHAPES] + SPARE - counters[FREE_PAIRS]
+    regions = counters[NEAR] + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
+    counters[MORE_PAIRS] = max(0, pairs)
+    counters[MORE_REGIONS] = max(0, regions)
+    return bool(pairs <= 0 and regions <= 0)
 
 
 @kernel
@@ -184,19 +220,18 @@ def _add_joints(tables: Tables, law: Law, h: float) -> None:
 
 
 @kernel
-def gather(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, jointed: bool
-) -> tuple[int, int]:
-    """Regions and rows of near pairs from tables.near[start] on, and of joints: (DONE or GROW_..., where it stopped).
+def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, jointed: bool) -> bool:
+    """Regions and rows of all near pairs, and rows of joints; False: there is no room for them.
 
     Where there are joints, first what bears on what does not move, then the joints, then the other contacts: each
     finds what carries its bodies (`conjugate`).
     """
     counters = tables.counters
     first = counters[FIRST]
-    last = counters[LAST]
-    size = last - first
-    for n in range(start, 2 * size if jointed else size):
+    size = counters[LAST] - first
+    if jointed and size == 0:
+        _add_joints(tables, law, h)
+    for n in range(2 * size if jointed else size):
         i = first + (n - size if n >= size else n)
         p = tables.near[i].pair
         pair = tables.pairs[p]
@@ -219,18 +254,15 @@ def gather(
                 pair.waited = h if pair.waiting != frame else pair.waited + h
                 pair.waiting = frame
             continue
-        status = meet(pool, tables, work, law, p, h)
-        if status != DONE:
-            return status, n
+        if not meet(pool, tables, work, law, p, h):
+            return False
         if pair.head < 0:
             _part(pool, tables, pair, a, b)
             continue
         pair.seats = has_seats(pool, tables, pair)
         if not _add_rows(tables, law, p, h, -1):
-            return GROW_REGIONS, n
-    if jointed and size == 0:
-        _add_joints(tables, law, h)
-    return DONE, last
+            return False
+    return True
 
 
 @kernel
@@ -275,18 +307,16 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
 
 
 @kernel
-def join(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, first: bool
-) -> tuple[int, int, int]:
+def join(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, first: bool) -> int:
     """Rows for pairs that the velocities, as solved so far, would bring to overlap in the next drift.
 
     So what stands at touch is held from the start, and a blow goes on from body to body within the substep. Returns
-    (DONE or GROW_..., where it stopped, how many rows joined).
+    how many rows joined; -1: there is no room for them.
     """
     counters = tables.counters
     before = counters[ROWS]
     _stray(tables, h)
-    for i in range(max(start, counters[FIRST]), counters[LAST]):
+    for i in range(counters[FIRST], counters[LAST]):
         near = tables.near[i]
         if first:
             near.a = tables.shapes[tables.pairs[near.pair].a].body
@@ -301,9 +331,8 @@ def join(
         ):
             continue
         old = pair.head
-        status = meet_ahead(pool, tables, work, law, near.pair, h, first)
-        if status != DONE:
-            return status, i, counters[ROWS] - before
+        if not meet_ahead(pool, tables, work, law, near.pair, h, first):
+            return -1
         if not _add_rows(tables, law, near.pair, h, old):
-            return GROW_REGIONS, i, counters[ROWS] - before
-    return DONE, counters[LAST], counters[ROWS] - before
+            return -1
+    return int(counters[ROWS] - before)

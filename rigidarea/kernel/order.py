@@ -7,7 +7,6 @@ from typing import Any
 
 from .broad import search, somebody_left
 from .jit import kernel
-from .meet import DONE
 from .pool import Pool
 from .tables import (
     ANEW,
@@ -23,21 +22,19 @@ from .tables import (
     Tables,
 )
 
-#: What a kernel may ask for before it can go on.
-GROW_PAIRS = 3
-
 
 @kernel
-def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> int:
-    """Search pairs again if somebody has left the boxes of the last search. DONE or GROW_PAIRS."""
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> bool:
+    """Search pairs again if somebody has left the boxes of the last search. False: no room for them."""
     left = somebody_left(pool, tables, frame, h)
     if not (left or tables.counters[ANEW]):
-        return DONE
-    if search(pool, tables, max(time, 2.0 * h), frame) < 0:
-        return GROW_PAIRS
+        return True
+    tables.counters[ANEW] = 1  # until it is done
+    if not search(pool, tables, max(time, 2.0 * h), frame):
+        return False
     tables.counters[ANEW] = 0
     arrange(tables, gx, gy)
-    return DONE
+    return True
 
 
 @kernel(forceinline=True)
