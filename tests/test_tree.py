@@ -27,9 +27,7 @@ def found(nodes: np.ndarray, root: int, box: tuple[float, ...]) -> list[int]:
 
 def meeting(boxes: dict[int, tuple[float, ...]], box: tuple[float, ...]) -> set[int]:
     return {
-        i
-        for i, b in boxes.items()
-        if b[0] <= box[2] and b[2] >= box[0] and b[1] <= box[3] and b[3] >= box[1]
+        i for i, b in boxes.items() if b[0] <= box[2] and b[2] >= box[0] and b[1] <= box[3] and b[3] >= box[1]
     }
 
 

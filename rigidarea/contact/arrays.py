@@ -5,36 +5,35 @@ Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are address
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 
-from ..kernel.broad import extents
 from ..kernel.conjugate import FACTOR, MOBILITY
 from ..kernel.overlap import enlarged, fits, new_work
 from ..kernel.pool import HEAD, HasRings, Pool, pack
 from ..kernel.row import ROW
 from ..kernel.tables import (
-    ANEW,
     BODIES,
     BODY,
     COUNTERS,
+    FREE_BODY,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
-    NEAR,
+    FREE_SHAPE,
     NEIGHBOURS,
     PAIR,
     REGION,
     SHAPE,
     SHAPES,
     Tables,
-    end_pair,
-    new_pair,
     rehash,
 )
+from ..kernel.tree import FREE, NODE
 from ..store import JOINT, STATE, enter_bodies
+from .geometry import Forms, enter_form, read_shapes
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
@@ -45,7 +44,6 @@ class Store:
 
     def __init__(self) -> None:
         self.state = np.zeros(1, STATE)
-        self._fill = {"points": 0, "rings": 0, "boxes": 0, "heads": 0, "shapes": 0}
         self.pool = Pool(
             np.zeros((64, 2)),
             np.zeros(64, np.int32),
@@ -54,6 +52,15 @@ class Store:
             np.zeros((64, 4)),
             np.zeros((64, 4)),
             np.zeros(16, HEAD),
+        )
+        self.forms = Forms(
+            np.zeros((16, 3)),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros((16, 2), np.int32),
+            np.zeros(128),
+            np.full(64, -1, np.int32),
+            np.zeros(5, np.int64),
         )
         self.work = new_work()
         self.tables = Tables(
@@ -65,36 +72,41 @@ class Store:
             np.zeros(0, FACTOR),
             np.zeros(16, MOBILITY),
             np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(0, np.int32),
+            np.zeros(0, NODE),
+            np.array([-1, -1, -1], np.int32),
             np.zeros(1, NEIGHBOURS),
             np.zeros((JOINTS, 2), np.int32),
-            np.zeros(0, np.int32),
             np.full(64, -1, np.int64),
             np.zeros(64, np.int32),
             np.zeros(COUNTERS, np.int64),
         )
-        self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
+        self.tables.counters[[FREE_REGION, FREE_PAIR, FREE_SHAPE, FREE_BODY]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
         self.joints = np.zeros(JOINTS, JOINT)
+        self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
+        self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
         self._kept: dict[str, np.ndarray] = {}
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
-        self._free: list[int] = []  # rows of shapes that are gone
-        self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
-        self._free_bodies: list[int] = []
+        self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
+        self._grow_nodes(16)
         self.keep()
         self.grow_pairs(64)
         self.grow_regions(64)
-        end_pair(self.tables, new_pair(self.tables, 0, 1))  # compiled now, not in a frame
-        rehash(self.tables)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
         """What each array takes (bytes)."""
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **self._kept}
         own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows", "joints")}
-        return {name: array.nbytes for name, array in {**arrays, **own}.items()}
+        forms = {f"form_{name}": array for name, array in self.forms._asdict().items()}
+        return {name: array.nbytes for name, array in {**arrays, **own, **forms}.items()}
 
     def keep(self) -> None:
         """Room for a copy of what a frame changes."""
@@ -106,8 +118,9 @@ class Store:
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        own = ("slots", "body_keys", "body_rows", "joints")
+        own = ("slots", "body_keys", "body_rows", "joints", "heard_alone", "heard_pairs")
         mine = {name: getattr(self, name) for name in own} | self._kept
+        mine |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
         state = self.state[0]
         for name, array in arrays.items():
@@ -129,8 +142,10 @@ class Store:
             size *= 2
         near = np.zeros(len(new) + 1, NEIGHBOURS)
         near[: len(self.tables.near)] = self.tables.near
+        told = np.zeros(len(new), np.int32)
+        told[: len(old)] = self.tables.told
         self.tables = self.tables._replace(
-            pairs=new, near=near, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
+            pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
         rehash(self.tables)
         self.sync()
@@ -163,24 +178,83 @@ class Store:
         self.work = enlarged(self.work, 2 * points, 2 * rings)
         self.sync()
 
-    def outline(self, outline: HasRings) -> int:
-        """The outline's number in the pool; packed the first time it is seen."""
+    def room(self, shapes: int, bodies: int, ident: int) -> None:
+        """Room for so many shapes and bodies more, and for Chipmunk's ids up to `ident`."""
+        tables = self.tables
+        counters = tables.counters
+        if counters[SHAPES] + shapes > len(tables.shapes):
+            n = max(int(counters[SHAPES]) + shapes, 2 * len(tables.shapes))
+            self.tables = tables = tables._replace(
+                shapes=_longer(tables.shapes, n),
+                movers=_longer(tables.movers, n),
+                asked=_longer(tables.asked, n),
+            )
+            self._grow_nodes(n)
+        if counters[BODIES] + bodies > len(tables.bodies):
+            n = max(int(counters[BODIES]) + bodies, 2 * len(tables.bodies))
+            self.tables = self.tables._replace(
+                bodies=_longer(tables.bodies, n),
+                mobility=np.zeros(n, MOBILITY),
+                live=_longer(tables.live, n),
+                awake=_longer(tables.awake, n),
+            )
+            size = len(self.body_keys)
+            while size < 2 * n:
+                size *= 2
+            if size > len(self.body_keys):
+                used = self.body_keys != 0
+                keys, rows = self.body_keys[used], self.body_rows[used]
+                self.body_keys, self.body_rows = np.zeros(size, np.uint64), np.zeros(size, np.int32)
+                enter_bodies(self.body_keys, self.body_rows, keys, rows)
+        if ident >= len(self.slots):
+            self.slots = _longer(self.slots, max(ident + 1, 2 * len(self.slots)), -1)
+        self.sync()
+
+    def _grow_nodes(self, shapes: int) -> None:
+        """Room for so many shapes in the trees."""
+        old = self.tables.nodes
+        new = _longer(old, 2 * shapes)
+        new["parent"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
+        new["parent"][-1] = self.tables.roots[FREE]
+        self.tables.roots[FREE] = len(old)
+        self.tables = self.tables._replace(nodes=new)
+
+    def _pool_room(self, points: int, rings: int, boxes: int, heads: int, raw: int) -> None:
+        """Room for so much more in the pool."""
+        need = self.forms.fill + np.array((points, rings, boxes, heads, raw))
+
+        def longer(array: np.ndarray, which: int) -> np.ndarray:
+            n = int(need[which])
+            return array if n <= len(array) else _longer(array, max(n, 2 * len(array)))
+
+        pool, forms = self.pool, self.forms
+        self.pool = Pool(
+            *(longer(array, 0) for array in pool[:3]),
+            longer(pool.rings, 1),
+            longer(pool.boxes, 2),
+            longer(pool.arcs, 0),
+            longer(pool.heads, 3),
+        )
+        grown = [longer(array, 3) for array in forms[:4]]
+        self.forms = Forms(*grown, longer(forms.raw, 4), forms.table, forms.fill)
+        if 2 * len(grown[0]) > len(forms.table):
+            self.forms = self.forms._replace(table=np.full(_power(4 * len(grown[0])), -1, np.int32))
+            for h in range(int(forms.fill[3])):
+                if self.forms.raw_at[h, 1] > 0:
+                    enter_form(self.forms, h)
+        self.sync()
+
+    def outline(self, outline: HasRings, extent: float) -> int:
+        """The outline's number in the pool; packed the first time it is seen, its mirror behind it.
+
+        extent: its smallest extent (length).
+        """
         found = self._outlines.get(id(outline))
         if found is not None:
             return found[0]
         one = pack([outline])
-        fill = self._fill
-        room = {}
-        for name, array in self.pool._asdict().items():
-            key = "points" if name in ("following", "ring_of", "arcs") else name
-            need = fill[key] + len(getattr(one, name))
-            if need > len(array):
-                bigger = np.zeros((max(need, 2 * len(array)), *array.shape[1:]), array.dtype)
-                bigger[: len(array)] = array
-                array = bigger
-            room[name] = array
-        self.pool = pool = Pool(**room)
-        p, r, b, h = fill["points"], fill["rings"], fill["boxes"], fill["heads"]
+        self._pool_room(len(one.points), len(one.rings), len(one.boxes), 1, 0)
+        pool, (p, r, b, h, _) = self.pool, (int(n) for n in self.forms.fill)
         pool.points[p : p + len(one.points)] = one.points
         pool.arcs[p : p + len(one.points)] = one.arcs
         pool.following[p : p + len(one.points)] = one.following + p
@@ -191,136 +265,75 @@ class Store:
         pool.heads[h]["point"] += p
         pool.heads[h]["ring"] += r
         pool.heads[h]["box"] += b
-        fill["points"] += len(one.points)
-        fill["rings"] += len(one.rings)
-        fill["boxes"] += len(one.boxes)
-        fill["heads"] += 1
-        self._most = (max(self._most[0], len(one.points)), max(self._most[1], len(one.rings)))
-        if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
-            self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
+        self.forms.fill[:4] += len(one.points), len(one.rings), len(one.boxes), 1
+        left, bottom, right, top = outline.bounds
+        self.forms.extent[h] = extent, 0.5 * (right - left), 0.5 * (top - bottom)
+        self.forms.mirror[h], self.forms.users[h], self.forms.raw_at[h, 1] = -1, 0, 0
+        self._note_most(len(one.points), len(one.rings))
         self._outlines[id(outline)] = h, outline
         return h
 
-    def body(self, address: int) -> int:
-        """The row of Chipmunk's body at `address`, made if there is none."""
-        row = self._bodies.get(address)
-        if row is None:
-            row = self._free_bodies.pop() if self._free_bodies else int(self.tables.counters[BODIES])
-            if row >= len(self.tables.bodies):
-                bodies = np.zeros(2 * len(self.tables.bodies), BODY)
-                bodies[: len(self.tables.bodies)] = self.tables.bodies
-                mobility = np.zeros(len(bodies), MOBILITY)
-                live = np.zeros(len(bodies), np.int32)
-                self.tables = self.tables._replace(bodies=bodies, mobility=mobility, live=live)
-            self.tables.counters[BODIES] = max(self.tables.counters[BODIES], row + 1)
-            self.tables.bodies[row] = np.zeros((), BODY)
-            self.tables.bodies[row]["address"], self.tables.bodies[row]["stamp"] = address, -1
-            self._bodies[address] = row
-        return row
-
-    def shape(
-        self,
-        ident: int,
-        address: int,
-        outline: HasRings,
-        mirror: HasRings | None,
-        body: int,
-        sensor: bool,
-        extent: float,
-        half: tuple[float, float],
-    ) -> None:
-        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `settle` after the last.
-
-        address, body: Chipmunk's. mirror: the outline's other side, of a segment that has two. extent: its smallest
-        extent (length). half: half the width and height of its box (length).
-        """
-        number = self.outline(outline)
-        other = -1 if mirror is None else self.outline(mirror)
-        if ident >= len(self.slots):
-            slots = np.full(max(ident + 1, 2 * len(self.slots)), -1, np.int32)
-            slots[: len(self.slots)] = self.slots
-            self.slots = slots
-        if self.knows(ident):
-            self.forget([ident], ())
-        row = self._free.pop() if self._free else self._fill["shapes"]
-        if row == len(self.tables.shapes):
-            shapes = np.zeros(2 * row, SHAPE)
-            shapes[:row] = self.tables.shapes
-            self.tables = self.tables._replace(shapes=shapes)
-        self._fill["shapes"] = max(self._fill["shapes"], row + 1)
-        self.slots[ident] = row
-        shape = self.tables.shapes[row]
-        shape["address"], shape["ident"], shape["body"] = address, ident, self.body(body)
-        shape["outline"], shape["mirror"], shape["sensor"] = number, other, sensor
-        shape["extent"], (shape["half_x"], shape["half_y"]) = extent, half
-        shape["low_x"], shape["high_x"] = np.inf, -np.inf
-
-    def settle(self) -> None:
-        """After shapes or bodies have come or gone: everything that machine code finds them by."""
-        counters = self.tables.counters
-        counters[SHAPES], counters[ANEW] = self._fill["shapes"], 1
-        order = self.tables.sorted  # as it is, the new rows behind it: hardly anything to sort
-        order = np.concatenate((order, np.arange(len(order), self._fill["shapes"], dtype=np.int32)))
-        self.tables = self.tables._replace(sorted=order)
-        size = 64
-        while size < 3 * len(self._bodies):
-            size *= 2
-        self.body_keys = np.zeros(size, np.uint64)
-        self.body_rows = np.zeros(size, np.int32)
-        enter_bodies(
-            self.body_keys,
-            self.body_rows,
-            np.fromiter(self._bodies.keys(), np.uint64, len(self._bodies)),
-            np.fromiter(self._bodies.values(), np.int32, len(self._bodies)),
-        )
-        extents(self.pool, self.tables)
+    def _note_most(self, points: int, rings: int) -> None:
+        """There is an outline of so many points and rings: room for two of them to meet."""
+        self._most = (max(self._most[0], points), max(self._most[1], rings))
+        if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
+            self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
         self.sync()
 
-    def forget(self, idents: Iterable[int], bodies: Iterable[int]) -> None:
-        """Free what the tables hold of shapes and bodies that are gone; outlines nobody has go with them in time."""
-        rows = [int(self.slots[ident]) for ident in idents if self.knows(ident)]
-        for ident in idents:
-            if self.knows(ident):
-                self.slots[ident] = -1
-        if rows:
-            pairs = self.tables.pairs
-            for p in np.flatnonzero(
-                (pairs["a"] >= 0) & (np.isin(pairs["a"], rows) | np.isin(pairs["b"], rows))
-            ):
-                end_pair(self.tables, int(p))
-            self.drop_near()
-            rehash(self.tables)
-        for row in rows:
-            self.tables.shapes[row] = np.zeros((), SHAPE)
-            self.tables.shapes[row]["outline"] = self.tables.shapes[row]["mirror"] = -1
-            self._free.append(row)
-        for address in bodies:
-            row = self._bodies.pop(address)
-            self.tables.bodies[row] = np.zeros((), BODY)
-            self.tables.bodies[row]["stamp"] = -1
-            self._free_bodies.append(row)
-        known = self.known_shapes
-        used = np.union1d(known["outline"], known["mirror"])
-        used = used[used >= 0]
-        if len(self._outlines) > 2 * len(used) + 64:
-            self._repack(used)
+    def read(self, addresses: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, int]:
+        """Outlines of Chipmunk's own shapes at these addresses (n,) uint64: their numbers; which has no area, or -1."""
+        heads = np.zeros(len(addresses), np.int32)
+        done, start = 0, int(self.forms.fill[3])
+        while done < len(addresses):
+            done, why = read_shapes(addresses, done, where, self.pool, self.forms, self._buffer, heads)
+            if why == -1:
+                return heads, done
+            if why > 0:
+                self._buffer = np.zeros(2 * why)
+            elif done < len(addresses):
+                n = len(addresses) - done + len(self._buffer)
+                self._pool_room(8 * n, 2 * n, 32 * n, 2 * n, 10 * n)
+        if self.forms.fill[3] > start:
+            self._note_most(int(self.pool.heads["count"][start : self.forms.fill[3]].max()), 1)
+        return heads, -1
 
-    def drop_near(self) -> None:
-        """Pairs that have ended are near no more."""
-        tables = self.tables
-        near = tables.near[: tables.counters[NEAR]]
-        near = near[tables.pairs["a"][near["pair"]] >= 0]
-        tables.near[: len(near)] = near
-        tables.counters[NEAR] = len(near)
-
-    def _repack(self, used: np.ndarray) -> None:
-        """Only the outlines of these numbers stay, with new numbers."""
-        kept = {number: outline for number, outline in self._outlines.values()}
-        self._outlines = {}
-        self._fill |= {"points": 0, "rings": 0, "boxes": 0, "heads": 0}
-        renumbered = np.full(len(self.pool.heads) + 1, -1)  # the last for "none"
-        for number in used:
-            renumbered[number] = self.outline(kept[int(number)])
+    def tidy(self) -> None:
+        """Outlines that no shape has go, in time."""
+        n = int(self.forms.fill[3])
+        used = np.flatnonzero(self.forms.users[:n] > 0)
+        if n <= 2 * len(used) + 64:
+            return
+        old, forms = self.pool, self.forms
+        renumbered = np.full(n + 1, -1, np.int32)  # the last for "none"
+        renumbered[used] = np.arange(len(used))
+        heads = old.heads[used].copy()
+        points, rings = heads["count"], heads["rings"]
+        boxes, raws = 2 * heads["leaves"], forms.raw_at[used, 1]
+        take = [_ranges(heads["point"], points), _ranges(heads["ring"], rings), _ranges(heads["box"], boxes)]
+        shift = [
+            _starts(points) - heads["point"],
+            _starts(rings) - heads["ring"],
+            _starts(boxes) - heads["box"],
+        ]
+        raw_at, raw = forms.raw_at[used].copy(), forms.raw[_ranges(forms.raw_at[used, 0], raws)]
+        raw_at[:, 0] = _starts(raws)
+        following = old.following[take[0]] + np.repeat(shift[0], points).astype(np.int32)
+        ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points).astype(np.int32)
+        ends = old.rings[take[1]] + np.repeat(shift[0], rings).astype(np.int32)[:, None]
+        fresh = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
+        for name, more in zip(("point", "ring", "box"), shift):
+            heads[name] += more
+        for array, values in zip(old, fresh):
+            array[: len(values)] = values
+        for array, values in zip(forms[:5], (*(array[used].copy() for array in forms[:3]), raw_at, raw)):
+            array[: len(values)] = values
+        forms.mirror[: len(used)] = renumbered[forms.mirror[: len(used)]]
+        forms.fill[:] = points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()
+        forms.table[:] = -1
+        for h in np.flatnonzero(raw_at[:, 1]):
+            enter_form(forms, int(h))
+        kept = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]
+        self._outlines = {id(outline): (h, outline) for h, outline in kept if h >= 0}
         rows = self.known_shapes
         for name in ("outline", "mirror"):
             rows[name] = renumbered[rows[name]]
@@ -331,13 +344,41 @@ class Store:
 
     def row_of(self, address: int) -> int:
         """The row of Chipmunk's body at `address`; -1: not known."""
-        return self._bodies.get(address, -1)
-
-    def known_bodies(self) -> set[int]:
-        """Chipmunk's bodies that have a row."""
-        return set(self._bodies)
+        mask = len(self.body_keys) - 1
+        i = (address >> 4) & mask
+        while (key := int(self.body_keys[i])) != 0:
+            if key == address:
+                return int(self.body_rows[i])
+            i = (i + 1) & mask
+        return -1
 
     @property
     def known_shapes(self) -> np.ndarray:
         """The rows of tables.shapes in use (outline -1: free again)."""
-        return self.tables.shapes[: self._fill["shapes"]]
+        return self.tables.shapes[: int(self.tables.counters[SHAPES])]
+
+
+def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:
+    """An array of n rows that begins as this one."""
+    new = (
+        np.full((n, *array.shape[1:]), value, array.dtype)
+        if value
+        else np.zeros((n, *array.shape[1:]), array.dtype)
+    )
+    new[: len(array)] = array
+    return new
+
+
+def _power(n: int) -> int:
+    """The smallest power of two that is no less than n."""
+    return 1 << (n - 1).bit_length()
+
+
+def _starts(counts: np.ndarray) -> np.ndarray:
+    """Where ranges of these lengths begin, one behind the other."""
+    return np.cumsum(counts) - counts
+
+
+def _ranges(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """The numbers of ranges that begin at `first`, one behind the other."""
+    return np.repeat(first - _starts(counts), counts) + np.arange(counts.sum())

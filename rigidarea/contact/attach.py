@@ -74,6 +74,7 @@ class AreaContact:
         state["substeps"] = SUBSTEPS
         state["held"] = state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
+        state["pending"] = 2
         self._scratch = np.zeros(8)
         self._answer(record.MORE_KEPT)
         self._kinds = np.array(kinds_of_joints(), np.int64)
@@ -132,7 +133,7 @@ class AreaContact:
     def _update(self) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         self._register.update(self.space)
-        if self._settings["length"] is None:
+        if self._settings["length"] is None and self._settings["law"] == "energy":
             self._state["length"] = self._register.largest()
 
     def refresh(self, shape: pymunk.Shape) -> None:
@@ -140,7 +141,8 @@ class AreaContact:
 
         Raises ValueError for a shape that is not in the space, or that has no area now.
         """
-        self._register.refresh(self.space, shape)
+        assert self.space is not None  # says so if detached
+        self._register.refresh(shape)
 
     @property
     def stiffness(self) -> float | None:
@@ -229,9 +231,9 @@ class AreaContact:
             raise ValueError(f"body must be one of the space's, got {body!r:.80}")
         if steps is not None:
             whole(steps, "steps", 1, MOST_SUBSTEPS)
-        row = self._store.body(address_of(body._body))
-        self._store.tables.bodies[row]["asked"] = steps or 0
-        self._store.sync()  # the table may have grown
+        if self._state["pending"]:
+            self._update()
+        self._store.tables.bodies[self._store.row_of(address_of(body._body))]["asked"] = steps or 0
 
     def _step_alone(self) -> bool:
         """Whether pymunk has something to do around each step."""

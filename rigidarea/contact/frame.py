@@ -43,17 +43,17 @@ from ..kernel.solve import (
 from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
-    BODIES,
+    AWAKE,
     DRIFTS,
     LED,
     MET,
-    NEAR,
     ROWS,
     SUBSTEP,
+    TOLD,
     TOOTHED,
     TURN,
+    UNSORTED,
     Tables,
-    pairs_in_use,
     rehash,
 )
 from ..kernel.verdict import wait_for_verdicts
@@ -80,6 +80,7 @@ from .record import (
     time_step,
     timestamp,
     user_data,
+    wake,
     words,
 )
 from .substep import find_contacts, near_pairs, substeps
@@ -103,13 +104,9 @@ def silence(constraint: int, dt: float) -> None:
     if s.frame != np.int64(timestamp(space)) and not begin(s, space, dt):
         return
     tables = load_tables(s)
-    left = pairs_in_use(tables)
-    for p in range(len(tables.pairs)):
-        if left == 0:
-            break
-        pair = tables.pairs[p]
-        left -= pair.a >= 0
-        if pair.stamp == s.frame and pair.a >= 0 and pair.verdict:
+    for k in range(tables.counters[TOLD]):
+        pair = tables.pairs[tables.told[k]]
+        if pair.verdict:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
@@ -129,19 +126,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if i < 0:
             continue
         body = tables.bodies[i]
-        if body.stamp != s.frame:  # woken within this step
-            body.stamp = s.frame
-            read_place(s, address, body)
-            read_motion(s, address, body)
-            body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
-            body.kind = DRIFTS
-            body.old_x = body.x
-            body.old_y = body.y
-            body.old_a = body.angle
-            body.old_vx = body.vx
-            body.old_vy = body.vy
-            body.old_w = body.w
-            body.since = 0.0
+        if body.stamp != s.frame:
+            wake(s, tables, i)
         if s.explicit or body.kind == LED:
             read_place(s, address, body)
         read_motion(s, address, body)
@@ -210,7 +196,6 @@ def _again(s: Any) -> bool:
         return False
     tables = load_tables(s)
     tables.counters[ANEW] = 1
-    tables.counters[NEAR] = 0
     rehash(tables)
     for joint in joints_of(s):
         if joint.taken:
@@ -223,9 +208,10 @@ def _difference(s: Any) -> float:
     """How far the places of this run and of the one before (noted in `seen`) are apart, over the smallest extents."""
     tables = load_tables(s)
     most = 0.0
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[AWAKE]):
+        i = tables.awake[k]
         body = tables.bodies[i]
-        if body.stamp == s.frame and body.kind == DRIFTS and body.extent > 0.0:
+        if body.kind == DRIFTS and body.extent > 0.0:
             seen = floats(s.seen_at + 24 * i, 3)
             dx = body.x - seen[0]
             dy = body.y - seen[1]
@@ -237,7 +223,8 @@ def _difference(s: Any) -> float:
 def _see(s: Any) -> None:
     """Note where this run has taken the bodies."""
     tables = load_tables(s)
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[AWAKE]):
+        i = tables.awake[k]
         body = tables.bodies[i]
         seen = floats(s.seen_at + 24 * i, 3)
         seen[0] = body.x
@@ -267,7 +254,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables, g[0], g[1])
-    turn = next_turn(tables, FINEST, g[0], g[1])
+    turn = next_turn(tables, FINEST)
     taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
@@ -280,7 +267,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         load_tables(s).counters[SUBSTEP] = last - turn
         if not substeps(s, space, dt, turn):
             return 0
-        turn = next_turn(load_tables(s), turn, g[0], g[1])
+        turn = next_turn(load_tables(s), turn)
     if load_tables(s).counters[MET] and _again(
         s
     ):  # (where tables have grown, the next frame finds what has met)
@@ -295,11 +282,9 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
 @kernel
 def _whom_it_met(s: Any, space: int, dt: float) -> bool:
     """Near is also whom a blow has sent somebody past since the last search. Whether there was memory for that."""
-    if not somebody_flew_off(load_pool(s), load_tables(s), s.frame):
+    if not somebody_flew_off(load_pool(s), load_tables(s)):
         return True
-    counters = load_tables(s).counters
-    counters[TURN] = 0
-    counters[ANEW] = 1
+    load_tables(s).counters[TURN] = 0
     return bool(near_pairs(s, space, dt, dt))
 
 
@@ -328,7 +313,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         return False
     tables = load_tables(s)
     if (
-        tables.counters[ANEW] and tables.counters[TOOTHED] > 0
+        tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0
     ):  # teeth ask for substeps before the first one looks
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
@@ -362,13 +347,13 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             return False
     if n == 0:
         return False
-    far, lines = went_far(load_tables(s), s.frame)
+    far, lines = went_far(load_tables(s))
     if (far and not _whom_it_met(s, space, dt)) or not _wait_for_verdicts(s, dt):
         return False
     if far or lines:
         return_what_passed(load_pool(s), load_tables(s), s.frame, far)
     if s.stiffness_given == 0:
-        adapt_stiffness(load_tables(s), load_law(s), s.frame, dt)
+        adapt_stiffness(load_tables(s), load_law(s), dt)
     s.taken = n
     return True
 
@@ -379,10 +364,8 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 
     Of a frame that failed also what the user's position functions have moved.
     """
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
-        if body.stamp != s.frame or body.address == 0:
-            continue
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
@@ -398,16 +381,15 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 @kernel
 def _undo(s: Any, tables: Tables) -> None:
     """A frame that failed: every body as it was."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
-        if body.stamp == s.frame and body.address != 0:
-            body.x = body.old_x
-            body.y = body.old_y
-            body.angle = body.old_a
-            body.vx = body.old_vx
-            body.vy = body.old_vy
-            body.w = body.old_w
-            place(body)
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        body.x = body.old_x
+        body.y = body.old_y
+        body.angle = body.old_a
+        body.vx = body.old_vx
+        body.vy = body.old_vy
+        body.w = body.old_w
+        place(body)
 
 
 @kernel
@@ -417,7 +399,7 @@ def _whole_frame(s: Any, space: int) -> None:
     good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
     tables = load_tables(s)
     if good:
-        s.broken = finite(tables, s.frame)
+        s.broken = finite(tables)
         good = s.broken < 0
     if s.broken >= 0:
         ask(s, BROKEN)
@@ -455,13 +437,9 @@ def report(constraint: int, space: int) -> None:
         give_back(s, joint)
     s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
     tables = load_tables(s)
-    left = pairs_in_use(tables)
-    for p in range(len(tables.pairs)):
-        if left == 0:
-            break
-        pair = tables.pairs[p]
-        left -= pair.a >= 0
-        if pair.stamp != s.frame or pair.a < 0 or not pair.verdict:
+    for k in range(tables.counters[TOLD]):
+        pair = tables.pairs[tables.told[k]]
+        if not pair.verdict:
             continue
         arbiter = pair.arbiter
         array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = pair.points

@@ -20,7 +20,7 @@ from numba import types
 from ..chipmunk import function
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
-from ..kernel.tables import ANEW, APART, BODIES, Tables
+from ..kernel.tables import APART, UNSORTED, Tables
 from ..store import JOINT, KINDS, STATE, row_of_body
 
 _user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
@@ -136,20 +136,24 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
         before[0] = s.seize_at
         _ask_once(s, joint)
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
-            if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
-                tables.counters[ANEW] = 1
+            if apart < tables.counters[APART]:
+                for k in range(2):
+                    other = joint.b if k else joint.a
+                    if tables.apart[apart, k] != other:
+                        tables.counters[UNSORTED] = 1
+                        tables.bodies[tables.apart[apart, k]].joined = 0
             tables.apart[apart, 0] = joint.a
             tables.apart[apart, 1] = joint.b
             apart += 1
+    for i in range(apart, tables.counters[APART]):
+        tables.bodies[tables.apart[i, 0]].joined = 0
+        tables.bodies[tables.apart[i, 1]].joined = 0
     if apart != tables.counters[APART]:
-        tables.counters[ANEW] = 1
+        tables.counters[UNSORTED] = 1
         tables.counters[APART] = apart
-    if tables.counters[ANEW]:
-        for i in range(tables.counters[BODIES]):
-            tables.bodies[i].joined = 0
-        for i in range(apart):
-            tables.bodies[tables.apart[i, 0]].joined = 1
-            tables.bodies[tables.apart[i, 1]].joined = 1
+    for i in range(apart):
+        tables.bodies[tables.apart[i, 0]].joined = 1
+        tables.bodies[tables.apart[i, 1]].joined = 1
 
 
 @kernel

@@ -11,7 +11,7 @@ from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, join, nobody_comes_near, somebody_touches
 from ..kernel.meet import DONE, GROW_WORK
-from ..kernel.order import find_near
+from ..kernel.order import arrange, find_near
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     common,
@@ -25,20 +25,24 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
-from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, Tables
+from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, UNSORTED, Tables
 from ..store import load_law, load_pool, load_tables, load_work
 from .jointed import lessen_joints, own_joints, run_joints, start_joints
 from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
-from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats
+from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats, look_at_partners
 
 
 @kernel
 def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
     """Find the pairs that are near. Whether there was memory for them."""
-    g = floats(space + s.space_gravity, 2)
-    while find_near(load_pool(s), load_tables(s), s.frame, h, time, g[0], g[1]) != DONE:
+    while find_near(load_pool(s), load_tables(s), s.frame, h, time) != DONE:
         if not ask(s, MORE_PAIRS):
             return False
+    tables = load_tables(s)
+    if tables.counters[UNSORTED]:
+        look_at_partners(s, tables)
+        g = floats(space + s.space_gravity, 2)
+        arrange(tables, g[0], g[1])
     return True
 
 

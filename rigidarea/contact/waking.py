@@ -9,11 +9,11 @@ from numba import types
 from ..chipmunk import function
 from ..kernel.jit import callback
 from ..kernel.join import may_touch
-from ..kernel.meet import DONE, meets_within
-from ..kernel.order import find_near
+from ..kernel.meet import meets_within
 from ..kernel.tables import FIXED, NEAR, TURN
 from ..store import load_pool, load_tables, load_work, row_of_body
-from .record import MORE_PAIRS, MORE_WORK, ask, floats, members, notice, state_of, user_data
+from .record import MORE_WORK, REGISTER, ask, members, notice, state_of, user_data
+from .substep import near_pairs
 
 _activate = function("cpBodyActivate", types.void(types.uintp))
 
@@ -33,7 +33,9 @@ def rouse(space: int, dt: float) -> None:
     if user_data(space) == 0:
         return
     s = state_of(space)
-    if s.asleep == 0 or s.explicit:
+    if s.asleep == 0 or s.explicit or len(members(space, s.space_bodies)) == 0:
+        return
+    if s.pending and not ask(s, REGISTER):
         return
     tables = load_tables(s)
     for address in members(space, s.space_bodies):
@@ -46,10 +48,8 @@ def rouse(space: int, dt: float) -> None:
             return
     tables.counters[TURN] = 0  # everybody
     ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
-    g = floats(space + s.space_gravity, 2)
-    while find_near(load_pool(s), load_tables(s), s.frame, ahead, ahead, g[0], g[1]) != DONE:
-        if not ask(s, MORE_PAIRS):
-            return
+    if not near_pairs(s, space, ahead, ahead):
+        return
     tables = load_tables(s)
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]

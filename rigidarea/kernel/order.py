@@ -5,12 +5,16 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .broad import search, somebody_left
+from .broad import drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .jit import kernel
 from .meet import DONE
 from .pool import Pool
 from .tables import (
     ANEW,
+    ASKED,
+    AWAKE,
+    BOXED,
+    ENLISTED,
     FIRST,
     FIXED,
     LAST,
@@ -19,6 +23,7 @@ from .tables import (
     NEAR,
     TURN,
     TURNED,
+    UNSORTED,
     Tables,
 )
 
@@ -27,15 +32,23 @@ GROW_PAIRS = 3
 
 
 @kernel
-def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> int:
-    """Search pairs again if somebody has left the boxes of the last search. DONE or GROW_PAIRS."""
-    left = somebody_left(pool, tables, frame, h)
-    if not (left or tables.counters[ANEW]):
-        return DONE
-    if search(pool, tables, max(time, 2.0 * h), frame) < 0:
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> int:
+    """Bring the list of near pairs up to where bodies are, h before and after. DONE or GROW_PAIRS.
+
+    To be sorted (`arrange`) where counters[UNSORTED] says so.
+    """
+    counters = tables.counters
+    if counters[ANEW] == 1:
+        list_anew(tables)
+        counters[ANEW] = 2
+    renew_boxes(pool, tables, h, max(time, 2.0 * h))
+    if counters[ASKED] > 0 and not find_pairs(tables):
         return GROW_PAIRS
-    tables.counters[ANEW] = 0
-    arrange(tables, gx, gy)
+    if counters[ANEW]:
+        end_unlisted(tables)
+        counters[ANEW] = 0
+    if counters[UNSORTED]:
+        drop_pairs(tables, frame)
     return DONE
 
 
@@ -48,13 +61,19 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 @kernel
 def arrange(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first.
-
-    Where a frame is made of turns (`islands`), turn by turn.
+    """Sort the near pairs that may collide from the bottom to the top, before all others: by places alone, so that
+    nothing depends on who came first. Where a frame is made of turns (`islands`), turn by turn.
     """
     ux, uy = up(gx, gy)
     near = tables.near
-    n = tables.counters[NEAR]
+    last = len(near) - 1  # room for one
+    n = 0
+    for i in range(tables.counters[BOXED]):
+        if may_collide(tables, tables.pairs[near[i].pair]):
+            near[i].pair, near[n].pair = near[n].pair, near[i].pair
+            n += 1
+    tables.counters[NEAR] = n
+    sorted_already = True
     for i in range(n):
         one = near[i]
         pair = tables.pairs[one.pair]
@@ -70,44 +89,75 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
             y += b.y
         share = 0.5 if a.mobile and b.mobile else 1.0
         one.order = share * (ux * x + uy * y)
-        one.beside = share * abs(ux * y - uy * x)
+        one.beside = share * (ux * y - uy * x)
         one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
         if one.turn < 0:
             tables.counters[MET] = 1
+        sorted_already = sorted_already and (i == 0 or not _after(tables, near[i - 1], one))
     gap = 1
-    while gap < n:
+    while gap < n and not sorted_already:
         gap = 3 * gap + 1
-    while gap > 0:  # Shell's sort, in place
+    while gap > 0 and not sorted_already:  # Shell's sort, in place
         for i in range(gap, n):
-            _set(near[n], near[i])
+            _set(near[last], near[i])
             j = i
-            while j >= gap and _after(near[j - gap], near[n]):
+            while j >= gap and _after(tables, near[j - gap], near[last]):
                 _set(near[j], near[j - gap])
                 j -= gap
-            _set(near[j], near[n])
+            _set(near[j], near[last])
         gap //= 3
+    tables.counters[UNSORTED] = 0
     line_up(tables, gx, gy)
+    enlist(tables)
     bound(tables)
 
 
 @kernel
 def line_up(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the live bodies in the same way: sums over them then do not depend on who came first either."""
+    """Sort the bodies that are awake in the same way: sums over them then do not depend on who came first either."""
     ux, uy = up(gx, gy)
-    live = tables.live
-    n = tables.counters[LIVE]
+    awake = tables.awake
+    n = tables.counters[AWAKE]
     gap = 1
-    while gap < n:
-        gap = 3 * gap + 1
+    for i in range(1, n):
+        if _above(tables.bodies[awake[i - 1]], tables.bodies[awake[i]], ux, uy):
+            while gap < n:
+                gap = 3 * gap + 1
+            break
+    gap //= 3
     while gap > 0:
         for i in range(gap, n):
-            k = live[i]
+            k = awake[i]
             j = i
-            while j >= gap and _above(tables.bodies[live[j - gap]], tables.bodies[k], ux, uy):
-                live[j] = live[j - gap]
+            while j >= gap and _above(tables.bodies[awake[j - gap]], tables.bodies[k], ux, uy):
+                awake[j] = awake[j - gap]
                 j -= gap
-            live[j] = k
+            awake[j] = k
         gap //= 3
+
+
+@kernel
+def enlist(tables: Tables) -> None:
+    """List the bodies that are live: those of the turn, then what does not move and is near somebody."""
+    counters = tables.counters
+    turn = counters[TURN]
+    n = 0
+    for k in range(counters[AWAKE]):
+        i = tables.awake[k]
+        if turn == 0 or tables.bodies[i].steps == turn:
+            tables.live[n] = i
+            n += 1
+    counters[ENLISTED] += 1
+    for k in range(counters[NEAR]):
+        pair = tables.pairs[tables.near[k].pair]
+        for shape in (pair.a, pair.b):
+            i = tables.shapes[shape].body
+            body = tables.bodies[i]
+            if body.kind == FIXED and body.listed != counters[ENLISTED]:
+                body.listed = counters[ENLISTED]
+                tables.live[n] = i
+                n += 1
+    counters[LIVE] = n
 
 
 @kernel(forceinline=True)
@@ -116,15 +166,19 @@ def _above(one: Any, other: Any, ux: float, uy: float) -> bool:
     there = ux * other.x + uy * other.y
     if here != there:
         return bool(here > there)
-    return bool(abs(ux * one.y - uy * one.x) > abs(ux * other.y - uy * other.x))
+    one_beside = ux * one.y - uy * one.x
+    other_beside = ux * other.y - uy * other.x
+    if abs(one_beside) != abs(other_beside):
+        return bool(abs(one_beside) > abs(other_beside))
+    return bool(one_beside > other_beside)
 
 
 @kernel
 def turn_of(a: Any, b: Any) -> int:
     """The turn to which a pair of bodies belongs; -1: to two."""
-    if a.kind == FIXED or b.kind == FIXED or a.steps == b.steps:
-        return int(max(a.steps, b.steps))
-    return -1
+    if a.kind == FIXED:
+        return int(b.steps)
+    return int(a.steps) if b.kind == FIXED or a.steps == b.steps else -1
 
 
 @kernel
@@ -151,9 +205,28 @@ def _set(one: Any, other: Any) -> None:
 
 
 @kernel(forceinline=True)
-def _after(one: Any, other: Any) -> bool:
+def _after(tables: Tables, one: Any, other: Any) -> bool:
     if one.turn != other.turn:
         return bool(one.turn > other.turn)
     if one.order != other.order:
         return bool(one.order > other.order)
-    return bool(one.beside > other.beside)
+    if abs(one.beside) != abs(other.beside):
+        return bool(abs(one.beside) > abs(other.beside))
+    if one.beside != other.beside:
+        return bool(one.beside > other.beside)
+    return _lies_beyond(tables, tables.pairs[one.pair], tables.pairs[other.pair])
+
+
+@kernel
+def _lies_beyond(tables: Tables, one: Any, other: Any) -> bool:
+    """Of two pairs in one place (of a box on two tiles): which has its shapes further to the right, and higher."""
+    for side in range(2):
+        s = tables.shapes[one.b if side else one.a]
+        t = tables.shapes[other.b if side else other.a]
+        if s.left != t.left:
+            return bool(s.left > t.left)
+        if s.bottom != t.bottom:
+            return bool(s.bottom > t.bottom)
+        if s.ident != t.ident:
+            return bool(s.ident > t.ident)
+    return False

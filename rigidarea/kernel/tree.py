@@ -193,6 +193,17 @@ def _unhang(nodes: np.ndarray, roots: np.ndarray, which: int, leaf: int) -> None
     _mend(nodes, roots, which, above)
 
 
+@kernel
+def new_leaf(
+    nodes: np.ndarray, roots: np.ndarray, owner: int, low_x: float, low_y: float, high_x: float, high_y: float
+) -> int:
+    """A node for a shape with that box (length), in no tree yet. There is room: two nodes a shape."""
+    leaf = _take(nodes, roots)
+    nodes[leaf].owner = owner
+    _set_box(nodes[leaf], low_x, low_y, high_x, high_y)
+    return leaf
+
+
 @entry
 def insert(
     nodes: np.ndarray,
@@ -204,10 +215,8 @@ def insert(
     high_x: float,
     high_y: float,
 ) -> int:
-    """A leaf for a shape with that box (length), in tree `which`: its node. There is room: two nodes a shape."""
-    leaf = _take(nodes, roots)
-    nodes[leaf].owner = shape
-    _set_box(nodes[leaf], low_x, low_y, high_x, high_y)
+    """A leaf for a shape with that box (length), in tree `which`: its node."""
+    leaf = new_leaf(nodes, roots, shape, low_x, low_y, high_x, high_y)
     _hang(nodes, roots, which, leaf)
     return leaf
 
