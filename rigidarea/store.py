@@ -122,6 +122,10 @@ STATE = record(
         ("joint_cursor", "i8"),
         ("stop", "i8"),  # 1: something waits in Python
         ("seen_at", "u8"),  # room for every body's place
+        (
+            "phases_at",
+            "u8",
+        ),  # where the times of a frame's phases are summed up (`contact/phases.py`); 0: nowhere
         ("scratch_at", "u8"),  # room for what nobody reads
         ("kinds_at", "u8"),  # joints' classes, where they keep their impulse, and how many numbers that is
     ],

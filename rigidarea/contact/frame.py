@@ -66,6 +66,7 @@ from .joints import (
     keep_impulse,
     restore_impulse,
 )
+from .phases import REPORTING, WATCHING, lap, start
 from .record import (
     BROKEN,
     MORE_KEPT,
@@ -318,6 +319,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
             return False
+    lap(s, WATCHING)
     n = demand(load_pool(s), load_tables(s), load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     tables = load_tables(s)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
@@ -395,6 +397,7 @@ def _undo(s: Any, tables: Tables) -> None:
 @kernel
 def _whole_frame(s: Any, space: int) -> None:
     """The frame, and where it fails everything as it was."""
+    start(s)
     dt = time_step(space)
     good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
     tables = load_tables(s)
@@ -406,6 +409,7 @@ def _whole_frame(s: Any, space: int) -> None:
     if not good:
         _undo(s, tables)
     _finish_frame(s, tables, good)
+    lap(s, REPORTING)
 
 
 @callback(types.void(types.uintp, types.float64))
@@ -433,6 +437,7 @@ def report(constraint: int, space: int) -> None:
     array_at(space, (1,), np.int32)[0] = s.sweeps
     if s.frame != np.int64(timestamp(space)):
         return
+    start(s)
     for joint in joints_of(s):
         give_back(s, joint)
     s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
@@ -453,6 +458,7 @@ def report(constraint: int, space: int) -> None:
         for i in range(pair.points):
             floats(point + i * s.contact_size + s.contact_normal_impulse, 1)[0] = normal
             floats(point + i * s.contact_size + s.contact_tangent_impulse, 1)[0] = tangent
+    lap(s, REPORTING)
 
 
 @callback(types.int64(types.uintp, types.float64, types.int64))

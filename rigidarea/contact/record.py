@@ -36,6 +36,7 @@ from ..kernel.tables import (
 from ..kernel.tree import MOVING
 from ..store import STATE, load_pool, load_tables, row_of_body
 from .joints import take_joints
+from .phases import WATCHING, lap, start
 
 #: What machine code asks Python for.
 REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN, NORMAL = range(8)
@@ -374,6 +375,7 @@ def _take_back(body: Any, dt: float) -> None:
 @kernel
 def begin(s: Any, space: int, dt: float) -> bool:
     """The first thing in a frame: everything as it is. Whether it could be taken down."""
+    start(s)
     s.frame = np.int64(timestamp(space))
     g = floats(space + s.space_gravity, 2)
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
@@ -402,6 +404,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
         if n > s.joints_n and not ask(s, MORE_JOINTS):
             return False
         take_joints(s, load_tables(s), members(space, s.space_constraints))
+    lap(s, WATCHING)
     return True
 
 

@@ -29,6 +29,7 @@ from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, UNSORTED, Tables
 from ..store import load_law, load_pool, load_tables, load_work
 from .jointed import lessen_joints, own_joints, run_joints, start_joints
 from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
+from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
 from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats, look_at_partners
 
 
@@ -43,6 +44,7 @@ def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
         look_at_partners(s, tables)
         g = floats(space + s.space_gravity, 2)
         arrange(tables, g[0], g[1])
+    lap(s, PAIRS)
     return True
 
 
@@ -58,6 +60,7 @@ def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
     while True:
         status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
         if status == DONE:
+            lap(s, OVERLAPS)
             return True
         if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
             return False
@@ -66,6 +69,7 @@ def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
 @kernel
 def _join(s: Any, h: float, first: bool) -> int:
     """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
+    lap(s, POSITIONS if first else ITERATIONS)
     start = 0
     total = 0
     while True:
@@ -74,6 +78,7 @@ def _join(s: Any, h: float, first: bool) -> int:
         )
         total += joined
         if status == DONE:
+            lap(s, SPECULATIVE)
             return total
         if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
             return -1
@@ -172,6 +177,7 @@ def _fly(s: Any, dt: float, more: float, n: int) -> None:
     finish(tables, load_law(s), s.frame, dt, True)
     drift(tables, s.frame, 0.5 * dt)
     note(tables, n)
+    lap(s, POSITIONS)
 
 
 @kernel
@@ -186,6 +192,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     share_kicks(tables, n)
     for i in range(n):
         drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
+        lap(s, POSITIONS)
         if i == 0 and joints == 0 and not somebody_touches(load_tables(s)):
             if not near_pairs(s, space, h, dt):
                 return False
@@ -200,6 +207,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             start_joints(s, tables, h, n if i == 0 else 0)
         if not _solve(s, h, sweeps, joints > 0):
             return False
+        lap(s, ITERATIONS)
         tables = load_tables(s)
         _relax(s, tables, h, sweeps, joints > 0)
         if joints > 0:
@@ -211,4 +219,5 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     drift(tables, s.frame, 0.5 * h)
     note(tables, n)
     s.contacts += tables.counters[ROWS]
+    lap(s, POSITIONS)
     return True

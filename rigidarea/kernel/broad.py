@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import LOOK, MARGIN
+from .constants import AHEAD, LOOK, MARGIN
 from .jit import entry, kernel
 from .pool import Pool
 from .tables import (
@@ -96,18 +96,17 @@ def put_in_tree(tables: Tables, i: int, which: int) -> None:
 
 
 @kernel
-def _widen(shape: Any, body: Any, time: float) -> None:
-    """A new box for a shape: where it is, where it was and will be within `time`, and some room.
+def _widen(shape: Any, body: Any, h: float, time: float) -> None:
+    """A new box for a shape: where it is, was h ago and will be within AHEAD times `time`, and some room.
 
     And where it has been in this frame, if that is farther than it is seen.
     """
-    carried = swing(shape, body)
-    dx = time * (abs(body.vx) + carried) + MARGIN * shape.extent
-    dy = time * (abs(body.vy) + carried) + MARGIN * shape.extent
-    shape.low_x = shape.left - dx
-    shape.low_y = shape.bottom - dy
-    shape.high_x = shape.right + dx
-    shape.high_y = shape.top + dy
+    room = MARGIN * shape.extent + time * swing(shape, body)
+    ahead = AHEAD * time
+    shape.low_x = shape.left - room + min(ahead * body.vx, -h * body.vx)
+    shape.low_y = shape.bottom - room + min(ahead * body.vy, -h * body.vy)
+    shape.high_x = shape.right + room + max(ahead * body.vx, -h * body.vx)
+    shape.high_y = shape.top + room + max(ahead * body.vy, -h * body.vy)
     if body.kind == DRIFTS:
         dx = body.x - body.old_x
         dy = body.y - body.old_y
@@ -120,10 +119,7 @@ def _widen(shape: Any, body: Any, time: float) -> None:
 
 @kernel
 def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
-    """A new box, for `time` of motion, for every shape of the turn that leaves its own h before now or after it.
-
-    Those are asked about.
-    """
+    """A new box, for `time` of motion, for each shape of the turn that leaves its own within h. They are asked about."""
     turn = tables.counters[TURN]
     for k in range(tables.counters[MOVERS]):
         i = tables.movers[k]
@@ -136,16 +132,16 @@ def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
         shape.bottom = low_y
         shape.right = high_x
         shape.top = high_y
-        carried = swing(shape, body)
-        dx = h * (abs(body.vx) + carried)
-        dy = h * (abs(body.vy) + carried)
+        carried = h * swing(shape, body)
+        dx = h * body.vx
+        dy = h * body.vy
         if (
-            low_x - dx < shape.low_x
-            or low_y - dy < shape.low_y
-            or high_x + dx > shape.high_x
-            or high_y + dy > shape.high_y
+            low_x - carried + min(0.0, dx) < shape.low_x
+            or low_y - carried + min(0.0, dy) < shape.low_y
+            or high_x + carried + max(0.0, dx) > shape.high_x
+            or high_y + carried + max(0.0, dy) > shape.high_y
         ):
-            _widen(shape, body, time)
+            _widen(shape, body, h, time)
             put_in_tree(tables, i, MOVING)
             ask_about(tables, i)
 

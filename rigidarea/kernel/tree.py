@@ -32,6 +32,8 @@ NODE = record(
 
 #: Places of `roots` (3,) int32: the two trees' roots, -1 for an empty tree, and the first free node.
 STILL, MOVING, FREE = 0, 1, 2
+#: A leaf is far from its sibling where the box about both is larger than so many times the two (in perimeter).
+FAR = 1.5
 
 
 def new_nodes(n: int) -> np.ndarray:
@@ -239,16 +241,25 @@ def move(
     high_x: float,
     high_y: float,
 ) -> None:
-    """Another box (length) for a leaf; where that lies within its parent's, nothing else changes."""
-    parent = nodes[leaf].parent
-    if parent >= 0:
-        p = nodes[parent]
-        if p.low_x <= low_x and p.low_y <= low_y and p.high_x >= high_x and p.high_y >= high_y:
-            _set_box(nodes[leaf], low_x, low_y, high_x, high_y)
+    """Another box (length) for a leaf. It stays where it is in the tree, as long as it is not FAR from its sibling."""
+    node = nodes[leaf]
+    _set_box(node, low_x, low_y, high_x, high_y)
+    fork = node.parent
+    if fork < 0:
+        return
+    sibling = nodes[nodes[fork].right if nodes[fork].left == leaf else nodes[fork].left]
+    if _grown(sibling, low_x, low_y, high_x, high_y) > FAR * (_size(sibling) + _size(node)):
+        _unhang(nodes, roots, which, leaf)
+        _hang(nodes, roots, which, leaf)
+        return
+    i = int(fork)
+    while i >= 0:
+        here = nodes[i]
+        low_x, low_y, high_x, high_y = here.low_x, here.low_y, here.high_x, here.high_y
+        _fit(nodes, i)
+        if here.low_x == low_x and here.low_y == low_y and here.high_x == high_x and here.high_y == high_y:
             return
-    _unhang(nodes, roots, which, leaf)
-    _set_box(nodes[leaf], low_x, low_y, high_x, high_y)
-    _hang(nodes, roots, which, leaf)
+        i = int(here.parent)
 
 
 @kernel(forceinline=True)
