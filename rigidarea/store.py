@@ -18,11 +18,25 @@ from .kernel.overlap import LOOP, Work
 from .kernel.place import Pose, overlap_of_outlines
 from .kernel.pool import HEAD, Pool
 from .kernel.row import ROW
-from .kernel.tables import BODY, NEIGHBOURS, PAIR, REGION, SHAPE, Law, Tables
+from .kernel.tables import (
+    ANEW,
+    BODY,
+    COUNTERS,
+    MORE_PAIRS,
+    NEIGHBOURS,
+    PAIR,
+    REGION,
+    SHAPE,
+    Law,
+    Tables,
+    rehash,
+)
 from .kernel.tree import NODE
 
 BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
 SHAPE_WORDS = SHAPE.itemsize // 8
+#: What a frame that may have to be run again starts from.
+KEPT = ("bodies", "pairs", "regions", "counters")
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
@@ -31,7 +45,8 @@ _ARRAYS = [
     *("movers", "asked", "told", "nodes", "roots", "near", "apart", "keys", "values", "counters"),
     *("slots", "body_keys", "body_rows", "joints", "heard_alone", "heard_pairs"),
     *("users", "mirrors", "extents"),
-    *("kept_bodies", "kept_pairs", "kept_regions", "kept_counters"),
+    *(f"kept_{name}" for name in KEPT),
+    "seen",
 ]
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
@@ -94,6 +109,8 @@ STATE = record(
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
+        ("begun", "i8"),  # 1: the frame has changed regions; where it ends too soon they are forgotten, but
+        ("kept", "i8"),  # 1: it was kept what it started from
         ("asked_arbiter", "u8"),  # the arbiter whose normal Chipmunk is to find again, and what it is
         ("asked_x", "f8"),
         ("asked_y", "f8"),
@@ -120,8 +137,6 @@ STATE = record(
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
-        ("stop", "i8"),  # 1: something waits in Python
-        ("seen_at", "u8"),  # room for every body's place
         (
             "phases_at",
             "u8",
@@ -150,24 +165,28 @@ def clear(at: int, size: int) -> None:
 
 
 @kernel
-def keep_tables(s: Any, back: bool) -> bool:
-    """Take down what a frame that may have to be run again starts from, or put it back.
+def keep_tables(s: Any) -> None:
+    """Take down what a frame that may have to be run again starts from."""
+    s.kept = 1
+    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.kept_counters_at, s.counters_at, s.counters_n)
 
-    False: the tables have grown since there was room made for it.
-    """
-    fits = s.kept_bodies_n == s.bodies_n and s.kept_pairs_n == s.pairs_n and s.kept_regions_n == s.regions_n
-    if fits:
-        if back:
-            _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
-            _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
-            _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
-            _copy(s.counters_at, s.kept_counters_at, s.counters_n)
-        else:
-            _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
-            _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
-            _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
-            _copy(s.kept_counters_at, s.counters_at, s.counters_n)
-    return bool(fits)
+
+@kernel
+def put_tables_back(s: Any, tables: Tables) -> None:
+    """The tables as they were kept, but for how much more room the frame has wanted; pairs are listed anew."""
+    wanted = tables.counters[MORE_PAIRS:COUNTERS]
+    kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
+    for i in range(len(wanted)):
+        kept[MORE_PAIRS + i] = wanted[i]
+    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.counters_at, s.kept_counters_at, s.counters_n)
+    tables.counters[ANEW] = 1
+    rehash(tables)
 
 
 @entry

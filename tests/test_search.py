@@ -37,8 +37,9 @@ def scattered(rng: np.random.Generator, n: int, room: float) -> Store:
 
 
 def searched(store: Store, time: float) -> set[tuple[int, int]]:
-    while broad.search(store.pool, store.tables, time, -1) == broad.GROW_PAIRS:
-        store.grow_pairs()
+    while not broad.search(store.pool, store.tables, time, -1):
+        assert store.tables.counters[tables.MORE_PAIRS] > 0
+        store.grow()
     t = store.tables
     near = t.pairs[t.near["pair"][: t.counters[tables.NEAR]]]
     found = {(min(a, b), max(a, b)) for a, b in zip(near["a"].tolist(), near["b"].tolist())}
@@ -162,6 +163,7 @@ def test_regions_grow_and_keep_what_they_hold() -> None:
     store.tables.regions["area"] = np.arange(len(store.tables.regions))
     before = len(store.tables.regions)
     store.grow_regions()
+    store.sync()
     t = store.tables
     assert len(t.regions) == len(t.rows) == 2 * before
     assert (t.regions["area"][:before] == np.arange(before)).all()

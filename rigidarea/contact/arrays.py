@@ -1,10 +1,15 @@
 """The tables of one attached space: numpy arrays that grow by doubling, and the record by which they are found.
 
 Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are addresses.
+
+Tables grow by transactions: a copy (`draft`, or new arrays in a copy of this) is changed, then put in their place
+(`publish`) by two stores between which Python calls nothing. What is raised on the way, a MemoryError or an interrupt,
+leaves the old ones as they were.
 """
 
 from __future__ import annotations
 
+import copy
 from typing import Any
 
 import numpy as np
@@ -23,6 +28,10 @@ from ..kernel.tables import (
     FREE_REGION,
     FREE_REGIONS,
     FREE_SHAPE,
+    MORE_JOINTS,
+    MORE_PAIRS,
+    MORE_REGIONS,
+    MORE_WORK,
     NEIGHBOURS,
     PAIR,
     REGION,
@@ -32,11 +41,30 @@ from ..kernel.tables import (
     rehash,
 )
 from ..kernel.tree import FREE, NODE
-from ..store import JOINT, STATE, enter_bodies
+from ..store import JOINT, KEPT, STATE, enter_bodies
 from .geometry import Forms, enter_form, read_shapes
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
+#: Crossings for which there is room from the start, where the largest outline has many points: more come with use.
+MOST_CROSSINGS = 4096
+
+
+def _append_free(following: np.ndarray, counters: np.ndarray, head: int, first: int) -> None:
+    """Rows from `first` on at the end of a free list: who is taken next does not depend on how large the table is."""
+    following[first:] = np.arange(first + 1, len(following) + 1)
+    following[-1] = -1
+    last = int(counters[head])
+    if last < 0:
+        counters[head] = first
+        return
+    while following[last] >= 0:
+        last = int(following[last])
+    following[last] = first
+
+
+#: Arrays of a `Store` itself that the record has.
+_OWN = ("slots", "body_keys", "body_rows", "joints", "heard_alone", "heard_pairs")
 
 
 class Store:
@@ -96,7 +124,6 @@ class Store:
         self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
         self._grow_nodes(16)
-        self.keep()
         self.grow_pairs(64)
         self.grow_regions(64)
         self.sync()
@@ -108,35 +135,67 @@ class Store:
         forms = {f"form_{name}": array for name, array in self.forms._asdict().items()}
         return {name: array.nbytes for name, array in {**arrays, **own, **forms}.items()}
 
-    def keep(self) -> None:
-        """Room for a copy of what a frame changes."""
-        tables = self.tables
-        arrays = {"bodies": tables.bodies, "pairs": tables.pairs, "regions": tables.regions}
-        self._kept = {f"kept_{name}": np.zeros_like(array) for name, array in arrays.items()}
-        self._kept["kept_counters"] = np.zeros_like(tables.counters)
-        self.sync()
+    def draft(self) -> Store:
+        """A copy, to be changed and published. Of what only grows at its end, and of scratch, there is one."""
+        new = copy.copy(self)
+        new.tables = Tables(*(array.copy() for array in self.tables))
+        new._outlines = self._outlines.copy()
+        return new
+
+    def publish(self, new: Store, **facts: int) -> None:
+        """Put a changed draft in the place of what there is. facts: fields of the state record that change with it."""
+        record = new._record()
+        for name, value in facts.items():
+            record[name] = value
+        self.state[0], self.__dict__ = record, new.__dict__
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        own = ("slots", "body_keys", "body_rows", "joints", "heard_alone", "heard_pairs")
-        mine = {name: getattr(self, name) for name in own} | self._kept
-        mine |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
-        arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **mine}
-        state = self.state[0]
+        self.state[0] = self._record()
+
+    def _record(self) -> np.record:
+        """The state record of these arrays."""
+        tables = self.tables._asdict()
+        for name in KEPT:
+            if len(self._kept.get(f"kept_{name}", ())) != len(tables[name]):
+                self._kept = {**self._kept, f"kept_{name}": np.zeros_like(tables[name])}
+        if len(self._kept.get("seen", ())) != len(self.tables.bodies):
+            self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
+        own = {name: getattr(self, name) for name in _OWN}
+        own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
+        arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
+        record: np.record = self.state.copy()[0]
         for name, array in arrays.items():
-            state[f"{name}_at"] = array.ctypes.data
-            state[f"{name}_n"] = len(array)
+            record[f"{name}_at"] = array.ctypes.data
+            record[f"{name}_n"] = len(array)
+        return record
+
+    def grow(self) -> None:
+        """Make the room that machine code has asked for (counters MORE_...), all of it or none."""
+        new = self.draft()
+        counters = new.tables.counters
+        pairs, regions, joints, work = (
+            int(counters[k]) for k in (MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK)
+        )
+        counters[[MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK]] = 0
+        if pairs > 0:
+            new.grow_pairs(len(new.tables.pairs) + pairs)
+        if regions > 0:
+            new.grow_regions(len(new.tables.regions) + regions)
+        if joints > 0:
+            new.grow_joints(len(new.joints) + joints)
+        if work > 0:
+            new.grow_work()
+        self.publish(new)
 
     def grow_pairs(self, least: int = 0) -> None:
-        """Twice the pairs (at least `least`), the new ones free."""
-        old = self.tables.pairs
+        """Twice the pairs (at least `least`), the new ones free and the last to be taken."""
+        old, counters = self.tables.pairs, self.tables.counters
         new = np.zeros(max(least, 2 * len(old)), PAIR)
         new[: len(old)] = old
-        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
         new["a"][len(old) :] = -1
-        new["next"][-1] = self.tables.counters[FREE_PAIR]
-        self.tables.counters[FREE_PAIR] = len(old)
-        self.tables.counters[FREE_PAIRS] += len(new) - len(old)
+        _append_free(new["next"], counters, FREE_PAIR, len(old))
+        counters[FREE_PAIRS] += len(new) - len(old)
         size = 64
         while size < 2 * len(new):  # at most half full
             size *= 2
@@ -148,76 +207,61 @@ class Store:
             pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
         rehash(self.tables)
-        self.sync()
 
     def grow_regions(self, least: int = 0) -> None:
-        """Twice the regions (at least `least`), the new ones free."""
-        old = self.tables.regions
+        """Twice the regions (at least `least`), the new ones free and the last to be taken."""
+        old, counters = self.tables.regions, self.tables.counters
         new = np.zeros(max(least, 2 * len(old)), REGION)
         new[: len(old)] = old
-        new["next"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
         new["stamp"][len(old) :] = -1
-        new["next"][-1] = self.tables.counters[FREE_REGION]
-        self.tables.counters[FREE_REGION] = len(old)
-        self.tables.counters[FREE_REGIONS] += len(new) - len(old)
+        _append_free(new["next"], counters, FREE_REGION, len(old))
+        counters[FREE_REGIONS] += len(new) - len(old)
         rows = np.zeros(len(new), ROW)
         rows[: len(self.tables.rows)] = self.tables.rows
         self.tables = self.tables._replace(regions=new, rows=rows, factors=np.zeros(len(new), FACTOR))
-        self.sync()
 
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
         if n > len(self.joints):
             self.joints = np.zeros(2 * n, JOINT)
-            self.tables = self.tables._replace(apart=np.zeros((2 * n, 2), np.int32))
-            self.sync()
+            apart = _longer(self.tables.apart, 2 * n)
+            self.tables = self.tables._replace(apart=apart)
 
     def grow_work(self) -> None:
         """Twice the room for crossings."""
         points, rings = self._most
         self.work = enlarged(self.work, 2 * points, 2 * rings)
-        self.sync()
 
     def room(self, shapes: int, bodies: int, ident: int) -> None:
         """Room for so many shapes and bodies more, and for Chipmunk's ids up to `ident`."""
-        tables = self.tables
+        tables, new = self.tables, copy.copy(self)
         counters = tables.counters
         if counters[SHAPES] + shapes > len(tables.shapes):
             n = max(int(counters[SHAPES]) + shapes, 2 * len(tables.shapes))
-            self.tables = tables = tables._replace(
-                shapes=_longer(tables.shapes, n),
-                movers=_longer(tables.movers, n),
-                asked=_longer(tables.asked, n),
-            )
-            self._grow_nodes(n)
+            longer = {name: _longer(getattr(tables, name), n) for name in ("shapes", "movers", "asked")}
+            new.tables = new.tables._replace(**longer)
+            new._grow_nodes(n)
         if counters[BODIES] + bodies > len(tables.bodies):
             n = max(int(counters[BODIES]) + bodies, 2 * len(tables.bodies))
-            self.tables = self.tables._replace(
-                bodies=_longer(tables.bodies, n),
-                mobility=np.zeros(n, MOBILITY),
-                live=_longer(tables.live, n),
-                awake=_longer(tables.awake, n),
-            )
-            size = len(self.body_keys)
-            while size < 2 * n:
-                size *= 2
-            if size > len(self.body_keys):
-                used = self.body_keys != 0
-                keys, rows = self.body_keys[used], self.body_rows[used]
-                self.body_keys, self.body_rows = np.zeros(size, np.uint64), np.zeros(size, np.int32)
-                enter_bodies(self.body_keys, self.body_rows, keys, rows)
+            longer = {name: _longer(getattr(tables, name), n) for name in ("bodies", "live", "awake")}
+            new.tables = new.tables._replace(**longer, mobility=np.zeros(n, MOBILITY))
+            size = _power(2 * n)
+            used = self.body_keys != 0
+            new.body_keys, new.body_rows = np.zeros(size, np.uint64), np.zeros(size, np.int32)
+            enter_bodies(new.body_keys, new.body_rows, self.body_keys[used], self.body_rows[used])
         if ident >= len(self.slots):
-            self.slots = _longer(self.slots, max(ident + 1, 2 * len(self.slots)), -1)
-        self.sync()
+            new.slots = _longer(self.slots, max(ident + 1, 2 * len(self.slots)), -1)
+        if new.tables is not tables or new.slots is not self.slots:
+            self.publish(new)
 
     def _grow_nodes(self, shapes: int) -> None:
         """Room for so many shapes in the trees."""
-        old = self.tables.nodes
+        old, roots = self.tables.nodes, self.tables.roots.copy()
         new = _longer(old, 2 * shapes)
         new["parent"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
-        new["parent"][-1] = self.tables.roots[FREE]
-        self.tables.roots[FREE] = len(old)
-        self.tables = self.tables._replace(nodes=new)
+        new["parent"][-1] = roots[FREE]
+        roots[FREE] = len(old)
+        self.tables = self.tables._replace(nodes=new, roots=roots)
 
     def _pool_room(self, points: int, rings: int, boxes: int, heads: int, raw: int) -> None:
         """Room for so much more in the pool."""
@@ -227,22 +271,21 @@ class Store:
             n = int(need[which])
             return array if n <= len(array) else _longer(array, max(n, 2 * len(array)))
 
-        pool, forms = self.pool, self.forms
-        self.pool = Pool(
+        pool, forms, new = self.pool, self.forms, copy.copy(self)
+        new.pool = Pool(
             *(longer(array, 0) for array in pool[:3]),
             longer(pool.rings, 1),
             longer(pool.boxes, 2),
             longer(pool.arcs, 0),
             longer(pool.heads, 3),
         )
-        grown = [longer(array, 3) for array in forms[:4]]
-        self.forms = Forms(*grown, longer(forms.raw, 4), forms.table, forms.fill)
-        if 2 * len(grown[0]) > len(forms.table):
-            self.forms = self.forms._replace(table=np.full(_power(4 * len(grown[0])), -1, np.int32))
-            for h in range(int(forms.fill[3])):
-                if self.forms.raw_at[h, 1] > 0:
-                    enter_form(self.forms, h)
-        self.sync()
+        new.forms = Forms(*(longer(array, 3) for array in forms[:4]), longer(forms.raw, 4), *forms[5:])
+        heads = len(new.forms.users)
+        if 2 * heads > len(forms.table):
+            new.forms = new.forms._replace(table=np.full(_power(4 * heads), -1, np.int32))
+            for h in np.flatnonzero(forms.raw_at[: forms.fill[3], 1]):
+                enter_form(new.forms, int(h))
+        self.publish(new)
 
     def outline(self, outline: HasRings, extent: float) -> int:
         """The outline's number in the pool; packed the first time it is seen, its mirror behind it.
@@ -275,10 +318,15 @@ class Store:
 
     def _note_most(self, points: int, rings: int) -> None:
         """There is an outline of so many points and rings: room for two of them to meet."""
-        self._most = (max(self._most[0], points), max(self._most[1], rings))
-        if not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
-            self.work = new_work(2 * self._most[0], len(self.work.cross), 2 * self._most[1])
-        self.sync()
+        most = (max(self._most[0], points), max(self._most[1], rings))
+        crossings = max(len(self.work.cross), min(4 * most[0], MOST_CROSSINGS))
+        new = copy.copy(self)
+        new._most = most
+        if crossings > len(self.work.cross) or not fits(self.work, 2 * most[0], 2 * most[1]):
+            new.work = new_work(2 * most[0], crossings, 2 * most[1])
+            self.publish(new)
+        else:
+            self._most = most
 
     def read(self, addresses: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, int]:
         """Outlines of Chipmunk's own shapes at these addresses (n,) uint64: their numbers; which has no area, or -1."""
@@ -303,40 +351,39 @@ class Store:
         used = np.flatnonzero(self.forms.users[:n] > 0)
         if n <= 2 * len(used) + 64:
             return
-        old, forms = self.pool, self.forms
+        old, forms, new = self.pool, self.forms, copy.copy(self)
         renumbered = np.full(n + 1, -1, np.int32)  # the last for "none"
         renumbered[used] = np.arange(len(used))
-        heads = old.heads[used].copy()
-        points, rings = heads["count"], heads["rings"]
-        boxes, raws = 2 * heads["leaves"], forms.raw_at[used, 1]
+        heads, raw_at = old.heads[used], forms.raw_at[used]
+        points, rings, boxes, raws = heads["count"], heads["rings"], 2 * heads["leaves"], raw_at[:, 1].copy()
         take = [_ranges(heads["point"], points), _ranges(heads["ring"], rings), _ranges(heads["box"], boxes)]
         shift = [
             _starts(points) - heads["point"],
             _starts(rings) - heads["ring"],
             _starts(boxes) - heads["box"],
         ]
-        raw_at, raw = forms.raw_at[used].copy(), forms.raw[_ranges(forms.raw_at[used, 0], raws)]
+        raw = forms.raw[_ranges(raw_at[:, 0], raws)]
         raw_at[:, 0] = _starts(raws)
-        following = old.following[take[0]] + np.repeat(shift[0], points).astype(np.int32)
-        ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points).astype(np.int32)
-        ends = old.rings[take[1]] + np.repeat(shift[0], rings).astype(np.int32)[:, None]
-        fresh = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
+        following = old.following[take[0]] + np.repeat(shift[0], points)
+        ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points)
+        ends = old.rings[take[1]] + np.repeat(shift[0], rings)[:, None]
         for name, more in zip(("point", "ring", "box"), shift):
             heads[name] += more
-        for array, values in zip(old, fresh):
-            array[: len(values)] = values
-        for array, values in zip(forms[:5], (*(array[used].copy() for array in forms[:3]), raw_at, raw)):
-            array[: len(values)] = values
-        forms.mirror[: len(used)] = renumbered[forms.mirror[: len(used)]]
-        forms.fill[:] = points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()
-        forms.table[:] = -1
-        for h in np.flatnonzero(raw_at[:, 1]):
-            enter_form(forms, int(h))
-        kept = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]
-        self._outlines = {id(outline): (h, outline) for h, outline in kept if h >= 0}
-        rows = self.known_shapes
+        kept = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
+        new.pool = Pool(*map(_filled, old, kept))
+        sums = np.array((points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()), np.int64)
+        mirror = renumbered[forms.mirror[used]]
+        told = forms.extent[used], mirror, forms.users[used], raw_at, raw
+        new.forms = Forms(*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums)
+        for h in np.flatnonzero(raws):
+            enter_form(new.forms, int(h))
+        outlines = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]
+        new._outlines = {id(outline): (h, outline) for h, outline in outlines if h >= 0}
+        shapes = self.tables.shapes.copy()
         for name in ("outline", "mirror"):
-            rows[name] = renumbered[rows[name]]
+            shapes[name] = renumbered[shapes[name]]
+        new.tables = self.tables._replace(shapes=shapes)
+        self.publish(new)
 
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
@@ -366,6 +413,13 @@ def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:
         else np.zeros((n, *array.shape[1:]), array.dtype)
     )
     new[: len(array)] = array
+    return new
+
+
+def _filled(array: np.ndarray, values: np.ndarray) -> Any:
+    """An array as long as this one that begins with these values."""
+    new = np.zeros_like(array)
+    new[: len(values)] = values
     return new
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import math
 import time
 import weakref
@@ -51,11 +50,12 @@ class AreaContact:
     # --- attaching ---
 
     def _install(self, space: pymunk.Space) -> None:
-        from . import joints, record, waking  # the machine code: compiled, or loaded, when first attached
+        from . import joints, waking  # the machine code: compiled, or loaded, when first attached
         from .hook import Hook
 
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
+        self._stepping = False
         self._store = Store()
         self._state = state = self._store.state[0]
         settings = self._settings
@@ -76,20 +76,23 @@ class AreaContact:
         state["handler_count"] = state["shape_count"] = -1
         state["pending"] = 2
         self._scratch = np.zeros(8)
-        self._answer(record.MORE_KEPT)
         self._kinds = np.array(kinds_of_joints(), np.int64)
         self._springs = np.array(springs(), np.uint64)
         state["springs_at"], state["spring_at"] = self._springs.ctypes.data, joints.spring.address
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
         state["seize_at"] = joints.seize.address
         own = weakref.ref(self)  # C keeps no Python object alive
-        self._ask = ctypes.CFUNCTYPE(None, ctypes.c_size_t)(lambda request: _serve(own, request))
-        state["ask_at"] = ctypes.cast(self._ask, ctypes.c_void_p).value
+        self._ask = ffi.callback(
+            "void(uintptr_t)",
+            lambda request: _serve(own, request),
+            onerror=lambda kind, error, trace: _note(own, error),  # an interrupt at its first line too
+        )
+        state["ask_at"] = address_of(self._ask)
         self._space = space
         self._plain = type(space)
         space.__class__ = attached_class(self._plain)
         space.__dict__[KEY] = self
-        self._rouse = ffi.cast("void (*)(void *, double)", waking.rouse.address)
+        self._rouse = ffi.cast("int (*)(void *, double)", waking.rouse.address)
         self._hook = Hook(space, self._store)
         self._register = Register(self._store, self._hook)
         try:
@@ -244,41 +247,52 @@ class AreaContact:
 
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
-        if self._state["asleep"] and not self.space._locked:
-            self._rouse(self.space._space, dt)
+        space = self.space
+        if self._state["pending"] and not space._locked:
+            self._update()
+        if self._state["asleep"] and not space._locked:
+            while not self._rouse(space._space, dt):
+                self._store.grow()
         flexible = self._settings["flexible"]
-        if flexible is None:
-            rest()
-        else:
-            flexible.step(dt, rest, int(self._state["idle_kind"]))
+        self._stepping = True
+        try:
+            if flexible is None:
+                rest()
+            else:
+                flexible.step(dt, rest, int(self._state["idle_kind"]))
+        finally:
+            self._stepping = False
+            if self._error is not None:
+                self._raise()
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
         from . import frame
 
         space = self.space
-        self._state["stop"] = 0
-        space._locked = True
+        space._locked = self._stepping = True
         try:
             advance = ffi.cast("long long(*)(void *, double, long long)", frame.advance.address)
             taken = int(advance(space._space, dt, frames))
         finally:
-            space._locked = False
-        self._raise()
+            space._locked = self._stepping = False
+            if self._error is not None:
+                self._raise()
         if space._add_later or space._remove_later:
             space.step(0.0)  # what a velocity function added or removed: pymunk's own way
         return max(taken, 1)
 
     def _raise(self) -> None:
+        """Raise what was noted in the step, once; where it was before a frame had begun, bodies are put back first."""
         error, self._error = self._error, None
         before, self._before = self._before, []
-        if error is None:
-            return
-        for body, (x, y, angle, vx, vy, w) in before:
+        for body, (x, y, angle, vx, vy, w, fx, fy, torque) in before:
             if (*body.position, body.angle) != (x, y, angle):
                 body.position, body.angle = (x, y), angle
             body.velocity, body.angular_velocity = (vx, vy), w
-        raise error
+            body.force, body.torque = (fx, fy), torque
+        if error is not None:
+            raise error
 
     # --- what it shows ---
 
@@ -311,18 +325,8 @@ class AreaContact:
         store = self._store
         if request == record.REGISTER:
             self._update()
-        elif request == record.MORE_PAIRS:
-            store.grow_pairs()
-        elif request == record.MORE_REGIONS:
-            store.grow_regions()
-        elif request == record.MORE_WORK:
-            store.grow_work()
-        elif request == record.MORE_JOINTS:
-            store.grow_joints(len(self.space.constraints) + 1)
-        elif request == record.MORE_KEPT:
-            store.keep()
-            self._seen = np.zeros((len(store.tables.bodies), 3))
-            self._state["seen_at"] = self._seen.ctypes.data
+        elif request == record.GROW:
+            store.grow()
         elif request == record.NORMAL:
             self._state["asked_x"], self._state["asked_y"] = normal_of(int(self._state["asked_arbiter"]))
         elif request == record.BROKEN:
@@ -347,23 +351,31 @@ class AreaContact:
 
 
 def _serve(own: weakref.ref[AreaContact], request: int) -> None:
+    """Machine code asks for something. What is raised goes to `_note`; until the last line it counts as not done."""
     from . import record
 
     contact = own()
-    if contact is None or contact._space is None:
-        return
-    try:
+    if contact is not None and contact._space is not None:
+        if (
+            request == record.REGISTER
+        ):  # not begun yet, but Chipmunk will go on with this step: to be put back after it
+            contact._before = [(b, _state_of(b)) for b in contact._space.bodies]
         contact._answer(request)
-    except Exception as error:  # ctypes would print it and go on: keep it, raise it after the step
-        contact._state["failed"] = contact._state["stop"] = 1
-        if contact._error is None:
-            contact._error = error
-            if request in (record.REGISTER, record.MORE_JOINTS):
-                # nothing has been changed yet, but Chipmunk will go on with this step: to be put back after it
-                contact._before = [
-                    (b, (*b.position, b.angle, *b.velocity, b.angular_velocity))
-                    for b in contact._space.bodies
-                ]
+        contact._before = []
+        contact._state["failed"] = 0
+
+
+def _state_of(body: pymunk.Body) -> tuple[float, ...]:
+    place, motion = (*body.position, body.angle), (*body.velocity, body.angular_velocity)
+    return (*place, *motion, *body.force, body.torque)
+
+
+def _note(own: weakref.ref[AreaContact], error: BaseException) -> None:
+    """Keep what was raised while machine code was at work, to be raised after the step: nothing can be raised in it."""
+    contact = own()
+    if contact is not None and contact._space is not None:
+        contact._error = contact._error or error
+        if not contact._stepping:  # a step of pymunk's that has gone past the attached space's own
             contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
 
 

@@ -20,6 +20,7 @@ from ..kernel.tables import (
     ASKED,
     AWAKE,
     BODIES,
+    CONCAVE,
     FREE_BODY,
     FREE_SHAPE,
     MOVERS,
@@ -142,6 +143,7 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     shape.sensor = array_at(address + s.shape_sensor, (1,), np.uint8)[0]
     array_at(s.slots_at, (s.slots_n,), np.int32)[shape.ident] = i
     counters[TOOTHED] += toothed(load_pool(s), shape)
+    counters[CONCAVE] += not load_pool(s).heads[head].convex
     if not body.awake:
         measure(load_pool(s), shape, body)
     _set_box(s, tables, shape, body, still)
@@ -198,7 +200,10 @@ def shapes_come(state: int, addresses: int, heads: int, n: int) -> None:
         counters[ANEW] = 1
         return
     for k in range(n):
-        i = _come(s, tables, words(addresses + 8 * k, 1)[0], head_of[k])
+        address = words(addresses + 8 * k, 1)[0]
+        if row_of_shape(s, address) >= 0:  # what was interrupted is done again
+            continue
+        i = _come(s, tables, address, head_of[k])
         put_in_tree(tables, i, tables.shapes[i].tree)
         ask_about(tables, i)
 
@@ -223,6 +228,7 @@ def shapes_go(state: int, idents: int, n: int) -> None:
         if shape.mirror >= 0:
             users[shape.mirror] -= 1
         counters[TOOTHED] -= toothed(load_pool(s), shape)
+        counters[CONCAVE] -= not load_pool(s).heads[shape.outline].convex
         tables.bodies[shape.body].unmeasured = 1
         _let_go_of_body(s, tables, shape.body)
         shape.outline = -1

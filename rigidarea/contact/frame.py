@@ -31,7 +31,6 @@ from ..kernel.islands import (
     spare,
 )
 from ..kernel.jit import callback, kernel
-from ..kernel.meet import DONE
 from ..kernel.memory import array_at
 from ..kernel.passed import return_what_passed, somebody_flew_off, went_far
 from ..kernel.place import place
@@ -54,23 +53,21 @@ from ..kernel.tables import (
     TURN,
     UNSORTED,
     Tables,
-    rehash,
+    forget_contacts,
 )
 from ..kernel.verdict import wait_for_verdicts
-from ..store import keep_tables, load_law, load_pool, load_tables, load_work, row_of_body
+from ..store import keep_tables, load_law, load_pool, load_tables, load_work, put_tables_back, row_of_body
 from .jointed import write_motion, write_place
 from .joints import (
     give_back,
     hide,
     joints_of,
-    keep_impulse,
     restore_impulse,
 )
 from .phases import REPORTING, WATCHING, lap, start
 from .record import (
     BROKEN,
-    MORE_KEPT,
-    MORE_WORK,
+    GROW,
     ask,
     begin,
     floats,
@@ -180,28 +177,25 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 
 
 @kernel
-def _keep(s: Any) -> bool:
-    """Take down what a frame starts from. Whether there is room for it."""
-    if not keep_tables(s, False) and not (ask(s, MORE_KEPT) and keep_tables(s, False)):
-        return False
-    for joint in joints_of(s):
-        if joint.taken:
-            keep_impulse(joint)
-    return True
-
-
-@kernel
-def _again(s: Any) -> bool:
-    """Back to what was kept; False: the tables have grown since, and cannot go back into it."""
-    if not keep_tables(s, True):
-        return False
+def _again(s: Any) -> None:
+    """Back to what the frame started from, as far as it has changed it; if that was not kept, without contacts."""
     tables = load_tables(s)
-    tables.counters[ANEW] = 1
-    rehash(tables)
+    if s.begun and s.kept:
+        put_tables_back(s, tables)
+    elif s.begun:
+        tables.counters[ANEW] = 1
+        forget_contacts(tables)
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if body.kind == DRIFTS:
+            body.x = body.old_x
+            body.y = body.old_y
+            body.angle = body.old_a
+            body.since = body.old_since
+            place(body)
     for joint in joints_of(s):
         if joint.taken:
             restore_impulse(joint)
-    return True
 
 
 @kernel
@@ -237,13 +231,13 @@ def _see(s: Any) -> None:
 def _turns(s: Any, space: int, dt: float, n: int) -> int:
     """A frame in which some bodies want more substeps than others, n at the most.
 
-    Returns how many the finest took; 0: there was no memory for it.
+    Returns how many the finest took; 0: there was no room for it.
     """
     g = floats(space + s.space_gravity, 2)
-    load_tables(s).counters[TURN] = 0
+    tables = load_tables(s)
+    tables.counters[TURN] = 0
     if not near_pairs(s, space, dt, dt):
         return 0
-    tables = load_tables(s)
     if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
         company(tables, s.substeps if n == s.substeps else 1)
         for joint in joints_of(s):
@@ -261,17 +255,15 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         _everybody(s, space)
         return int(taken) if substeps(s, space, dt, taken) else 0
     most = max(turn, s.substeps)
-    if not _keep(s):
-        return 0
-    last = load_tables(s).counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
+    keep_tables(s)
+    last = tables.counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
     while turn > 0:
-        load_tables(s).counters[SUBSTEP] = last - turn
+        tables.counters[SUBSTEP] = last - turn
         if not substeps(s, space, dt, turn):
             return 0
-        turn = next_turn(load_tables(s), turn)
-    if load_tables(s).counters[MET] and _again(
-        s
-    ):  # (where tables have grown, the next frame finds what has met)
+        turn = next_turn(tables, turn)
+    if tables.counters[MET]:
+        _again(s)
         s.contacts = 0
         _everybody(s, space)
         if not substeps(s, space, dt, most):
@@ -282,23 +274,12 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
 
 @kernel
 def _whom_it_met(s: Any, space: int, dt: float) -> bool:
-    """Near is also whom a blow has sent somebody past since the last search. Whether there was memory for that."""
-    if not somebody_flew_off(load_pool(s), load_tables(s)):
+    """Near is also whom a blow has sent somebody past since the last search. Whether there was room for that."""
+    tables = load_tables(s)
+    if not somebody_flew_off(load_pool(s), tables):
         return True
-    load_tables(s).counters[TURN] = 0
+    tables.counters[TURN] = 0
     return bool(near_pairs(s, space, dt, dt))
-
-
-@kernel
-def _wait_for_verdicts(s: Any, dt: float) -> bool:
-    """What has passed a shape that the user is to be asked about goes back to it. Whether there was memory for that."""
-    start = 0
-    while True:
-        status, start = wait_for_verdicts(load_pool(s), load_tables(s), load_work(s), s.frame, dt, start)
-        if status == DONE:
-            return True
-        if not ask(s, MORE_WORK):
-            return False
 
 
 @kernel
@@ -310,18 +291,15 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     is the error itself: that is what is compared.
     """
     s.contacts = 0
-    if not _start(s, space, load_tables(s)):
-        return False
     tables = load_tables(s)
-    if (
-        tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0
-    ):  # teeth ask for substeps before the first one looks
+    if not _start(s, space, tables):
+        return False
+    if tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0:  # teeth ask before the first substep looks
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
             return False
     lap(s, WATCHING)
-    n = demand(load_pool(s), load_tables(s), load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
-    tables = load_tables(s)
+    n = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
     for joint in joints_of(s):
         for i in (joint.a, joint.b):
@@ -329,12 +307,12 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
         _everybody(s, space)
-        if not _keep(s) or not substeps(s, space, dt, n):
+        keep_tables(s)
+        if not substeps(s, space, dt, n):
             return False
         while 2 * n <= MOST_SUBSTEPS:
             _see(s)
-            if not _again(s):  # the tables have grown: from here on with what there is
-                break
+            _again(s)
             n *= 2
             s.contacts = 0
             if not substeps(s, space, dt, n):
@@ -349,13 +327,15 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             return False
     if n == 0:
         return False
-    far, lines = went_far(load_tables(s))
-    if (far and not _whom_it_met(s, space, dt)) or not _wait_for_verdicts(s, dt):
+    far, lines = went_far(tables)
+    if far and not _whom_it_met(s, space, dt):
+        return False
+    if not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
         return False
     if far or lines:
-        return_what_passed(load_pool(s), load_tables(s), s.frame, far)
+        return_what_passed(load_pool(s), tables, s.frame, far)
     if s.stiffness_given == 0:
-        adapt_stiffness(load_tables(s), load_law(s), dt)
+        adapt_stiffness(tables, load_law(s), dt)
     s.taken = n
     return True
 
@@ -382,9 +362,10 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 
 @kernel
 def _undo(s: Any, tables: Tables) -> None:
-    """A frame that failed: every body as it was."""
+    """A frame that failed: every body and joint as it was."""
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        body.calm = body.was_calm
         body.x = body.old_x
         body.y = body.old_y
         body.angle = body.old_a
@@ -392,20 +373,33 @@ def _undo(s: Any, tables: Tables) -> None:
         body.vy = body.old_vy
         body.w = body.old_w
         place(body)
+        force = floats(body.address + s.body_force, 2)
+        force[0] = body.old_fx
+        force[1] = body.old_fy
+        floats(body.address + s.body_torque, 1)[0] = body.old_torque
+    for joint in joints_of(s):
+        joint.x = joint.start_x
+        joint.y = joint.start_y
 
 
 @kernel
 def _whole_frame(s: Any, space: int) -> None:
-    """The frame, and where it fails everything as it was."""
+    """The frame; again, once there is room for what it has found; and where it fails everything as it was."""
     start(s)
     dt = time_step(space)
-    good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
+    good = False
+    again = s.failed == 0
+    while again:
+        s.begun = 0
+        s.kept = 0
+        good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
+        if good:
+            s.broken = finite(load_tables(s))
+            good = s.broken < 0
+        if not good:
+            _again(s)
+        again = not good and ask(s, GROW if s.broken < 0 else BROKEN)
     tables = load_tables(s)
-    if good:
-        s.broken = finite(tables)
-        good = s.broken < 0
-    if s.broken >= 0:
-        ask(s, BROKEN)
     if not good:
         _undo(s, tables)
     _finish_frame(s, tables, good)
@@ -421,7 +415,7 @@ def solve(constraint: int, coefficient: float) -> None:
     s = state_of(space)
     iterations = array_at(space, (1,), np.int32)
     s.sweeps = iterations[0]
-    if s.frame == np.int64(timestamp(space)) and not s.failed:
+    if s.frame == np.int64(timestamp(space)):
         _whole_frame(s, space)
     if s.explicit == 0:  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
         iterations[0] = 0
@@ -468,6 +462,6 @@ def advance(space: int, dt: float, frames: int) -> int:
         if i > 0 and state_of(space).asleep:
             return i
         _step(space, dt)
-        if user_data(space) == 0 or state_of(space).failed or state_of(space).stop:
+        if user_data(space) == 0 or state_of(space).failed:
             return i
     return frames

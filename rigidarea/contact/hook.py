@@ -58,10 +58,10 @@ class Hook:
         kept = body, classes, store
         self._end = weakref.finalize(space, _take_out, space._space, joint, pivot, constraints, kept)
 
-    def note_callbacks(self) -> None:
-        """Take down which functions of its own the global handler has: `record.begin` looks whether they are others."""
-        for number, name in ((0, "begin"), (2, "post_solve"), (3, "separate")):
-            self._state[f"global_{name}"] = int(self._functions[number])
+    def callbacks(self) -> dict[str, int]:
+        """Which functions of its own the global handler has: `record.begin` looks whether they are others."""
+        names = ((0, "begin"), (2, "post_solve"), (3, "separate"))
+        return {f"global_{name}": int(self._functions[number]) for number, name in names}
 
     def remove(self, space: pymunk.Space) -> None:
         """Take everything out of the space again."""

@@ -185,6 +185,15 @@ def hide(s: Any) -> None:
             _words(joint.address, 1)[0] = s.idle_kind
 
 
+@kernel
+def keep_impulse(joint: Any) -> None:
+    """Take down what the joint starts from."""
+    if joint.count > 0:
+        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
+        joint.start_x = impulse[0]
+        joint.start_y = impulse[joint.count - 1]
+
+
 @callback(types.void(types.uintp, types.uintp))
 def seize(constraint: int, space: int) -> None:
     """In the place of a joint's pre_solve: the user's first, then Chipmunk is to leave it alone."""
@@ -196,6 +205,7 @@ def seize(constraint: int, space: int) -> None:
     if joint.pre_solve != 0:
         _call_user(joint.pre_solve, constraint, space)
     joint.taken = 1
+    keep_impulse(joint)
     _words(constraint, 1)[0] = s.seized_kind
 
 
@@ -213,15 +223,6 @@ def is_spring(s: Any, joint: Any) -> bool:
     """Whether a joint begins with no impulse of the substep before: a spring's force is given."""
     kinds = array_at(s.springs_at, (6,), np.uint64)
     return bool(joint.kind == kinds[0] or joint.kind == kinds[3])
-
-
-@kernel
-def keep_impulse(joint: Any) -> None:
-    """Take down what the joint starts from."""
-    if joint.count > 0:
-        impulse = array_at(joint.address + joint.at, (joint.count,), np.float64)
-        joint.start_x = impulse[0]
-        joint.start_y = impulse[joint.count - 1]
 
 
 @kernel

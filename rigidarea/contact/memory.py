@@ -113,8 +113,10 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     row_of[memory.rows[known]] = mine[known]
     for name in _SHAPE:
         store.tables.shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
-    store.grow_pairs(len(memory.pairs))
-    store.grow_regions(len(memory.regions))
+    if len(memory.pairs) > len(store.tables.pairs):
+        store.grow_pairs(len(memory.pairs))
+    if len(memory.regions) > len(store.tables.regions):
+        store.grow_regions(len(memory.regions))
     pairs, regions = memory.pairs.copy(), memory.regions.copy()
     used = pairs["a"] >= 0
     for name in ("a", "b"):

@@ -26,6 +26,8 @@ from ..kernel.tables import (
     FIXED,
     FREE_PAIRS,
     LED,
+    MORE_JOINTS,
+    MORE_PAIRS,
     MOVERS,
     TOLD,
     UNSORTED,
@@ -38,8 +40,8 @@ from ..store import STATE, load_pool, load_tables, row_of_body
 from .joints import take_joints
 from .phases import WATCHING, lap, start
 
-#: What machine code asks Python for.
-REGISTER, MORE_PAIRS, MORE_REGIONS, MORE_WORK, MORE_JOINTS, MORE_KEPT, BROKEN, NORMAL = range(8)
+#: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
+REGISTER, GROW, BROKEN, NORMAL = range(4)
 
 user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
 timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
@@ -75,7 +77,8 @@ def state_of(space: int) -> Any:
 
 @kernel
 def ask(s: Any, request: int) -> bool:
-    """Ask Python for something; whether it could."""
+    """Ask Python for something; whether it could. If not, what it raised is raised after the step."""
+    s.failed = 1  # until Python says that it has done all of it, whatever interrupts it
     _call_ask(s.ask_at, np.uint64(request))
     return bool(s.failed == 0)
 
@@ -282,6 +285,7 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         x, y, angle = body.x, body.y, body.angle
         notice(s, address, body)
         body.stamp = s.frame
+        body.was_calm = 1 if body.calm > 0 else 0
         mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         body.changed = 1 if mobile != body.mobile or not body.awake else 0
         body.mobile = mobile
@@ -305,6 +309,11 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w
+        body.old_since = body.since
+        force = floats(address + s.body_force, 2)
+        body.old_fx = force[0]
+        body.old_fy = force[1]
+        body.old_torque = floats(address + s.body_torque, 1)[0]
     n = 0
     for k in range(counters[AWAKE]):
         i = tables.awake[k]
@@ -339,7 +348,12 @@ def wake(s: Any, tables: Tables, i: int) -> None:
     body.old_vx = body.vx
     body.old_vy = body.vy
     body.old_w = body.w
+    body.old_fx = 0.0  # a force would have woken it before
+    body.old_fy = 0.0
+    body.old_torque = 0.0
     body.since = 0.0
+    body.old_since = 0.0
+    body.was_calm = 0
     if not body.awake:
         add_to_awake(tables, i, body)
         _list_shapes(s, tables, body, True)
@@ -394,15 +408,17 @@ def begin(s: Any, space: int, dt: float) -> bool:
         return False
     load_tables(s).counters[TOLD] = 0
     if not _watch(s, load_tables(s), space, dt):  # somebody came on a way of which pymunk has not told
-        s.pending = 1
+        s.pending = 2
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
             return False
     look_at_partners(s, load_tables(s))
     s.asleep = len(members(space, s.space_sleeping)) > 0
     if not s.explicit:
         n = len(members(space, s.space_constraints))
-        if n > s.joints_n and not ask(s, MORE_JOINTS):
-            return False
+        if n > s.joints_n:
+            load_tables(s).counters[MORE_JOINTS] = n - s.joints_n
+            if not ask(s, GROW):
+                return False
         take_joints(s, load_tables(s), members(space, s.space_constraints))
     lap(s, WATCHING)
     return True
@@ -469,7 +485,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     now = np.int64(timestamp(space))
     if s.user_pre_solve != 0:
         _call_hook(s.user_pre_solve, arbiter, space, data)
-    if s.frame != now and not begin(s, space, time_step(space)):
+    if s.frame != now:
+        begin(s, space, time_step(space))
+    if s.failed:
         return
     both = words(arbiter + s.arbiter_shape_a, 2)
     a = row_of_shape(s, both[0])
@@ -488,7 +506,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         if not solid:
             return
         if tables.counters[FREE_PAIRS] == 0:
-            if not ask(s, MORE_PAIRS):
+            tables.counters[MORE_PAIRS] = 1
+            if not ask(s, GROW):
                 return
             tables = load_tables(s)
         p = new_pair(tables, a, b)

@@ -6,6 +6,7 @@ before; what does not move at once. Should Chipmunk know of others, the whole sp
 
 from __future__ import annotations
 
+import copy
 from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
@@ -54,14 +55,16 @@ class Register:
 
     def shape_came(self, shape: pymunk.Shape) -> None:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
-        self._state["pending"] = 1
-        if shape.body.body_type != _STATIC or self._bodies or self._gone or self._left:
-            self._new[shape] = None
-            return
-        try:
-            self._enter([shape])
-        except ValueError:  # said when the space is stepped
-            self._new[shape] = None
+        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._new[shape] = None
+        if shape.body is not None and shape.body.body_type == _STATIC:
+            try:
+                heads = self._outlines([shape])
+            except ValueError:  # said when the space is stepped
+                return
+            self._forget()
+            self._enter([shape], heads)
+            del self._new[shape]
 
     def shape_goes(self, shape: pymunk.Shape) -> None:
         """A shape is about to be removed."""
@@ -69,12 +72,12 @@ class Register:
             del self._new[shape]
         else:
             self._gone.append(shape._hashid)
-        self._state["pending"] = 1
+        self._state["pending"] = max(1, int(self._state["pending"]))
 
     def body_came(self, body: pymunk.Body) -> None:
         """A body has been added."""
         self._bodies[body] = None
-        self._state["pending"] = 1
+        self._state["pending"] = max(1, int(self._state["pending"]))
 
     def body_goes(self, body: pymunk.Body) -> None:
         """A body is about to be removed."""
@@ -82,7 +85,7 @@ class Register:
             del self._bodies[body]
         else:
             self._left.append(address_of(body._body))
-        self._state["pending"] = 1
+        self._state["pending"] = max(1, int(self._state["pending"]))
 
     def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
         """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
@@ -119,6 +122,27 @@ class Register:
             self._look_through(space)
         new = list(self._new)
         heads = self._outlines(new)  # says what is wrong with one while nothing has changed
+        state["pending"] = 2  # until all is done: whoever is interrupted looks through the space
+        self._forget()
+        if self._bodies:
+            addresses = _words(address_of(body._body) for body in self._bodies)
+            self._store.room(0, len(addresses), 0)
+            self._call("bodies_come", addresses, not space._locked and not state["explicit"])
+            self._bodies.clear()
+        self._enter(new, heads)
+        self._new.clear()
+        self._store.tidy()
+        facts = self._hear(space)
+        facts |= {
+            "shape_counter": lib.cpSpaceGetShapeIDCounter(space._space),
+            "shape_count": len(self.shapes),
+        }
+        for name, value in facts.items():
+            state[name] = value
+        state["pending"] = 0
+
+    def _forget(self) -> None:
+        """What has gone is not in the tables any more."""
         if self._gone:
             self._call("shapes_go", np.array(self._gone, np.uint64))
             for ident in self._gone:
@@ -127,28 +151,18 @@ class Register:
         if self._left:
             self._call("bodies_go", _words(self._left))
             self._left.clear()
-        if self._bodies:
-            addresses = _words(address_of(body._body) for body in self._bodies)
-            self._store.room(0, len(addresses), 0)
-            held = not space._locked and not state["explicit"]
-            self._call("bodies_come", addresses, held)
-            self._bodies.clear()
-        self._enter(new, heads)
-        self._new.clear()
-        self._store.tidy()
-        self._hear(space)
-        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
-        state["shape_count"] = len(self.shapes)
-        state["pending"] = 0
 
     def _look_through(self, space: pymunk.Space) -> None:
         """What there is that pymunk has not told of, and what is no more."""
         present = {shape._hashid: shape for shape in space._shapes}
-        self._gone = [ident for ident, shape in self.shapes.items() if present.get(ident) is not shape]
-        self._new = {shape: None for ident, shape in present.items() if self.shapes.get(ident) is not shape}
+        rows = self._store.known_shapes
+        known = set(rows["ident"][rows["outline"] >= 0].tolist())
+        self.shapes = {ident: shape for ident, shape in present.items() if ident in known}
+        self._gone = [ident for ident in known if ident not in present]
+        self._new = {shape: None for ident, shape in present.items() if ident not in known}
         bodies = {address_of(body._body): body for body in space._bodies}
-        rows = self._store.tables.bodies
-        entered = set(rows["address"][rows["entered"] == 1].tolist())
+        found = self._store.tables.bodies
+        entered = set(found["address"][found["entered"] == 1].tolist())
         self._left = [address for address in entered if address not in bodies]
         self._bodies = {body: None for address, body in bodies.items() if address not in entered}
 
@@ -205,9 +219,11 @@ class Register:
         ]
         return float(max((side.max() for side in sides if len(side)), default=1.0))
 
-    def _hear(self, space: pymunk.Space) -> None:
-        """Which collision types have callbacks of the user's, that may say no."""
-        self._hook.note_callbacks()
+    def _hear(self, space: pymunk.Space) -> dict[str, int]:
+        """Take down which collision types have callbacks of the user's, that may say no.
+
+        Returns facts by which it is known whether there are others.
+        """
         everywhere = space._handlers.get((None, None))
         to_all = everywhere is not None and any(
             getattr(everywhere, phase) is not None
@@ -217,14 +233,13 @@ class Register:
         alone = _words({a for a, b in keys if b is None})
         pairs = _words({kind for a, b in keys if b is not None for kind in (a, b)})
         store, state = self._store, self._state
-        before = int(state["heard_all"]), store.heard_alone.tolist(), store.heard_pairs.tolist()
-        if before != (int(to_all), alone.tolist(), pairs.tolist()):
-            state["heard_all"] = to_all
-            state["heard_epoch"] += 1
-            store.heard_alone, store.heard_pairs = alone, pairs
-            store.sync()
+        before = bool(state["heard_all"]), store.heard_alone.tolist(), store.heard_pairs.tolist()
+        if before != (to_all, alone.tolist(), pairs.tolist()):
+            new = copy.copy(store)
+            new.heard_alone, new.heard_pairs = alone, pairs
+            store.publish(new, heard_all=to_all, heard_epoch=int(state["heard_epoch"]) + 1)
         entries = ffi.cast("unsigned int **", address_of(space._space) + int(state["space_handlers"]))
-        state["handler_count"] = int(entries[0][0])
+        return {"handler_count": int(entries[0][0]), **self._hook.callbacks()}
 
 
 def _given(shape: pymunk.Shape) -> bool:

@@ -9,8 +9,7 @@ from ..kernel.conjugate import search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
-from ..kernel.join import gather, join, nobody_comes_near, somebody_touches
-from ..kernel.meet import DONE, GROW_WORK
+from ..kernel.join import gather, has_room, join, nobody_comes_near, somebody_touches
 from ..kernel.order import arrange, find_near
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
@@ -30,69 +29,56 @@ from ..store import load_law, load_pool, load_tables, load_work
 from .jointed import lessen_joints, own_joints, run_joints, start_joints
 from .joints import APPLY, APPLY_CACHED, add_impulse, joints_of
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
-from .record import MORE_PAIRS, MORE_REGIONS, MORE_WORK, ask, floats, look_at_partners
+from .record import floats, look_at_partners
 
 
 @kernel
 def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near. Whether there was memory for them."""
-    while find_near(load_pool(s), load_tables(s), s.frame, h, time) != DONE:
-        if not ask(s, MORE_PAIRS):
-            return False
+    """Find the pairs that are near. Whether there was room for them."""
     tables = load_tables(s)
+    if not find_near(load_pool(s), tables, s.frame, h, time):
+        return False
     if tables.counters[UNSORTED]:
         look_at_partners(s, tables)
         g = floats(space + s.space_gravity, 2)
         arrange(tables, g[0], g[1])
     lap(s, PAIRS)
-    return True
+    return bool(s.begun or has_room(tables))
 
 
 @kernel
 def find_contacts(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near, their regions and rows. Whether there was memory for them."""
+    """Find the pairs that are near, their regions and rows. Whether there was room for them."""
     if not near_pairs(s, space, h, time):
         return False
-    load_tables(s).counters[SUBSTEP] += 1
-    load_tables(s).counters[ROWS] = 0
-    load_tables(s).counters[BOUNCES] = 0
-    start = 0
-    while True:
-        status, start = gather(load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start)
-        if status == DONE:
-            lap(s, OVERLAPS)
-            return True
-        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
-            return False
+    tables = load_tables(s)
+    s.begun = 1
+    tables.counters[SUBSTEP] += 1
+    tables.counters[ROWS] = 0
+    tables.counters[BOUNCES] = 0
+    found = gather(load_pool(s), tables, load_work(s), load_law(s), s.frame, h)
+    lap(s, OVERLAPS)
+    return bool(found)
 
 
 @kernel
-def _join(s: Any, h: float, first: bool) -> int:
-    """Rows that come up while the others are solved: how many; -1: there was no memory for them."""
+def _join(s: Any, tables: Tables, h: float, first: bool) -> int:
+    """Rows that come up while the others are solved: how many; -1: there was no room for them."""
     lap(s, POSITIONS if first else ITERATIONS)
-    start = 0
-    total = 0
-    while True:
-        status, start, joined = join(
-            load_pool(s), load_tables(s), load_work(s), load_law(s), s.frame, h, start, first
-        )
-        total += joined
-        if status == DONE:
-            lap(s, SPECULATIVE)
-            return total
-        if not ask(s, MORE_WORK if status == GROW_WORK else MORE_REGIONS):
-            return -1
+    joined = int(join(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, first))
+    lap(s, SPECULATIVE)
+    return joined
 
 
 @kernel
-def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
-    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was memory for it.
+def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
+    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was room for it.
 
     They go on while the last sweep has moved much, or contacts have added energy, which they never do.
     """
-    if _join(s, h, True) < 0:  # before the warm start: what that adds is no speed at which anybody comes
+    # before the warm start: what that adds is no speed at which anybody comes
+    if _join(s, tables, h, True) < 0:
         return False
-    tables = load_tables(s)
     if tables.counters[ROWS] == 0 and not jointed:
         return True  # nothing that could change a velocity
     mass, x, y = common(tables)
@@ -112,12 +98,11 @@ def _solve(s: Any, h: float, whole: int, jointed: bool) -> bool:
         moved = 0.0
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
-                joined = _join(s, h, False)
+                joined = _join(s, tables, h, False)
                 if joined < 0:
                     return False
                 wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
-                tables = load_tables(s)
             moved = sweep(tables, k % 2 == 0)
             if jointed:
                 run_joints(s, tables, APPLY, h)
@@ -163,12 +148,11 @@ def _relax(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> None:
 
 
 @kernel
-def _fly(s: Any, dt: float, more: float, n: int) -> None:
+def _fly(s: Any, tables: Tables, dt: float, more: float, n: int) -> None:
     """The rest of a frame in which nobody touches anybody: so much `more` up to its middle, and then the other half.
 
     Under constant forces one kick in the middle is exact.
     """
-    tables = load_tables(s)
     tables.counters[SUBSTEP] += 1
     tables.counters[ROWS] = 0
     drift(tables, s.frame, more)
@@ -182,7 +166,7 @@ def _fly(s: Any, dt: float, more: float, n: int) -> None:
 
 @kernel
 def substeps(s: Any, space: int, dt: float, n: int) -> bool:
-    """A frame in n substeps of the bodies that are live. Whether there was memory for it."""
+    """A frame in n substeps of the bodies that are live. Whether there was room for it."""
     h = dt / n
     tables = load_tables(s)
     joints = own_joints(s, tables)
@@ -191,31 +175,28 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         sweeps *= max(1, s.substeps // n)
     share_kicks(tables, n)
     for i in range(n):
-        drift(load_tables(s), s.frame, 0.5 * h if i == 0 else h)
+        drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
-        if i == 0 and joints == 0 and not somebody_touches(load_tables(s)):
+        if i == 0 and joints == 0 and not somebody_touches(tables):
             if not near_pairs(s, space, h, dt):
                 return False
-            if nobody_comes_near(load_tables(s), dt - 0.5 * h):
-                _fly(s, dt, 0.5 * (dt - h), n)
+            if nobody_comes_near(tables, dt - 0.5 * h):
+                _fly(s, tables, dt, 0.5 * (dt - h), n)
                 return True
-        kick(load_tables(s), s.frame)
+        kick(tables, s.frame)
         if not find_contacts(s, space, h, dt - i * h):
             return False
-        tables = load_tables(s)
         if joints > 0:
             start_joints(s, tables, h, n if i == 0 else 0)
-        if not _solve(s, h, sweeps, joints > 0):
+        if not _solve(s, tables, h, sweeps, joints > 0):
             return False
         lap(s, ITERATIONS)
-        tables = load_tables(s)
         _relax(s, tables, h, sweeps, joints > 0)
         if joints > 0:
             for joint in joints_of(s):
                 if joint.mine:
                     add_impulse(joint)
         finish(tables, load_law(s), s.frame, h, i == n - 1)
-    tables = load_tables(s)
     drift(tables, s.frame, 0.5 * h)
     note(tables, n)
     s.contacts += tables.counters[ROWS]

@@ -10,9 +10,9 @@ from ..chipmunk import function
 from ..kernel.jit import callback
 from ..kernel.join import may_touch
 from ..kernel.meet import meets_within
-from ..kernel.tables import FIXED, NEAR, TURN
+from ..kernel.tables import FIXED, MORE_WORK, NEAR, TURN
 from ..store import load_pool, load_tables, load_work, row_of_body
-from .record import MORE_WORK, REGISTER, ask, members, notice, state_of, user_data
+from .record import members, notice, state_of, user_data
 from .substep import near_pairs
 
 _activate = function("cpBodyActivate", types.void(types.uintp))
@@ -22,35 +22,33 @@ _activate = function("cpBodyActivate", types.void(types.uintp))
 WAKING = 0.01
 
 
-@callback(types.void(types.uintp, types.float64))
-def rouse(space: int, dt: float) -> None:
-    """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame.
+@callback(types.int32(types.uintp, types.float64))
+def rouse(space: int, dt: float) -> int:
+    """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame. 0: the tables are too small.
 
     Chipmunk wakes what somebody overlaps at the frame's start. What is met within the frame would be a wall, on which
     a blow is spent before anybody sees an overlap. (Within its step Chipmunk cannot wake anybody before it has paired
     bodies and arbiters, and then the frame has begun.)
     """
     if user_data(space) == 0:
-        return
+        return 1
     s = state_of(space)
     if s.asleep == 0 or s.explicit or len(members(space, s.space_bodies)) == 0:
-        return
-    if s.pending and not ask(s, REGISTER):
-        return
+        return 1
     tables = load_tables(s)
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0 or tables.bodies[i].stamp != s.frame:
-            return  # somebody new: the frame will look at everybody first
+            return 1  # somebody new: the frame will look at everybody first
         body = tables.bodies[i]
         notice(s, address, body)
         if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
-            return
+            return 1
     tables.counters[TURN] = 0  # everybody
     ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
+    s.begun = 0
     if not near_pairs(s, space, ahead, ahead):
-        return
-    tables = load_tables(s)
+        return 0
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
@@ -63,9 +61,9 @@ def rouse(space: int, dt: float) -> None:
         if not sleeper.mobile or way <= WAKING * sleeper.extent:
             continue
         met = meets_within(load_pool(s), tables, load_work(s), pair, ahead)
-        while met < 0:
-            if not ask(s, MORE_WORK):
-                return
-            met = meets_within(load_pool(s), load_tables(s), load_work(s), pair, ahead)
+        if met < 0:
+            tables.counters[MORE_WORK] = 1
+            return 0
         if met > 0:
             _activate(sleeper.address)
+    return 1

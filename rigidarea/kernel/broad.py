@@ -19,6 +19,7 @@ from .tables import (
     BOXED,
     DRIFTS,
     FREE_PAIRS,
+    MORE_PAIRS,
     MOVERS,
     SEARCH,
     TURN,
@@ -119,7 +120,7 @@ def _widen(shape: Any, body: Any, h: float, time: float) -> None:
 
 @kernel
 def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
-    """A new box, for `time` of motion, for each shape of the turn that leaves its own within h. They are asked about."""
+    """Give each shape of the turn that leaves its box within h another, for `time` of motion, and ask about it."""
     turn = tables.counters[TURN]
     for k in range(tables.counters[MOVERS]):
         i = tables.movers[k]
@@ -148,7 +149,9 @@ def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
 
 @kernel
 def find_pairs(tables: Tables) -> bool:
-    """Enter the pairs of all that are asked about, behind tables.near[:counters[BOXED]]. Whether there was room."""
+    """Enter the pairs of all that are asked about, behind tables.near[:counters[BOXED]]. False: no room, for MORE_PAIRS
+    of them at least; those that are left are still to be asked about.
+    """
     counters = tables.counters
     while counters[ASKED] > 0:
         i = int(tables.asked[counters[ASKED] - 1])
@@ -186,6 +189,7 @@ def _pairs_of(tables: Tables, i: int, which: int) -> bool:
         p = find_pair(tables, i, j)
         if p < 0:
             if counters[FREE_PAIRS] == 0:
+                counters[MORE_PAIRS] = max(counters[MORE_PAIRS], counters[ASKED])
                 return False
             p = new_pair(tables, i, j)
         list_pair(tables, p)

@@ -84,7 +84,7 @@ def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, 
     slow = CALM * law.gravity * dt
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
-        before = body.calm > 0
+        before = body.was_calm == 1
         body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
             3.0 * slow if before else slow
         )

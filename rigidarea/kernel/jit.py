@@ -33,7 +33,7 @@ _IMPORT = re.compile(rf"^ *from (\.+|{_ROOT.name}\.?)([\w.]*) import (\([^)]*\)|
 def _imports(source: Path) -> tuple[bytes, tuple[Path, ...]]:
     """A source's text, and the sources of this package that it imports, at its top or in functions."""
     text = source.read_bytes()
-    found = set()
+    found: set[Path] = set()
     for dots, module, names in _IMPORT.findall(text.decode()):
         folder = source.parents[len(dots) - 1] if dots[0] == "." else _ROOT
         folder = folder.joinpath(*module.split("."))

@@ -14,13 +14,33 @@ from .apart import find_axis, gap_along
 from .broad import swing
 from .constants import LOOK, STRAIGHT_WAY
 from .jit import kernel
-from .meet import DONE, GROW_REGIONS, earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
+from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .place import seen_from
 from .pool import Pool
 from .row import make_row
-from .tables import BOUNCES, FIRST, LAST, LIVE, ROWS, STRUCK, SUBSTEP, Law, Tables
+from .tables import (
+    BOUNCES,
+    CONCAVE,
+    FIRST,
+    FREE_PAIRS,
+    FREE_REGIONS,
+    LAST,
+    LIVE,
+    MORE_PAIRS,
+    MORE_REGIONS,
+    MOVERS,
+    NEAR,
+    ROWS,
+    STRUCK,
+    SUBSTEP,
+    Law,
+    Tables,
+)
 from .verdict import allowed
 from .work import Work
+
+#: Rows to spare, of pairs and of regions, beside one of each a shape that moves and a near pair; regions a concave one.
+SPARE = 24
 
 
 @kernel(forceinline=True)
@@ -154,6 +174,7 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
     while r != until:
         region = tables.regions[r]
         if counters[ROWS] == len(tables.rows):
+            counters[MORE_REGIONS] = 1
             return False
         row = tables.rows[counters[ROWS]]
         counters[ROWS] += 1
@@ -167,12 +188,24 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
 
 
 @kernel
-def gather(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int
-) -> tuple[int, int]:
-    """Regions and rows of all near pairs from tables.near[start] on: (DONE or GROW_..., where it stopped)."""
+def has_room(tables: Tables) -> bool:
+    """Whether there is room for what a frame may come to find beyond what it starts with; if not, for how much more.
+
+    Asked before a frame changes anything: hardly ever does one have to be run again from further on.
+    """
     counters = tables.counters
-    for i in range(max(start, counters[FIRST]), counters[LAST]):
+    pairs = counters[MOVERS] + SPARE - counters[FREE_PAIRS]
+    regions = counters[NEAR] + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
+    counters[MORE_PAIRS] = max(0, pairs)
+    counters[MORE_REGIONS] = max(0, regions)
+    return bool(pairs <= 0 and regions <= 0)
+
+
+@kernel
+def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float) -> bool:
+    """Regions and rows of all near pairs; False: there is no room for them."""
+    counters = tables.counters
+    for i in range(counters[FIRST], counters[LAST]):
         p = tables.near[i].pair
         pair = tables.pairs[p]
         sa = tables.shapes[pair.a]
@@ -190,16 +223,15 @@ def gather(
                 pair.waited = h if pair.waiting != frame else pair.waited + h
                 pair.waiting = frame
             continue
-        status = meet(pool, tables, work, law, p, h)
-        if status != DONE:
-            return status, i
+        if not meet(pool, tables, work, law, p, h):
+            return False
         if pair.head < 0:
             _part(pool, tables, pair, a, b)
             continue
         pair.seats = has_seats(pool, tables, pair)
         if not _add_rows(tables, law, p, h, -1):
-            return GROW_REGIONS, i
-    return DONE, counters[LAST]
+            return False
+    return True
 
 
 @kernel
@@ -244,18 +276,16 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
 
 
 @kernel
-def join(
-    pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, start: int, first: bool
-) -> tuple[int, int, int]:
+def join(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float, first: bool) -> int:
     """Rows for pairs that the velocities, as solved so far, would bring to overlap in the next drift.
 
     So what stands at touch is held from the start, and a blow goes on from body to body within the substep. Returns
-    (DONE or GROW_..., where it stopped, how many rows joined).
+    how many rows joined; -1: there is no room for them.
     """
     counters = tables.counters
     before = counters[ROWS]
     _stray(tables, h)
-    for i in range(max(start, counters[FIRST]), counters[LAST]):
+    for i in range(counters[FIRST], counters[LAST]):
         near = tables.near[i]
         if first:
             near.a = tables.shapes[tables.pairs[near.pair].a].body
@@ -270,9 +300,8 @@ def join(
         ):
             continue
         old = pair.head
-        status = meet_ahead(pool, tables, work, law, near.pair, h, first)
-        if status != DONE:
-            return status, i, counters[ROWS] - before
+        if not meet_ahead(pool, tables, work, law, near.pair, h, first):
+            return -1
         if not _add_rows(tables, law, near.pair, h, old):
-            return GROW_REGIONS, i, counters[ROWS] - before
-    return DONE, counters[LAST], counters[ROWS] - before
+            return -1
+    return int(counters[ROWS] - before)

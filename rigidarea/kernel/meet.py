@@ -38,6 +38,8 @@ from .tables import (
     FREE_REGIONS,
     IMPACT,
     LAW_ENERGY,
+    MORE_REGIONS,
+    MORE_WORK,
     NEARING,
     PLACED,
     REST,
@@ -48,14 +50,10 @@ from .tables import (
     free_regions,
 )
 
-DONE, GROW_WORK, GROW_REGIONS = 0, 1, 2
 #: Places at which a pair is looked at for one more that is to come.
 MOST_SEATS = 60
 
 __all__ = [
-    "DONE",
-    "GROW_REGIONS",
-    "GROW_WORK",
     "closing",
     "earlier",
     "inverse_mass",
@@ -113,10 +111,10 @@ def _remember(regions: Any, pair: Any, stamp: int) -> None:
 
 
 @kernel
-def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> int:
-    """Bring pair p's regions up to where its bodies are: their places, and which of them are new. DONE, or GROW_...
+def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> bool:
+    """Bring pair p's regions up to where its bodies are: their places, and which of them are new.
 
-    Nothing is changed unless the answer is DONE.
+    False: there is no room for that (MORE_REGIONS, MORE_WORK), and nothing is changed.
     """
     pair = tables.pairs[p]
     regions = tables.regions
@@ -144,15 +142,17 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     else:
         n, _ = overlap_of_outlines(pool, ia, pose_a, ib, pose_b, work)
     if n == OVERFLOW:
-        return GROW_WORK
+        counters[MORE_WORK] = 1
+        return False
     if n == 0:
         if not fresh:
             _remember(regions, pair, stamp)
             free_regions(regions, counters, pair.head)
             pair.head = -1
-        return DONE
+        return True
     if n > counters[FREE_REGIONS]:
-        return GROW_REGIONS
+        counters[MORE_REGIONS] = n - counters[FREE_REGIONS]
+        return False
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
     old = pair.head
     kept = -1
@@ -287,7 +287,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         steer(pair, region, a, b)
         region.stiffness = pair.stiffness
         r = region.next
-    return DONE
+    return True
 
 
 @kernel(forceinline=True)
@@ -320,14 +320,15 @@ def _there(pool: Pool, work: Work, regions: np.ndarray, head: int, n: int, ia: i
 
 
 @kernel
-def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> int:
+def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> bool:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
     Also for what of a pair that touches will overlap elsewhere, since it turns far in a step, or since one of the two
     is not convex (a disc in a groove touches both its walls): at the list's head.
-    DONE, or GROW_...; the pair then has a region that is NEARING, if there is to be one, or, if it is to bounce within
-    this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the velocities at
-    which bodies come (energy is kept by their being solved together). Others are found when they have happened.
+    False: there is no room for it. The pair then has a region that is NEARING, if there is to be one, or, if it is to
+    bounce within this drift, STRUCK: that only at the first look, so that all bounces of a substep are those of the
+    velocities at which bodies come (energy is kept by their being solved together). Others are found when they have
+    happened.
     """
     pair = tables.pairs[p]
     regions = tables.regions
@@ -350,18 +351,20 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             else:
                 deepest = max(deepest, 2.0 * regions[r].depth)
             if regions[r].mode == IMPACT or awaited == 2:
-                return DONE
+                return True
             r = regions[r].next
     ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
     n, ahead = overlap_ahead(pool, work, ia, ib, a, b, h, looks, deepest)
     if n == 0:
-        return DONE
+        return True
     if n == OVERFLOW:
-        return GROW_WORK
+        counters[MORE_WORK] = 1
+        return False
     if seat and n > MOST_SEATS:
-        return DONE
+        return True
     if n > counters[FREE_REGIONS]:
-        return GROW_REGIONS
+        counters[MORE_REGIONS] = n - counters[FREE_REGIONS]
+        return False
     pose_a = earlier(a, -ahead)
     pose_b = earlier(b, -ahead)
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
@@ -406,7 +409,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.tangent_stiffness = 0.0
         count += 1
     if kept < 0:
-        return DONE
+        return True
     if first and pair.bore_stamp == counters[SUBSTEP]:
         r = kept
         while r >= 0:
@@ -429,4 +432,4 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             region.next = -1
             free_regions(regions, counters, r)
         r = after
-    return DONE
+    return True

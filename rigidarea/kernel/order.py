@@ -7,7 +7,6 @@ from typing import Any
 
 from .broad import drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .jit import kernel
-from .meet import DONE
 from .pool import Pool
 from .tables import (
     ANEW,
@@ -27,13 +26,10 @@ from .tables import (
     Tables,
 )
 
-#: What a kernel may ask for before it can go on.
-GROW_PAIRS = 3
-
 
 @kernel
-def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> int:
-    """Bring the list of near pairs up to where bodies are, h before and after. DONE or GROW_PAIRS.
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> bool:
+    """Bring the list of near pairs up to where bodies are, h before and after. False: no room for them.
 
     To be sorted (`arrange`) where counters[UNSORTED] says so.
     """
@@ -43,13 +39,13 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> 
         counters[ANEW] = 2
     renew_boxes(pool, tables, h, max(time, 2.0 * h))
     if counters[ASKED] > 0 and not find_pairs(tables):
-        return GROW_PAIRS
+        return False
     if counters[ANEW]:
         end_unlisted(tables)
         counters[ANEW] = 0
     if counters[UNSORTED]:
         drop_pairs(tables, frame)
-    return DONE
+    return True
 
 
 @kernel(forceinline=True)

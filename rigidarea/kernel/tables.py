@@ -5,7 +5,7 @@ Angles in radians, lengths, times, masses in the units of the space. An impulse 
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -54,6 +54,7 @@ BODY = record(
         ("pushed", "i4"),  # BOUNCED or BORNE: what contacts did to it in the substep before; 0: nothing
         ("free", "i4"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
+        ("was_calm", "i4"),  # 1: calm, a frame before
         ("shift_x", "f8"),  # what impacts within the substep move it by (length)
         ("shift_y", "f8"),
         ("shift_a", "f8"),
@@ -63,6 +64,10 @@ BODY = record(
         ("old_vx", "f8"),
         ("old_vy", "f8"),
         ("old_w", "f8"),
+        ("old_since", "f8"),
+        ("old_fx", "f8"),  # force and torque that the user has given it
+        ("old_fy", "f8"),
+        ("old_torque", "f8"),
         (
             "since",
             "f8",
@@ -274,12 +279,14 @@ REGION = record(
 #: turns; 1: two turns have met. Shapes with teeth or slots; rows of this substep that bounce. Pairs in `near`, those
 #: behind counters[NEAR] such as may not collide; 1: to be sorted anew; shapes in `asked`, in `movers`, bodies in
 #: `awake`, pairs in `told`; which list `live` is;
-#: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`).
+#: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes that are not convex. How many
+#: pairs, regions and joints more than there is room for a frame wants at least, and 1 where the scratch is too small.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
-BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY = range(20, 29)
-COUNTERS = 29
+BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK = range(30, 34)
+COUNTERS = 34
 
 
 class Law(NamedTuple):
@@ -413,6 +420,23 @@ def comes_first(tables: Tables, a: int, b: int) -> bool:
     return bool(one.ident < other.ident)
 
 
+@kernel(forceinline=True)
+def _renew(pair: Any) -> None:
+    """A pair that nothing is known of but who it is."""
+    pair.seats = 0
+    pair.stiffness = 0.0
+    pair.firm = 0.0
+    pair.carrying = 0.0
+    pair.area = 0.0
+    pair.axis_x = 0.0
+    pair.axis_y = 0.0
+    pair.parted = -1
+    pair.waiting = -1
+    pair.held = 0.0
+    pair.pressed = 0.0
+    pair.bore_stamp = -1
+
+
 @entry
 def new_pair(tables: Tables, a: int, b: int) -> int:
     """Take a pair from the free list, A by place (`comes_first`); -1: there is none."""
@@ -426,7 +450,6 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.a = a if first else b
         pair.b = b if first else a
         pair.head = -1
-        pair.seats = 0
         pair.side_a = 0
         pair.kept_a = 0
         pair.kept_b = 0
@@ -440,17 +463,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.steer_s = 0.0
         pair.jx = 0.0
         pair.jy = 0.0
-        pair.stiffness = 0.0
-        pair.firm = 0.0
-        pair.carrying = 0.0
-        pair.area = 0.0
-        pair.axis_x = 0.0
-        pair.axis_y = 0.0
-        pair.parted = -1
-        pair.waiting = -1
-        pair.held = 0.0
-        pair.pressed = 0.0
-        pair.bore_stamp = -1
+        _renew(pair)
         _enter(tables, a, b, p)
     return int(p)
 
@@ -465,6 +478,21 @@ def free_regions(regions: np.ndarray, counters: np.ndarray, r: int) -> None:
         counters[FREE_REGION] = r
         counters[FREE_REGIONS] += 1
         r = after
+
+
+@kernel
+def forget_contacts(tables: Tables) -> None:
+    """All pairs as if they had never touched."""
+    left = pairs_in_use(tables)
+    for p in range(len(tables.pairs)):
+        if left == 0:
+            break
+        pair = tables.pairs[p]
+        if pair.a >= 0:
+            left -= 1
+            free_regions(tables.regions, tables.counters, pair.head)
+            pair.head = -1
+            _renew(pair)
 
 
 @entry

@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 from .jit import kernel
-from .meet import DONE, GROW_WORK, earlier, jumped, overlap_before
+from .meet import earlier, jumped, overlap_before
 from .overlap import OVERFLOW
 from .place import place
 from .pool import Pool
 from .sides import shown_sides
-from .tables import DRIFTS, NEAR, Tables
+from .tables import DRIFTS, MORE_WORK, NEAR, Tables
 from .work import Work
 
 
@@ -67,14 +67,12 @@ def _put_back(body: Any, back: float) -> None:
 
 
 @kernel
-def wait_for_verdicts(
-    pool: Pool, tables: Tables, work: Work, frame: int, dt: float, start: int
-) -> tuple[int, int]:
+def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: float) -> bool:
     """After a frame of dt: what has passed a shape that the user is to be asked about goes back to where they touch.
 
-    Near pairs from tables.near[start] on: (DONE or GROW_WORK, where it stopped).
+    False: the scratch is too small.
     """
-    for i in range(start, tables.counters[NEAR]):
+    for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]
         if pair.stamp == frame or not _heard(tables, pair):
             continue
@@ -91,8 +89,9 @@ def wait_for_verdicts(
             ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
         n, back = overlap_before(pool, work, ia, ib, a, b, dt, looks)
         if n == OVERFLOW:
-            return GROW_WORK, i
+            tables.counters[MORE_WORK] = 1
+            return False
         if n > 0:
             _put_back(a, back)
             _put_back(b, back)
-    return DONE, tables.counters[NEAR]
+    return True
