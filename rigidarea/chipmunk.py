@@ -23,7 +23,15 @@ from pymunk._chipmunk_cffi import ffi, lib
 from .kernel.memory import prototype
 
 #: Bytes of a struct that are looked at; all are longer.
-_WINDOW = {"body": 248, "shape": 200, "space": 200, "constraint": 104}
+_WINDOW = {
+    "body": 248,
+    "shape": 192,
+    "circle": 232,
+    "segment": 296,
+    "poly": 216,
+    "space": 200,
+    "constraint": 104,
+}
 
 
 class LayoutError(RuntimeError):
@@ -107,7 +115,7 @@ def _changed(pointer: object, kind: str, what: str, change: Any) -> tuple[int, i
 @lru_cache(maxsize=1)
 def layout() -> dict[str, int]:
     """Byte offsets by the names of `store.OFFSETS`. Raises LayoutError if any cannot be told for sure."""
-    return _body_and_shape() | _arbiter() | _space_and_constraint()
+    return _body_and_shape() | _geometry() | _arbiter() | _space_and_constraint()
 
 
 def _body_and_shape() -> dict[str, int]:
@@ -168,6 +176,44 @@ def _body_and_shape() -> dict[str, int]:
     other = pymunk.Circle(body, 2.0)
     space.add(other)  # the body's list of shapes starts with the latest
     found["shape_next"] = _find_pointer(other._shape, "shape", "next shape", address_of(shape._shape))
+    return found
+
+
+def _geometry() -> dict[str, int]:
+    """Where shapes keep their numbers, in their body's coordinates. A number that starts their class tells the kind."""
+    space = pymunk.Space()
+    body = pymunk.Body(1, 1)
+    body.position = 11.25, 12.5  # what Chipmunk keeps of where they are is something else
+    circle = pymunk.Circle(body, 81.25, (82.5, 83.5))
+    segment = pymunk.Segment(body, (84.5, 85.5), (86.5, 88.5), 89.25)
+    corners = [(91.5, 92.5), (94.5, 93.5), (95.5, 98.5)]
+    poly = pymunk.Poly(body, corners, radius=99.25)
+    space.add(body, circle, segment, poly)
+    found = {
+        "shape_hashid": _find_pointer(poly._shape, "shape", "hash id", poly._hashid),
+        "shape_body": _find_pointer(poly._shape, "shape", "body", address_of(body._body)),
+    }
+    for kind, shape in enumerate((circle, segment, poly)):
+        if int(ffi.cast("int *", _word(shape._shape, 0))[0]) != kind:
+            raise LayoutError(f"shapes: expected a class that starts with {kind}")
+    own = found["shape_hashid"] + 8  # what is a circle's alone
+    memory = _bytes(circle._shape, "circle", np.float64)[own // 8 :]
+    found["circle_centre"] = own + _find(memory, "circle's centre", [82.5, 83.5])
+    found["circle_radius"] = own + _find(memory, "circle's radius", [81.25])
+    memory = _bytes(segment._shape, "segment", np.float64)
+    found["segment_ends"] = _find(memory, "segment's ends", [84.5, 85.5, 86.5, 88.5])
+    found["segment_radius"] = _find(memory, "segment's radius", [89.25])
+    found["poly_radius"] = _find(_bytes(poly._shape, "poly", np.float64), "polygon's radius", [99.25])
+    found["poly_count"] = found["poly_radius"] + 8
+    found["poly_planes"] = found["poly_radius"] + 16
+    words = _bytes(poly._shape, "poly", np.int32)
+    planes = np.frombuffer(
+        ffi.buffer(ffi.cast("void *", _word(poly._shape, found["poly_planes"])), 8 * 4 * 6), np.float64
+    )
+    # (v0, n) of each edge where it is, and then as it was given
+    given = [tuple(vertex) for vertex in poly.get_vertices()]
+    if words[found["poly_count"] // 4] != 3 or [tuple(v) for v in planes.reshape(6, 4)[3:, :2]] != given:
+        raise LayoutError("polygon: its vertices are not where they were expected")
     return found
 
 
@@ -366,6 +412,8 @@ def _space_and_constraint() -> dict[str, int]:
             constraint, "constraint", name, lambda name=name: setattr(joint, name, lambda *arguments: None)
         )
     space.iterations = 10
+    two.sleep()
+    found["space_sleeping"] = _find_array(space._space, "components that sleep", [address_of(two._body)])
     return found
 
 

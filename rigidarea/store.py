@@ -24,7 +24,6 @@ from .kernel.tables import (
     BODY,
     COUNTERS,
     MORE_PAIRS,
-    NEAR,
     NEIGHBOURS,
     PAIR,
     REGION,
@@ -33,16 +32,20 @@ from .kernel.tables import (
     Tables,
     rehash,
 )
+from .kernel.tree import NODE
 
-BODY_SIZE, PAIR_SIZE, REGION_SIZE = BODY.itemsize, PAIR.itemsize, REGION.itemsize
+BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
+SHAPE_WORDS = SHAPE.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live"),
-    *("near", "apart", "sorted", "keys", "values", "counters", "slots", "body_keys", "body_rows", "joints"),
+    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live", "awake"),
+    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "keys", "values", "counters"),
+    *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
+    *("users", "mirrors", "extents"),
     *(f"kept_{name}" for name in KEPT),
     "seen",
 ]
@@ -53,12 +56,14 @@ OFFSETS = [
     *("body_position_func", "body_velocity_func", "body_shapes"),
     *("position_func", "velocity_func", "position_func_again", "velocity_func_again"),
     *("shape_surface_velocity", "shape_elasticity", "shape_sensor", "shape_type", "shape_filter"),
-    "shape_next",
+    *("shape_next", "shape_hashid", "shape_body"),
+    *("circle_centre", "circle_radius", "segment_ends", "segment_radius"),
+    *("poly_radius", "poly_count", "poly_planes"),
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_count"),
     *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
     *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve"),
-    *("space_gravity", "space_bodies", "space_constraints", "space_handlers"),
+    *("space_gravity", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
 
@@ -100,10 +105,15 @@ STATE = record(
         ("shape_counter", "u8"),  # what was last registered: Chipmunk's counter, shapes, handlers
         ("shape_count", "i8"),
         ("handler_count", "i8"),
+        ("pending", "i8"),  # 1: shapes or bodies have come or gone that Python has yet to enter
+        ("heard_all", "i8"),  # 1: a callback of the user's for all types
+        ("heard_epoch", "i8"),  # how often that and those by type have changed
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
         ("before", "f8"),  # length of the last frame (time); 0: there was none
+        # where the times of a frame's phases are summed up (`contact/phases.py`); 0: nowhere
+        ("phases_at", "u8"),
         ("scratch_at", "u8"),  # room for what nobody reads
         ("kinds_at", "u8"),  # what `chipmunk.kinds_of_joints` has found
     ],
@@ -112,36 +122,43 @@ STATE = record(
 
 @kernel
 def _copy(to: int, source: int, size: int) -> None:
-    """Copy so many bytes."""
-    there = array_at(to, (size,), np.uint8)
-    here = array_at(source, (size,), np.uint8)
+    """Copy so many words."""
+    there = array_at(to, (size,), np.uint64)
+    here = array_at(source, (size,), np.uint64)
     for i in range(size):
         there[i] = here[i]
+
+
+@kernel
+def clear(at: int, size: int) -> None:
+    """So many words of nothing."""
+    there = array_at(at, (size,), np.uint64)
+    for i in range(size):
+        there[i] = np.uint64(0)
 
 
 @kernel
 def keep_tables(s: Any) -> None:
     """Take down what a frame that may have to be run again starts from."""
     s.kept = 1
-    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_SIZE)
-    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_SIZE)
-    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_SIZE)
-    _copy(s.kept_counters_at, s.counters_at, s.counters_n * 8)
+    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.kept_counters_at, s.counters_at, s.counters_n)
 
 
 @kernel
 def put_tables_back(s: Any, tables: Tables) -> None:
-    """The tables as they were kept, but for how much more room the frame has wanted; pairs are searched anew."""
+    """The tables as they were kept, but for how much more room the frame has wanted; pairs are listed anew."""
     wanted = tables.counters[MORE_PAIRS:COUNTERS]
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
     for i in range(len(wanted)):
         kept[MORE_PAIRS + i] = wanted[i]
-    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_SIZE)
-    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_SIZE)
-    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_SIZE)
-    _copy(s.counters_at, s.kept_counters_at, s.counters_n * 8)
+    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.counters_at, s.kept_counters_at, s.counters_n)
     tables.counters[ANEW] = 1
-    tables.counters[NEAR] = 0
     rehash(tables)
 
 
@@ -155,6 +172,40 @@ def enter_bodies(keys: np.ndarray, rows: np.ndarray, addresses: np.ndarray, valu
             i = (i + 1) & mask
         keys[i] = addresses[k]
         rows[i] = values[k]
+
+
+@kernel
+def enter_body(s: Any, address: int, row: int) -> None:
+    """Have a body found by its address."""
+    keys = array_at(s.body_keys_at, (s.body_keys_n,), np.uint64)
+    mask = len(keys) - 1
+    i = int(address >> np.uint64(4)) & mask
+    while keys[i] != 0:
+        i = (i + 1) & mask
+    keys[i] = address
+    array_at(s.body_rows_at, (s.body_rows_n,), np.int32)[i] = row
+
+
+@kernel
+def drop_body(s: Any, address: int) -> None:
+    """It is found no more; those that would be found by it move up."""
+    keys = array_at(s.body_keys_at, (s.body_keys_n,), np.uint64)
+    rows = array_at(s.body_rows_at, (s.body_rows_n,), np.int32)
+    mask = len(keys) - 1
+    i = int(address >> np.uint64(4)) & mask
+    while keys[i] != address:
+        if keys[i] == 0:
+            return
+        i = (i + 1) & mask
+    k = (i + 1) & mask
+    while keys[k] != 0:
+        home = int(keys[k] >> np.uint64(4)) & mask
+        if ((k - home) & mask) >= ((k - i) & mask):
+            keys[i] = keys[k]
+            rows[i] = rows[k]
+            i = k
+        k = (k + 1) & mask
+    keys[i] = np.uint64(0)
 
 
 @kernel(forceinline=True)
@@ -239,9 +290,14 @@ def load_tables(s: Any) -> Tables:
         array_at(s.factors_at, (s.factors_n,), FACTOR),
         array_at(s.mobility_at, (s.mobility_n,), MOBILITY),
         array_at(s.live_at, (s.live_n,), np.int32),
+        array_at(s.awake_at, (s.awake_n,), np.int32),
+        array_at(s.movers_at, (s.movers_n,), np.int32),
+        array_at(s.asked_at, (s.asked_n,), np.int32),
+        array_at(s.told_at, (s.told_n,), np.int32),
+        array_at(s.nodes_at, (s.nodes_n,), NODE),
+        array_at(s.roots_at, (s.roots_n,), np.int32),
         array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
-        array_at(s.sorted_at, (s.sorted_n,), np.int32),
         array_at(s.joints_at, (s.joints_n,), JOINT),
         array_at(s.keys_at, (s.keys_n,), np.int64),
         array_at(s.values_at, (s.values_n,), np.int32),

@@ -2,49 +2,48 @@
 
 Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are addresses.
 
-Tables change by transactions: a copy (`draft`) is changed, then put in their place (`publish`) by two stores between
-which Python calls nothing. What is raised on the way, a MemoryError or an interrupt, leaves the old ones as they were.
+Tables grow by transactions: a copy (`draft`, or new arrays in a copy of this) is changed, then put in their place
+(`publish`) by two stores between which Python calls nothing. What is raised on the way, a MemoryError or an interrupt,
+leaves the old ones as they were.
 """
 
 from __future__ import annotations
 
 import copy
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
-from ..kernel.broad import extents
 from ..kernel.conjugate import FACTOR, MOBILITY
 from ..kernel.joint import JOINT
 from ..kernel.overlap import enlarged, fits, new_work
 from ..kernel.pool import HEAD, HasRings, Pool, pack
 from ..kernel.row import ROW
 from ..kernel.tables import (
-    ANEW,
     BODIES,
     BODY,
     COUNTERS,
+    FREE_BODY,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    FREE_SHAPE,
     MORE_JOINTS,
     MORE_PAIRS,
     MORE_REGIONS,
     MORE_WORK,
-    NEAR,
     NEIGHBOURS,
     PAIR,
     REGION,
     SHAPE,
     SHAPES,
     Tables,
-    end_pair,
-    new_pair,
     rehash,
 )
+from ..kernel.tree import FREE, NODE
 from ..store import KEPT, STATE, enter_bodies
+from .geometry import Forms, enter_form, read_shapes
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
@@ -65,12 +64,15 @@ def _append_free(following: np.ndarray, counters: np.ndarray, head: int, first: 
     following[last] = first
 
 
+#: Arrays of a `Store` itself that the record has.
+_OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
+
+
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
     def __init__(self) -> None:
         self.state = np.zeros(1, STATE)
-        self._fill = {"points": 0, "rings": 0, "boxes": 0, "heads": 0, "shapes": 0}
         self.pool = Pool(
             np.zeros((64, 2)),
             np.zeros(64, np.int32),
@@ -79,6 +81,15 @@ class Store:
             np.zeros((64, 4)),
             np.zeros((64, 4)),
             np.zeros(16, HEAD),
+        )
+        self.forms = Forms(
+            np.zeros((16, 3)),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros((16, 2), np.int32),
+            np.zeros(128),
+            np.full(64, -1, np.int32),
+            np.zeros(5, np.int64),
         )
         self.work = new_work()
         self.tables = Tables(
@@ -90,45 +101,46 @@ class Store:
             np.zeros(0, FACTOR),
             np.zeros(16, MOBILITY),
             np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(16, np.int32),
+            np.zeros(0, np.int32),
+            np.zeros(0, NODE),
+            np.array([-1, -1, -1], np.int32),
             np.zeros(1, NEIGHBOURS),
             np.zeros((JOINTS, 2), np.int32),
-            np.zeros(0, np.int32),
             np.zeros(JOINTS, JOINT),
             np.full(64, -1, np.int64),
             np.zeros(64, np.int32),
             np.zeros(COUNTERS, np.int64),
         )
-        self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
-        self.shapes: dict[int, Any] = {}  # the caller's shapes, by Chipmunk's id
-        self.forms: dict[int, Any] = {}  # and how they looked when they were entered
+        self.tables.counters[[FREE_REGION, FREE_PAIR, FREE_SHAPE, FREE_BODY]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
+        self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
+        self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
         self._kept: dict[str, np.ndarray] = {}  # room for a copy of what a frame changes, and for places
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
-        self._free: list[int] = []  # rows of shapes that are gone
-        self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
-        self._free_bodies: list[int] = []
+        self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
+        self._grow_nodes(16)
         self.grow_pairs(64)
         self.grow_regions(64)
-        end_pair(self.tables, new_pair(self.tables, 0, 1))  # compiled now, not in a frame
-        rehash(self.tables)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
         """What each array takes (bytes)."""
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **self._kept}
         own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows")}
-        return {name: array.nbytes for name, array in {**arrays, **own}.items()}
+        forms = {f"form_{name}": array for name, array in self.forms._asdict().items()}
+        return {name: array.nbytes for name, array in {**arrays, **own, **forms}.items()}
 
     def draft(self) -> Store:
         """A copy, to be changed and published. Of what only grows at its end, and of scratch, there is one."""
         new = copy.copy(self)
         new.tables = Tables(*(array.copy() for array in self.tables))
-        new.slots = self.slots.copy()
-        for name in ("shapes", "forms", "_fill", "_outlines", "_free", "_bodies", "_free_bodies"):
-            setattr(new, name, getattr(self, name).copy())
+        new._outlines = self._outlines.copy()
         return new
 
     def publish(self, new: Store, **facts: int) -> None:
@@ -150,7 +162,8 @@ class Store:
                 self._kept = {**self._kept, f"kept_{name}": np.zeros_like(tables[name])}
         if len(self._kept.get("seen", ())) != len(self.tables.bodies):
             self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
-        own = {name: getattr(self, name) for name in ("slots", "body_keys", "body_rows")}
+        own = {name: getattr(self, name) for name in _OWN}
+        own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
         record: np.record = self.state.copy()[0]
         for name, array in arrays.items():
@@ -189,8 +202,10 @@ class Store:
             size *= 2
         near = np.zeros(len(new) + 1, NEIGHBOURS)
         near[: len(self.tables.near)] = self.tables.near
+        told = np.zeros(len(new), np.int32)
+        told[: len(old)] = self.tables.told
         self.tables = self.tables._replace(
-            pairs=new, near=near, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
+            pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
         rehash(self.tables)
 
@@ -215,9 +230,8 @@ class Store:
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
         if n > len(self.tables.joints):
-            self.tables = self.tables._replace(
-                apart=np.zeros((2 * n, 2), np.int32), joints=np.zeros(2 * n, JOINT)
-            )
+            apart = _longer(self.tables.apart, 2 * n)
+            self.tables = self.tables._replace(apart=apart, joints=_longer(self.tables.joints, 2 * n))
             self._grow_rows()
 
     def grow_work(self) -> None:
@@ -225,24 +239,72 @@ class Store:
         points, rings = self._most
         self.work = enlarged(self.work, 2 * points, 2 * rings)
 
-    def outline(self, outline: HasRings) -> int:
-        """The outline's number in the pool; packed the first time it is seen."""
+    def room(self, shapes: int, bodies: int, ident: int) -> None:
+        """Room for so many shapes and bodies more, and for Chipmunk's ids up to `ident`."""
+        tables, new = self.tables, copy.copy(self)
+        counters = tables.counters
+        if counters[SHAPES] + shapes > len(tables.shapes):
+            n = max(int(counters[SHAPES]) + shapes, 2 * len(tables.shapes))
+            longer = {name: _longer(getattr(tables, name), n) for name in ("shapes", "movers", "asked")}
+            new.tables = new.tables._replace(**longer)
+            new._grow_nodes(n)
+        if counters[BODIES] + bodies > len(tables.bodies):
+            n = max(int(counters[BODIES]) + bodies, 2 * len(tables.bodies))
+            longer = {name: _longer(getattr(tables, name), n) for name in ("bodies", "live", "awake")}
+            new.tables = new.tables._replace(**longer, mobility=np.zeros(n, MOBILITY))
+            size = _power(2 * n)
+            used = self.body_keys != 0
+            new.body_keys, new.body_rows = np.zeros(size, np.uint64), np.zeros(size, np.int32)
+            enter_bodies(new.body_keys, new.body_rows, self.body_keys[used], self.body_rows[used])
+        if ident >= len(self.slots):
+            new.slots = _longer(self.slots, max(ident + 1, 2 * len(self.slots)), -1)
+        if new.tables is not tables or new.slots is not self.slots:
+            self.publish(new)
+
+    def _grow_nodes(self, shapes: int) -> None:
+        """Room for so many shapes in the trees."""
+        old, roots = self.tables.nodes, self.tables.roots.copy()
+        new = _longer(old, 2 * shapes)
+        new["parent"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
+        new["parent"][-1] = roots[FREE]
+        roots[FREE] = len(old)
+        self.tables = self.tables._replace(nodes=new, roots=roots)
+
+    def _pool_room(self, points: int, rings: int, boxes: int, heads: int, raw: int) -> None:
+        """Room for so much more in the pool."""
+        need = self.forms.fill + np.array((points, rings, boxes, heads, raw))
+
+        def longer(array: np.ndarray, which: int) -> np.ndarray:
+            n = int(need[which])
+            return array if n <= len(array) else _longer(array, max(n, 2 * len(array)))
+
+        pool, forms, new = self.pool, self.forms, copy.copy(self)
+        new.pool = Pool(
+            *(longer(array, 0) for array in pool[:3]),
+            longer(pool.rings, 1),
+            longer(pool.boxes, 2),
+            longer(pool.arcs, 0),
+            longer(pool.heads, 3),
+        )
+        new.forms = Forms(*(longer(array, 3) for array in forms[:4]), longer(forms.raw, 4), *forms[5:])
+        heads = len(new.forms.users)
+        if 2 * heads > len(forms.table):
+            new.forms = new.forms._replace(table=np.full(_power(4 * heads), -1, np.int32))
+            for h in np.flatnonzero(forms.raw_at[: forms.fill[3], 1]):
+                enter_form(new.forms, int(h))
+        self.publish(new)
+
+    def outline(self, outline: HasRings, extent: float) -> int:
+        """The outline's number in the pool; packed the first time it is seen, its mirror behind it.
+
+        extent: its smallest extent (length).
+        """
         found = self._outlines.get(id(outline))
         if found is not None:
             return found[0]
         one = pack([outline])
-        fill = self._fill
-        room = {}
-        for name, array in self.pool._asdict().items():
-            key = "points" if name in ("following", "ring_of", "arcs") else name
-            need = fill[key] + len(getattr(one, name))
-            if need > len(array):
-                bigger = np.zeros((max(need, 2 * len(array)), *array.shape[1:]), array.dtype)
-                bigger[: len(array)] = array
-                array = bigger
-            room[name] = array
-        self.pool = pool = Pool(**room)
-        p, r, b, h = fill["points"], fill["rings"], fill["boxes"], fill["heads"]
+        self._pool_room(len(one.points), len(one.rings), len(one.boxes), 1, 0)
+        pool, (p, r, b, h, _) = self.pool, (int(n) for n in self.forms.fill)
         pool.points[p : p + len(one.points)] = one.points
         pool.arcs[p : p + len(one.points)] = one.arcs
         pool.following[p : p + len(one.points)] = one.following + p
@@ -253,140 +315,82 @@ class Store:
         pool.heads[h]["point"] += p
         pool.heads[h]["ring"] += r
         pool.heads[h]["box"] += b
-        fill["points"] += len(one.points)
-        fill["rings"] += len(one.rings)
-        fill["boxes"] += len(one.boxes)
-        fill["heads"] += 1
-        self._most = (max(self._most[0], len(one.points)), max(self._most[1], len(one.rings)))
-        crossings = max(len(self.work.cross), min(4 * self._most[0], MOST_CROSSINGS))
-        if crossings > len(self.work.cross) or not fits(self.work, 2 * self._most[0], 2 * self._most[1]):
-            self.work = new_work(2 * self._most[0], crossings, 2 * self._most[1])
+        self.forms.fill[:4] += len(one.points), len(one.rings), len(one.boxes), 1
+        left, bottom, right, top = outline.bounds
+        self.forms.extent[h] = extent, 0.5 * (right - left), 0.5 * (top - bottom)
+        self.forms.mirror[h], self.forms.users[h], self.forms.raw_at[h, 1] = -1, 0, 0
+        self._note_most(len(one.points), len(one.rings))
         self._outlines[id(outline)] = h, outline
         return h
 
-    def body(self, address: int) -> int:
-        """The row of Chipmunk's body at `address`, made if there is none."""
-        row = self._bodies.get(address)
-        if row is None:
-            row = self._free_bodies.pop() if self._free_bodies else int(self.tables.counters[BODIES])
-            if row >= len(self.tables.bodies):
-                bodies = np.zeros(2 * len(self.tables.bodies), BODY)
-                bodies[: len(self.tables.bodies)] = self.tables.bodies
-                mobility = np.zeros(len(bodies), MOBILITY)
-                live = np.zeros(len(bodies), np.int32)
-                self.tables = self.tables._replace(bodies=bodies, mobility=mobility, live=live)
-            self.tables.counters[BODIES] = max(self.tables.counters[BODIES], row + 1)
-            self.tables.bodies[row] = np.zeros((), BODY)
-            self.tables.bodies[row]["address"], self.tables.bodies[row]["stamp"] = address, -1
-            self._bodies[address] = row
-        return row
+    def _note_most(self, points: int, rings: int) -> None:
+        """There is an outline of so many points and rings: room for two of them to meet."""
+        most = (max(self._most[0], points), max(self._most[1], rings))
+        crossings = max(len(self.work.cross), min(4 * most[0], MOST_CROSSINGS))
+        new = copy.copy(self)
+        new._most = most
+        if crossings > len(self.work.cross) or not fits(self.work, 2 * most[0], 2 * most[1]):
+            new.work = new_work(2 * most[0], crossings, 2 * most[1])
+            self.publish(new)
+        else:
+            self._most = most
 
-    def shape(
-        self,
-        ident: int,
-        address: int,
-        outline: HasRings,
-        mirror: HasRings | None,
-        body: int,
-        sensor: bool,
-        extent: float,
-        half: tuple[float, float],
-    ) -> None:
-        """Tell the tables which outline Chipmunk's shape `ident` has, on which body. Call `settle` after the last.
+    def read(self, addresses: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, int]:
+        """Outlines of Chipmunk's own shapes at these addresses (n,) uint64: their numbers; which has no area, or -1."""
+        heads = np.zeros(len(addresses), np.int32)
+        done, start = 0, int(self.forms.fill[3])
+        while done < len(addresses):
+            done, why = read_shapes(addresses, done, where, self.pool, self.forms, self._buffer, heads)
+            if why == -1:
+                return heads, done
+            if why > 0:
+                self._buffer = np.zeros(2 * why)
+            elif done < len(addresses):
+                n = len(addresses) - done + len(self._buffer)
+                self._pool_room(8 * n, 2 * n, 32 * n, 2 * n, 10 * n)
+        if self.forms.fill[3] > start:
+            self._note_most(int(self.pool.heads["count"][start : self.forms.fill[3]].max()), 1)
+        return heads, -1
 
-        address, body: Chipmunk's. mirror: the outline's other side, of a segment that has two. extent: its smallest
-        extent (length). half: half the width and height of its box (length).
-        """
-        number = self.outline(outline)
-        other = -1 if mirror is None else self.outline(mirror)
-        if ident >= len(self.slots):
-            slots = np.full(max(ident + 1, 2 * len(self.slots)), -1, np.int32)
-            slots[: len(self.slots)] = self.slots
-            self.slots = slots
-        if self.knows(ident):
-            self.forget([ident], ())
-        row = self._free.pop() if self._free else self._fill["shapes"]
-        if row == len(self.tables.shapes):
-            shapes = np.zeros(2 * row, SHAPE)
-            shapes[:row] = self.tables.shapes
-            self.tables = self.tables._replace(shapes=shapes)
-        self._fill["shapes"] = max(self._fill["shapes"], row + 1)
-        self.slots[ident] = row
-        shape = self.tables.shapes[row]
-        shape["address"], shape["ident"], shape["body"] = address, ident, self.body(body)
-        shape["outline"], shape["mirror"], shape["sensor"] = number, other, sensor
-        shape["extent"], (shape["half_x"], shape["half_y"]) = extent, half
-        shape["low_x"], shape["high_x"] = np.inf, -np.inf
-
-    def settle(self) -> None:
-        """After shapes or bodies have come or gone: everything that machine code finds them by."""
-        counters = self.tables.counters
-        counters[SHAPES], counters[ANEW] = self._fill["shapes"], 1
-        order = self.tables.sorted  # as it is, the new rows behind it: hardly anything to sort
-        order = np.concatenate((order, np.arange(len(order), self._fill["shapes"], dtype=np.int32)))
-        self.tables = self.tables._replace(sorted=order)
-        size = 64
-        while size < 3 * len(self._bodies):
-            size *= 2
-        self.body_keys = np.zeros(size, np.uint64)
-        self.body_rows = np.zeros(size, np.int32)
-        enter_bodies(
-            self.body_keys,
-            self.body_rows,
-            np.fromiter(self._bodies.keys(), np.uint64, len(self._bodies)),
-            np.fromiter(self._bodies.values(), np.int32, len(self._bodies)),
-        )
-        extents(self.pool, self.tables)
-
-    def forget(self, idents: Iterable[int], bodies: Iterable[int]) -> None:
-        """Free what the tables hold of shapes and bodies that are gone; outlines nobody has go with them in time."""
-        rows = [int(self.slots[ident]) for ident in idents if self.knows(ident)]
-        for ident in idents:
-            if self.knows(ident):
-                self.slots[ident] = -1
-        if rows:
-            pairs = self.tables.pairs
-            for p in np.flatnonzero(
-                (pairs["a"] >= 0) & (np.isin(pairs["a"], rows) | np.isin(pairs["b"], rows))
-            ):
-                end_pair(self.tables, int(p))
-            self.drop_near()
-            rehash(self.tables)
-        for row in rows:
-            self.tables.shapes[row] = np.zeros((), SHAPE)
-            self.tables.shapes[row]["outline"] = self.tables.shapes[row]["mirror"] = -1
-            self._free.append(row)
-        for address in bodies:
-            row = self._bodies.pop(address)
-            self.tables.bodies[row] = np.zeros((), BODY)
-            self.tables.bodies[row]["stamp"] = -1
-            self._free_bodies.append(row)
-        known = self.known_shapes
-        used = np.union1d(known["outline"], known["mirror"])
-        used = used[used >= 0]
-        if len(self._outlines) > 2 * len(used) + 64:
-            self._repack(used)
-
-    def drop_near(self) -> None:
-        """Pairs that have ended are near no more."""
-        tables = self.tables
-        near = tables.near[: tables.counters[NEAR]]
-        near = near[tables.pairs["a"][near["pair"]] >= 0]
-        tables.near[: len(near)] = near
-        tables.counters[NEAR] = len(near)
-
-    def _repack(self, used: np.ndarray) -> None:
-        """Only the outlines of these numbers stay, with new numbers."""
-        kept = {number: outline for number, outline in self._outlines.values()}
-        self._outlines = {}
-        self._fill |= {"points": 0, "rings": 0, "boxes": 0, "heads": 0}
-        self.pool = Pool(*(np.zeros_like(array) for array in self.pool))  # the old one may be in use
-        renumbered = np.full(len(self.pool.heads) + 1, -1)  # the last for "none"
-        for number in used:
-            renumbered[number] = self.outline(kept[int(number)])
-        rows = self.known_shapes
+    def tidy(self) -> None:
+        """Outlines that no shape has go, in time."""
+        n = int(self.forms.fill[3])
+        used = np.flatnonzero(self.forms.users[:n] > 0)
+        if n <= 2 * len(used) + 64:
+            return
+        old, forms, new = self.pool, self.forms, copy.copy(self)
+        renumbered = np.full(n + 1, -1, np.int32)  # the last for "none"
+        renumbered[used] = np.arange(len(used))
+        heads, raw_at = old.heads[used], forms.raw_at[used]
+        points, rings, boxes, raws = heads["count"], heads["rings"], 2 * heads["leaves"], raw_at[:, 1].copy()
+        take = [_ranges(heads["point"], points), _ranges(heads["ring"], rings), _ranges(heads["box"], boxes)]
+        shift = [
+            _starts(points) - heads["point"],
+            _starts(rings) - heads["ring"],
+            _starts(boxes) - heads["box"],
+        ]
+        raw = forms.raw[_ranges(raw_at[:, 0], raws)]
+        raw_at[:, 0] = _starts(raws)
+        following = old.following[take[0]] + np.repeat(shift[0], points)
+        ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points)
+        ends = old.rings[take[1]] + np.repeat(shift[0], rings)[:, None]
+        for name, more in zip(("point", "ring", "box"), shift):
+            heads[name] += more
+        kept = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
+        new.pool = Pool(*map(_filled, old, kept))
+        sums = np.array((points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()), np.int64)
+        mirror = renumbered[forms.mirror[used]]
+        told = forms.extent[used], mirror, forms.users[used], raw_at, raw
+        new.forms = Forms(*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums)
+        for h in np.flatnonzero(raws):
+            enter_form(new.forms, int(h))
+        outlines = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]
+        new._outlines = {id(outline): (h, outline) for h, outline in outlines if h >= 0}
+        shapes = self.tables.shapes.copy()
         for name in ("outline", "mirror"):
-            rows[name] = renumbered[rows[name]]
+            shapes[name] = renumbered[shapes[name]]
+        new.tables = self.tables._replace(shapes=shapes)
+        self.publish(new)
 
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
@@ -394,13 +398,48 @@ class Store:
 
     def row_of(self, address: int) -> int:
         """The row of Chipmunk's body at `address`; -1: not known."""
-        return self._bodies.get(address, -1)
-
-    def known_bodies(self) -> set[int]:
-        """Chipmunk's bodies that have a row."""
-        return set(self._bodies)
+        mask = len(self.body_keys) - 1
+        i = (address >> 4) & mask
+        while (key := int(self.body_keys[i])) != 0:
+            if key == address:
+                return int(self.body_rows[i])
+            i = (i + 1) & mask
+        return -1
 
     @property
     def known_shapes(self) -> np.ndarray:
         """The rows of tables.shapes in use (outline -1: free again)."""
-        return self.tables.shapes[: self._fill["shapes"]]
+        return self.tables.shapes[: int(self.tables.counters[SHAPES])]
+
+
+def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:
+    """An array of n rows that begins as this one."""
+    new = (
+        np.full((n, *array.shape[1:]), value, array.dtype)
+        if value
+        else np.zeros((n, *array.shape[1:]), array.dtype)
+    )
+    new[: len(array)] = array
+    return new
+
+
+def _filled(array: np.ndarray, values: np.ndarray) -> Any:
+    """An array as long as this one that begins with these values."""
+    new = np.zeros_like(array)
+    new[: len(values)] = values
+    return new
+
+
+def _power(n: int) -> int:
+    """The smallest power of two that is no less than n."""
+    return 1 << (n - 1).bit_length()
+
+
+def _starts(counts: np.ndarray) -> np.ndarray:
+    """Where ranges of these lengths begin, one behind the other."""
+    return np.cumsum(counts) - counts
+
+
+def _ranges(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
+    """The numbers of ranges that begin at `first`, one behind the other."""
+    return np.repeat(first - _starts(counts), counts) + np.arange(counts.sum())

@@ -74,6 +74,7 @@ class AreaContact:
         state["substeps"] = SUBSTEPS
         state["held"] = state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
+        state["pending"] = 2
         self._scratch = np.zeros(8)
         self._kinds = np.array(kinds_of_joints(), np.uint64)
         state["scratch_at"], state["kinds_at"] = self._scratch.ctypes.data, self._kinds.ctypes.data
@@ -133,7 +134,7 @@ class AreaContact:
     def _update(self) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         self._register.update(self.space)
-        if self._settings["length"] is None:
+        if self._settings["length"] is None and self._settings["law"] == "energy":
             self._state["length"] = self._register.largest()
 
     def refresh(self, shape: pymunk.Shape) -> None:
@@ -141,7 +142,8 @@ class AreaContact:
 
         Raises ValueError for a shape that is not in the space, or that has no area now.
         """
-        self._register.refresh(self.space, shape)
+        assert self.space is not None  # says so if detached
+        self._register.refresh(shape)
 
     @property
     def stiffness(self) -> float | None:
@@ -230,10 +232,9 @@ class AreaContact:
             raise ValueError(f"body must be one of the space's, got {body!r:.80}")
         if steps is not None:
             whole(steps, "steps", 1, MOST_SUBSTEPS)
-        address = address_of(body._body)
-        if self._store.row_of(address) < 0:
+        if self._state["pending"]:
             self._update()
-        self._store.tables.bodies[self._store.row_of(address)]["asked"] = steps or 0
+        self._store.tables.bodies[self._store.row_of(address_of(body._body))]["asked"] = steps or 0
 
     def _step_alone(self) -> bool:
         """Whether pymunk has something to do around each step."""
@@ -245,6 +246,8 @@ class AreaContact:
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
         space = self.space
+        if self._state["pending"] and not space._locked:
+            self._update()
         if self._state["asleep"] and not space._locked:
             while not self._rouse(space._space, dt):
                 self._store.grow()

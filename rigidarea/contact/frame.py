@@ -43,21 +43,24 @@ from ..kernel.solve import (
 from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
-    BODIES,
+    AWAKE,
     DRIFTS,
     LED,
     MET,
+    REJOINED,
     ROWS,
     SUBSTEP,
+    TOLD,
     TOOTHED,
     TURN,
+    UNSORTED,
     Tables,
     forget_contacts,
-    pairs_in_use,
 )
 from ..kernel.verdict import wait_for_verdicts
 from ..store import keep_tables, load_law, load_pool, load_tables, load_work, put_tables_back, row_of_body
 from .joints import give_back, hide, joints_of, read_joint, start_joints
+from .phases import REPORTING, WATCHING, lap, start
 from .record import (
     BROKEN,
     GROW,
@@ -71,6 +74,7 @@ from .record import (
     time_step,
     timestamp,
     user_data,
+    wake,
     words,
     write_motion,
     write_place,
@@ -96,13 +100,9 @@ def silence(constraint: int, dt: float) -> None:
     if s.frame != np.int64(timestamp(space)) and not begin(s, space, dt):
         return
     tables = load_tables(s)
-    left = pairs_in_use(tables)
-    for p in range(len(tables.pairs)):
-        if left == 0:
-            break
-        pair = tables.pairs[p]
-        left -= pair.a >= 0
-        if pair.stamp == s.frame and pair.a >= 0 and pair.verdict:
+    for k in range(tables.counters[TOLD]):
+        pair = tables.pairs[tables.told[k]]
+        if pair.verdict:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
@@ -122,22 +122,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if i < 0:
             continue
         body = tables.bodies[i]
-        if body.stamp != s.frame:  # woken within this step
-            body.stamp = s.frame
-            read_place(s, address, body)
-            read_motion(s, address, body)
-            body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
-            body.kind = DRIFTS
-            body.old_x = body.x
-            body.old_y = body.y
-            body.old_a = body.angle
-            body.old_vx = body.vx
-            body.old_vy = body.vy
-            body.old_w = body.w
-            body.old_fx = 0.0  # a force would have woken it before
-            body.old_fy = 0.0
-            body.old_torque = 0.0
-            body.since = 0.0
+        if body.stamp != s.frame:
+            wake(s, tables, i)
         if s.explicit or body.kind == LED:
             read_place(s, address, body)
         read_motion(s, address, body)
@@ -197,6 +183,14 @@ def _again(s: Any) -> None:
     elif s.begun:
         tables.counters[ANEW] = 1
         forget_contacts(tables)
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if body.kind == DRIFTS:
+            body.x = body.old_x
+            body.y = body.old_y
+            body.angle = body.old_a
+            body.since = body.old_since
+            place(body)
     start_joints(s)
 
 
@@ -205,9 +199,10 @@ def _difference(s: Any) -> float:
     """How far the places of this run and of the one before (noted in `seen`) are apart, over the smallest extents."""
     tables = load_tables(s)
     most = 0.0
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[AWAKE]):
+        i = tables.awake[k]
         body = tables.bodies[i]
-        if body.stamp == s.frame and body.kind == DRIFTS and body.extent > 0.0:
+        if body.kind == DRIFTS and body.extent > 0.0:
             seen = floats(s.seen_at + 24 * i, 3)
             dx = body.x - seen[0]
             dy = body.y - seen[1]
@@ -219,7 +214,8 @@ def _difference(s: Any) -> float:
 def _see(s: Any) -> None:
     """Note where this run has taken the bodies."""
     tables = load_tables(s)
-    for i in range(tables.counters[BODIES]):
+    for k in range(tables.counters[AWAKE]):
+        i = tables.awake[k]
         body = tables.bodies[i]
         seen = floats(s.seen_at + 24 * i, 3)
         seen[0] = body.x
@@ -249,7 +245,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables, g[0], g[1])
-    turn = next_turn(tables, FINEST, g[0], g[1])
+    turn = next_turn(tables, FINEST)
     taken = turn if turn > 0 else s.substeps
     if numbers < 2:
         _everybody(s, space)
@@ -261,7 +257,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
         tables.counters[SUBSTEP] = last - turn
         if not substeps(s, space, dt, turn):
             return 0
-        turn = next_turn(tables, turn, g[0], g[1])
+        turn = next_turn(tables, turn)
     if tables.counters[MET]:
         _again(s)
         s.contacts = 0
@@ -276,10 +272,9 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
 def _whom_it_met(s: Any, space: int, dt: float) -> bool:
     """Near is also whom a blow has sent somebody past since the last search. Whether there was room for that."""
     tables = load_tables(s)
-    if not somebody_flew_off(load_pool(s), tables, s.frame):
+    if not somebody_flew_off(load_pool(s), tables):
         return True
     tables.counters[TURN] = 0
-    tables.counters[ANEW] = 1
     return bool(near_pairs(s, space, dt, dt))
 
 
@@ -296,11 +291,13 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     if not _start(s, space, tables):
         return False
     start_joints(s)
-    order_joints(tables)
-    if tables.counters[ANEW] and tables.counters[TOOTHED] > 0:  # teeth ask before the first substep looks
+    if tables.counters[REJOINED]:
+        order_joints(tables)
+    if tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0:  # teeth ask before the first substep looks
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
             return False
+    lap(s, WATCHING)
     n = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
     for joint in joints_of(s):
@@ -329,7 +326,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             return False
     if n == 0:
         return False
-    far, lines = went_far(tables, s.frame)
+    far, lines = went_far(tables)
     if far and not _whom_it_met(s, space, dt):
         return False
     if not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
@@ -337,7 +334,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     if far or lines:
         return_what_passed(load_pool(s), tables, s.frame, far)
     if s.stiffness_given == 0:
-        adapt_stiffness(tables, load_law(s), s.frame, dt)
+        adapt_stiffness(tables, load_law(s), dt)
     s.taken = n
     return True
 
@@ -348,10 +345,8 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 
     Of a frame that failed also what the user's position functions have moved.
     """
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
-        if body.stamp != s.frame or body.address == 0:
-            continue
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
@@ -367,21 +362,20 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 @kernel
 def _undo(s: Any, tables: Tables) -> None:
     """A frame that failed: every body and joint as it was."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         body.calm = body.was_calm
-        if body.stamp == s.frame and body.address != 0:
-            body.x = body.old_x
-            body.y = body.old_y
-            body.angle = body.old_a
-            body.vx = body.old_vx
-            body.vy = body.old_vy
-            body.w = body.old_w
-            place(body)
-            force = floats(body.address + s.body_force, 2)
-            force[0] = body.old_fx
-            force[1] = body.old_fy
-            floats(body.address + s.body_torque, 1)[0] = body.old_torque
+        body.x = body.old_x
+        body.y = body.old_y
+        body.angle = body.old_a
+        body.vx = body.old_vx
+        body.vy = body.old_vy
+        body.w = body.old_w
+        place(body)
+        force = floats(body.address + s.body_force, 2)
+        force[0] = body.old_fx
+        force[1] = body.old_fy
+        floats(body.address + s.body_torque, 1)[0] = body.old_torque
     for joint in joints_of(s):
         read_joint(s, joint)
 
@@ -389,6 +383,7 @@ def _undo(s: Any, tables: Tables) -> None:
 @kernel
 def _whole_frame(s: Any, space: int) -> None:
     """The frame; again, once there is room for what it has found; and where it fails everything as it was."""
+    start(s)
     dt = time_step(space)
     good = False
     again = s.failed == 0
@@ -397,7 +392,7 @@ def _whole_frame(s: Any, space: int) -> None:
         s.kept = 0
         good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
         if good:
-            s.broken = finite(load_tables(s), s.frame)
+            s.broken = finite(load_tables(s))
             good = s.broken < 0
         if not good:
             _again(s)
@@ -406,6 +401,7 @@ def _whole_frame(s: Any, space: int) -> None:
     if not good:
         _undo(s, tables)
     _finish_frame(s, tables, good)
+    lap(s, REPORTING)
 
 
 @callback(types.void(types.uintp, types.float64))
@@ -434,17 +430,14 @@ def report(constraint: int, space: int) -> None:
     array_at(space, (1,), np.int32)[0] = s.sweeps
     if s.frame != np.int64(timestamp(space)):
         return
+    start(s)
     for joint in joints_of(s):
         give_back(s, joint)
     s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
     tables = load_tables(s)
-    left = pairs_in_use(tables)
-    for p in range(len(tables.pairs)):
-        if left == 0:
-            break
-        pair = tables.pairs[p]
-        left -= pair.a >= 0
-        if pair.stamp != s.frame or pair.a < 0 or not pair.verdict:
+    for k in range(tables.counters[TOLD]):
+        pair = tables.pairs[tables.told[k]]
+        if not pair.verdict:
             continue
         arbiter = pair.arbiter
         array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = pair.points
@@ -458,6 +451,7 @@ def report(constraint: int, space: int) -> None:
         for i in range(pair.points):
             floats(point + i * s.contact_size + s.contact_normal_impulse, 1)[0] = normal
             floats(point + i * s.contact_size + s.contact_tangent_impulse, 1)[0] = tangent
+    lap(s, REPORTING)
 
 
 @callback(types.int64(types.uintp, types.float64, types.int64))

@@ -58,12 +58,6 @@ class Hook:
         kept = body, classes, store
         self._end = weakref.finalize(space, _take_out, space._space, joint, pivot, constraints, kept)
 
-    def hold(self, body: pymunk.Body) -> None:
-        """Have the solve move a body, unless its position function is the user's."""
-        function, state = self._position_function(body), self._state
-        if int(function[0]) in (int(state["position_func"]), int(state["position_func_again"])):
-            function[0] = int(state["hold_at"])
-
     def callbacks(self) -> dict[str, int]:
         """Which functions of its own the global handler has: `record.begin` looks whether they are others."""
         names = ((0, "begin"), (2, "post_solve"), (3, "separate"))

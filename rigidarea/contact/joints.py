@@ -21,7 +21,7 @@ from ..chipmunk import function
 from ..kernel.jit import callback, kernel
 from ..kernel.joint import JOINT, KINDS, RATCHET, ROTARY_SPRING, SPRING, spring_reach
 from ..kernel.memory import array_at, caller
-from ..kernel.tables import ANEW, APART, BODIES, JOINTS, TURN, Tables
+from ..kernel.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
 from ..store import STATE, row_of_body
 
 _user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
@@ -85,6 +85,17 @@ def _kind_of(s: Any, joint: Any) -> int:
 
 
 @kernel
+def partners_known(s: Any, constraints: np.ndarray) -> bool:
+    """Whether all bodies that joints hold have rows: some are in no space (the hand that drags), or have no shapes."""
+    for address in constraints:
+        if address != s.hidden:
+            bodies = _words(address + s.constraint_a, 2)
+            if row_of_body(s, bodies[0]) < 0 or row_of_body(s, bodies[1]) < 0:
+                return False
+    return True
+
+
+@kernel
 def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
     """At a frame's begin: list the space's joints, and be called around each of them."""
     s.joint_count = 0
@@ -100,26 +111,35 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
         joint.own_class = _words(address, 1)[0]
         joint.pre_solve = before[0]
         joint.taken = 0
-        joint.a = row_of_body(s, bodies[0])
-        joint.b = row_of_body(s, bodies[1])
+        i = row_of_body(s, bodies[0])
+        j = row_of_body(s, bodies[1])
+        if i != joint.a or j != joint.b:
+            tables.counters[REJOINED] = 1
+        joint.a = i
+        joint.b = j
         joint.kind = _kind_of(s, joint)
         before[0] = s.seize_at
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
-            if tables.apart[apart, 0] != joint.a or tables.apart[apart, 1] != joint.b:
-                tables.counters[ANEW] = 1
+            if apart < tables.counters[APART]:
+                for k in range(2):
+                    other = joint.b if k else joint.a
+                    if tables.apart[apart, k] != other:
+                        tables.counters[UNSORTED] = 1
+                        tables.bodies[tables.apart[apart, k]].joined = 0
             tables.apart[apart, 0] = joint.a
             tables.apart[apart, 1] = joint.b
             apart += 1
+    tables.counters[REJOINED] |= tables.counters[JOINTS] != s.joint_count
     tables.counters[JOINTS] = s.joint_count
+    for i in range(apart, tables.counters[APART]):
+        tables.bodies[tables.apart[i, 0]].joined = 0
+        tables.bodies[tables.apart[i, 1]].joined = 0
     if apart != tables.counters[APART]:
-        tables.counters[ANEW] = 1
+        tables.counters[UNSORTED] = 1
         tables.counters[APART] = apart
-    if tables.counters[ANEW]:
-        for i in range(tables.counters[BODIES]):
-            tables.bodies[i].joined = 0
-        for i in range(apart):
-            tables.bodies[tables.apart[i, 0]].joined = 1
-            tables.bodies[tables.apart[i, 1]].joined = 1
+    for i in range(apart):
+        tables.bodies[tables.apart[i, 0]].joined = 1
+        tables.bodies[tables.apart[i, 1]].joined = 1
 
 
 @kernel

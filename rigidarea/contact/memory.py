@@ -12,18 +12,20 @@ import numpy as np
 import pymunk
 
 from ..chipmunk import address_of, centre_of, joint_impulse, put_centre
+from ..kernel.broad import drop_pairs, put_in_tree
 from ..kernel.tables import (
     ANEW,
     APART,
-    BODIES,
+    ASKED,
+    AWAKE,
+    BOXED,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
-    LIVE,
-    NEAR,
     SEARCH,
     SUBSTEP,
+    UNSORTED,
     end_pair,
     rehash,
 )
@@ -41,8 +43,6 @@ class Memory(NamedTuple):
     """(n,) int32: pairs in the order of the sweeps."""
     rows: np.ndarray
     """(n,) int: each shape's row; -1: it has come since the last frame."""
-    order: np.ndarray
-    """(n,) int32: rows in the order of the last search."""
     shapes: np.ndarray
     """(n,) SHAPE, by row."""
     counters: np.ndarray
@@ -51,15 +51,14 @@ class Memory(NamedTuple):
     bodies: np.ndarray
     """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
     calm, and for how long it has moved by itself."""
-    live: np.ndarray
-    """(n,) int: the bodies in the order of sums over them, by their places in the space's list, the static one last;
-    empty where that order is made anew."""
+    awake: np.ndarray
+    """(n,) int: the bodies that are awake in the order of sums over them, by their places in the space's list."""
     centres: np.ndarray
     """(n, 2) where each body's centre of gravity is: pymunk restores a body's place before its centre of gravity, and
     leaves one elsewhere whose centre is not its origin."""
 
 
-_COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR]
+_COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, BOXED, UNSORTED]
 #: What a body keeps.
 _BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.
@@ -78,32 +77,28 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.regions.copy(),
         tables.near.copy(),
         np.array(rows, np.int64),
-        tables.sorted.copy(),
         tables.shapes.copy(),
         tables.counters.copy(),
         [np.array(joint_impulse(joint)) for joint in space.constraints],
         np.array(
             [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
-        _in_line(store, space),
+        _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
     )
 
 
 def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
-    """The row of every body of the space's list, then of the static one; -1: it has none."""
-    return np.array([store.row_of(address_of(b._body)) for b in (*space.bodies, space.static_body)], np.int64)
+    """The row of every body of the space's list; -1: it has none."""
+    return np.array([store.row_of(address_of(b._body)) for b in space.bodies], np.int64)
 
 
-def _in_line(store: Store, space: pymunk.Space) -> np.ndarray:
-    """`Memory.live`."""
-    rows, counters = _body_rows(store, space), store.tables.counters
-    live = store.tables.live[: counters[LIVE]]
-    if counters[LIVE] != counters[BODIES] or set(live) != set(rows):
-        return np.zeros(0, np.int64)
-    place = np.zeros(len(store.tables.live), np.int64)
-    place[rows] = np.arange(len(rows))
-    return place[live]
+def _awake(store: Store, space: pymunk.Space) -> np.ndarray:
+    """`Memory.awake`."""
+    place = np.full(len(store.tables.bodies) + 1, -1)
+    place[_body_rows(store, space)] = np.arange(len(space.bodies))
+    places = place[store.tables.awake[: store.tables.counters[AWAKE]]]
+    return places[places >= 0]
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
@@ -126,23 +121,27 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     used = pairs["a"] >= 0
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
-    order = row_of[memory.order]
-    order = order[order >= 0]
-    rest = np.setdiff1d(store.tables.sorted, order)
     store.tables = tables = store.tables._replace(
         pairs=pairs,
         regions=regions,
         near=memory.near.copy(),
-        sorted=np.concatenate((order, rest)).astype(np.int32),
     )
+    store.sync()
+    for i in mine[known]:
+        put_in_tree(tables, int(i), int(tables.shapes[i]["tree"]))
     tables.bodies["since"] = np.inf
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
+    tables.counters[ASKED] = 0
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
     for p in np.flatnonzero(lost):  # one of its shapes is gone
         end_pair(tables, int(p))
-    store.drop_near()
-    tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
     rehash(tables)
+    awake = _body_rows(store, space)[memory.awake]
+    tables.bodies["awake"][awake] = 1
+    tables.awake[: len(awake)] = awake
+    tables.counters[AWAKE] = len(awake)
+    drop_pairs(tables, -2)
+    tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
     for body, values in zip(space.bodies, memory.bodies):
         row = tables.bodies[store.row_of(address_of(body._body))]
         for name, value in zip(_BODY, values):
@@ -150,10 +149,6 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)
-    tables, rows = store.tables, _body_rows(store, space)
-    if len(memory.live) == len(rows) == tables.counters[BODIES] and rows.min() >= 0:
-        tables.live[: len(rows)] = rows[memory.live]
-        tables.counters[LIVE] = len(rows)
 
 
 def _keep_apart(store: Store, space: pymunk.Space) -> None:

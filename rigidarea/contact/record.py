@@ -15,27 +15,30 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.broad import extents
+from ..kernel.broad import ask_about, list_pair, measure, put_in_tree
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
 from ..kernel.place import place, shift
 from ..kernel.tables import (
-    ANEW,
-    BODIES,
+    AWAKE,
+    BOXED,
     DRIFTS,
     FIXED,
     FREE_PAIRS,
     LED,
     MORE_JOINTS,
     MORE_PAIRS,
-    SEARCH,
-    SHAPES,
+    MOVERS,
+    TOLD,
+    UNSORTED,
     Tables,
     find_pair,
     new_pair,
 )
+from ..kernel.tree import MOVING
 from ..store import STATE, load_pool, load_tables, row_of_body
-from .joints import take_joints
+from .joints import joints_of, partners_known, take_joints
+from .phases import WATCHING, lap, start
 
 #: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
 REGISTER, GROW, BROKEN, NORMAL = range(4)
@@ -45,7 +48,6 @@ timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
 shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
 time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
 space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
-hash_id = function("cpShapeGetHashID", types.uintp(types.uintp))
 body_type = function("cpBodyGetType", types.int32(types.uintp))
 _call_ask = caller(types.void(types.uintp))
 _call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
@@ -127,12 +129,17 @@ def read_place(s: Any, address: int, body: Any) -> None:
 
 
 @kernel(forceinline=True)
-def read_motion(s: Any, address: int, body: Any) -> None:
-    """How it moves, and how it lets itself be moved."""
+def _read_velocity(s: Any, address: int, body: Any) -> None:
     v = floats(address + s.body_velocity, 2)
     body.vx = v[0]
     body.vy = v[1]
     body.w = floats(address + s.body_spin, 1)[0]
+
+
+@kernel(forceinline=True)
+def read_motion(s: Any, address: int, body: Any) -> None:
+    """How it moves, and how it lets itself be moved."""
+    _read_velocity(s, address, body)
     body.inverse_mass = floats(address + s.body_inverse_mass, 1)[0]
     body.inverse_moment = floats(address + s.body_inverse_moment, 1)[0]
 
@@ -174,12 +181,139 @@ def notice(s: Any, address: int, body: Any) -> None:
         body.since = 0.0
 
 
+@kernel(forceinline=True)
+def row_of_shape(s: Any, shape: int) -> int:
+    """The row of Chipmunk's shape at that address; -1: not known."""
+    ident = np.int64(words(shape + s.shape_hashid, 1)[0])
+    if ident >= s.slots_n:
+        return -1
+    return int(array_at(s.slots_at, (s.slots_n,), np.int32)[ident])
+
+
+@kernel
+def _heard(s: Any, kind: int) -> int:
+    """Whether callbacks of the user's may be asked about a collision type: see SHAPE."""
+    heard = np.int64(s.heard_all)
+    for other in words(s.heard_alone_at, s.heard_alone_n):
+        if other == kind:
+            heard |= 1
+    for other in words(s.heard_pairs_at, s.heard_pairs_n):
+        if other == kind:
+            heard |= 2
+    return int(heard)
+
+
+@kernel
+def _read_shape(s: Any, shape: Any) -> bool:
+    """What the user may set of a shape, as it is now. Whether it may collide with others than before."""
+    shape.seen = s.frame
+    material = floats(shape.address + s.shape_elasticity, 2)
+    shape.elasticity = material[0]
+    shape.friction = material[1]
+    surface = floats(shape.address + s.shape_surface_velocity, 2)
+    shape.surface_x = surface[0]
+    shape.surface_y = surface[1]
+    kind = words(shape.address + s.shape_type, 1)[0]
+    if kind != shape.type or shape.epoch != s.heard_epoch:
+        shape.type = kind
+        shape.epoch = s.heard_epoch
+        shape.heard = _heard(s, kind)
+    sensor = array_at(shape.address + s.shape_sensor, (1,), np.uint8)[0]
+    group = words(shape.address + s.shape_filter, 1)[0]
+    masks = array_at(shape.address + s.shape_filter + 8, (2,), np.uint32)
+    if (
+        sensor == shape.sensor
+        and group == shape.group
+        and masks[0] == shape.categories
+        and masks[1] == shape.mask
+    ):
+        return False
+    shape.sensor = sensor
+    shape.group = group
+    shape.categories = masks[0]
+    shape.mask = masks[1]
+    return True
+
+
+@kernel
+def _list_shapes(s: Any, tables: Tables, body: Any, anew: bool) -> bool:
+    """List the shapes of a body that is awake among the movers; anew: it was not, or is mobile now.
+
+    Whether all are known.
+    """
+    counters = tables.counters
+    address = words(body.address + s.body_shapes, 1)[0]
+    while address != 0:
+        i = row_of_shape(s, address)
+        if i < 0:
+            return False
+        shape = tables.shapes[i]
+        tables.movers[counters[MOVERS]] = i
+        counters[MOVERS] += 1
+        sensor = shape.sensor
+        changed = _read_shape(s, shape)
+        if changed or anew:
+            ask_about(tables, i)
+            counters[UNSORTED] = 1
+            body.unmeasured |= sensor != shape.sensor
+        if shape.leaf >= 0 and shape.tree != MOVING:
+            put_in_tree(tables, i, MOVING)
+        address = words(address + s.shape_next, 1)[0]
+    if body.unmeasured:  # it is as thin as its thinnest shape that is no sensor
+        body.unmeasured = 0
+        body.extent = 0.0
+        body.reach = 0.0
+        address = words(body.address + s.body_shapes, 1)[0]
+        while address != 0:
+            measure(load_pool(s), tables.shapes[row_of_shape(s, address)], body)
+            address = words(address + s.shape_next, 1)[0]
+    return True
+
+
+@kernel
+def look_at_partners(s: Any, tables: Tables) -> None:
+    """What the user may set of shapes that do not move, of those that somebody who is awake is near."""
+    for n in range(tables.counters[BOXED]):
+        pair = tables.pairs[tables.near[n].pair]
+        if pair.a < 0:
+            continue
+        for i in (pair.a, pair.b):
+            shape = tables.shapes[i]
+            if shape.seen != s.frame:
+                if _read_shape(s, shape):
+                    tables.counters[UNSORTED] = 1
+                body = tables.bodies[shape.body]
+                _read_velocity(s, body.address, body)
+
+
+@kernel
+def _look_at_jointed(s: Any, tables: Tables) -> None:
+    """What joints hold and is not awake: a static body, or one of the user's that is in no space, moved by hand."""
+    for joint in joints_of(s):
+        for i in (joint.a, joint.b):
+            if i >= 0 and not tables.bodies[i].awake:
+                body = tables.bodies[i]
+                read_place(s, body.address, body)
+                put_to_rest(s, body)
+
+
+@kernel
+def add_to_awake(tables: Tables, i: int, body: Any) -> None:
+    """A body that was not awake is."""
+    body.awake = 1
+    body.unmeasured = 1
+    tables.awake[tables.counters[AWAKE]] = i
+    tables.counters[AWAKE] += 1
+
+
 @kernel
 def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
-    """All bodies: those that are awake as they are now, the others as what does not move. Whether any is asleep."""
-    asleep = False
+    """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
+    counters = tables.counters
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
+        if i < 0:
+            return False
         body = tables.bodies[i]
         if body.stamp == s.frame:
             continue
@@ -188,7 +322,11 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         notice(s, address, body)
         body.stamp = s.frame
         body.was_calm = 1 if body.calm > 0 else 0
-        body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+        mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+        body.changed = 1 if mobile != body.mobile or not body.awake else 0
+        body.mobile = mobile
+        if not body.awake:
+            add_to_awake(tables, i, body)
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
         if (function[0] == s.position_func or function[0] == s.position_func_again) and s.explicit == 0:
@@ -207,31 +345,72 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w
+        body.old_since = body.since
         force = floats(address + s.body_force, 2)
         body.old_fx = force[0]
         body.old_fy = force[1]
         body.old_torque = floats(address + s.body_torque, 1)[0]
-    for i in range(tables.counters[BODIES]):
+    n = 0
+    for k in range(counters[AWAKE]):
+        i = tables.awake[k]
         body = tables.bodies[i]
-        if body.address != 0 and body.stamp != s.frame:
-            x, y, angle = body.x, body.y, body.angle
-            read_place(s, body.address, body)
-            read_motion(s, body.address, body)
-            body.was_calm = 1 if body.calm > 0 else 0
-            body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
-            asleep |= body.mobile == 1
-            body.inverse_mass = 0.0  # asleep, or static
-            body.inverse_moment = 0.0
-            body.gain_x = 0.0
-            body.gain_y = 0.0
-            body.gain_w = 0.0
-            body.kick_x = 0.0
-            body.kick_y = 0.0
-            body.kick_w = 0.0
-            body.kind = FIXED
-            if x != body.x or y != body.y or angle != body.angle:
-                body.stamp = s.frame  # moved by hand
-    return asleep
+        if body.stamp == s.frame:
+            tables.awake[n] = i
+            n += 1
+        else:
+            put_to_rest(s, body)
+            counters[UNSORTED] = 1
+    counters[AWAKE] = n
+    counters[MOVERS] = 0
+    for k in range(n):
+        body = tables.bodies[tables.awake[k]]
+        if not _list_shapes(s, tables, body, body.changed == 1):
+            return False
+    return True
+
+
+@kernel
+def wake(s: Any, tables: Tables, i: int) -> None:
+    """A body that Chipmunk has woken within its step."""
+    body = tables.bodies[i]
+    body.stamp = s.frame
+    read_place(s, body.address, body)
+    read_motion(s, body.address, body)
+    body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+    body.kind = DRIFTS
+    body.old_x = body.x
+    body.old_y = body.y
+    body.old_a = body.angle
+    body.old_vx = body.vx
+    body.old_vy = body.vy
+    body.old_w = body.w
+    body.old_fx = 0.0  # a force would have woken it before
+    body.old_fy = 0.0
+    body.old_torque = 0.0
+    body.since = 0.0
+    body.old_since = 0.0
+    body.was_calm = 0
+    if not body.awake:
+        add_to_awake(tables, i, body)
+        _list_shapes(s, tables, body, True)
+
+
+@kernel
+def put_to_rest(s: Any, body: Any) -> None:
+    """A body that is asleep, or static: where it has been left, and nothing moves it."""
+    body.awake = 0
+    body.kind = FIXED
+    read_motion(s, body.address, body)
+    body.mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
+    body.inverse_mass = 0.0
+    body.inverse_moment = 0.0
+    body.gain_x = 0.0
+    body.gain_y = 0.0
+    body.gain_w = 0.0
+    body.kick_x = 0.0
+    body.kick_y = 0.0
+    body.kick_w = 0.0
+    body.load = math.inf
 
 
 @kernel(forceinline=True)
@@ -246,6 +425,7 @@ def _take_back(body: Any, dt: float) -> None:
 @kernel
 def begin(s: Any, space: int, dt: float) -> bool:
     """The first thing in a frame: everything as it is. Whether it could be taken down."""
+    start(s)
     s.frame = np.int64(timestamp(space))
     g = floats(space + s.space_gravity, 2)
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
@@ -260,51 +440,29 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.user_pre_solve = np.uint64(0) if hook[0] == s.no_pre_solve else hook[0]
         hook[0] = s.pre_solve_at
         fresh = True
-    if not fresh:
-        for address in members(space, s.space_bodies):
-            if row_of_body(s, address) < 0:
-                fresh = True
-                break
-    if fresh and not ask(s, REGISTER):
+    if (fresh or s.pending) and not ask(s, REGISTER):
         return False
-    tables = load_tables(s)
-    s.asleep = _watch(s, tables, space, dt)
-    solid = False
-    retyped = False
-    for i in range(tables.counters[SHAPES]):
-        shape = tables.shapes[i]
-        if shape.outline >= 0:
-            sensor = array_at(shape.address + s.shape_sensor, (1,), np.uint8)[0]
-            if sensor != shape.sensor:
-                shape.sensor = sensor
-                tables.counters[ANEW] = 1
-                solid = True
-            material = floats(shape.address + s.shape_elasticity, 2)
-            shape.elasticity = material[0]
-            shape.friction = material[1]
-            surface = floats(shape.address + s.shape_surface_velocity, 2)
-            shape.surface_x = surface[0]
-            shape.surface_y = surface[1]
-            group = words(shape.address + s.shape_filter, 1)[0]
-            masks = array_at(shape.address + s.shape_filter + 8, (2,), np.uint32)
-            if group != shape.group or masks[0] != shape.categories or masks[1] != shape.mask:
-                tables.counters[ANEW] = 1
-                shape.group = group
-                shape.categories = masks[0]
-                shape.mask = masks[1]
-            retyped |= words(shape.address + s.shape_type, 1)[0] != shape.type
-    if retyped and not ask(s, REGISTER):  # other callbacks may be asked about it
-        return False
-    tables = load_tables(s)
-    if solid:  # a body is as thin as its thinnest shape that is no sensor
-        extents(load_pool(s), tables)
+    load_tables(s).counters[TOLD] = 0
+    if not _watch(s, load_tables(s), space, dt):  # somebody came on a way of which pymunk has not told
+        s.pending = 2
+        if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
+            return False
+    look_at_partners(s, load_tables(s))
+    s.asleep = len(members(space, s.space_sleeping)) > 0
     if not s.explicit:
         n = len(members(space, s.space_constraints))
         if n > s.joints_n:
             load_tables(s).counters[MORE_JOINTS] = n - s.joints_n
             if not ask(s, GROW):
                 return False
-        take_joints(s, load_tables(s), members(space, s.space_constraints))
+        if not partners_known(s, members(space, s.space_constraints)):
+            s.pending = 3
+            if not ask(s, REGISTER):
+                return False
+        tables = load_tables(s)
+        take_joints(s, tables, members(space, s.space_constraints))
+        _look_at_jointed(s, tables)
+    lap(s, WATCHING)
     return True
 
 
@@ -336,14 +494,6 @@ def _surface_velocity(
     if abs(given_x - (x - nx * along)) + abs(given_y - (y - ny * along)) > 1e-12 * (abs(x) + abs(y)):
         return given_x, given_y
     return x, y
-
-
-@kernel(forceinline=True)
-def _row_of_shape(s: Any, shape: int) -> int:
-    ident = np.int64(hash_id(shape))
-    if ident >= s.slots_n:
-        return -1
-    return int(array_at(s.slots_at, (s.slots_n,), np.int32)[ident])
 
 
 @kernel
@@ -382,8 +532,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     if s.failed:
         return
     both = words(arbiter + s.arbiter_shape_a, 2)
-    a = _row_of_shape(s, both[0])
-    b = _row_of_shape(s, both[1])
+    a = row_of_shape(s, both[0])
+    b = row_of_shape(s, both[1])
     if a < 0 or b < 0:
         return
     tables = load_tables(s)
@@ -404,8 +554,10 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
             tables = load_tables(s)
         p = new_pair(tables, a, b)
     pair = tables.pairs[p]
-    if pair.near != tables.counters[SEARCH]:  # new, or parted in the last frame
-        tables.counters[ANEW] = 1
+    list_pair(tables, p)
+    if pair.stamp != now:
+        tables.told[tables.counters[TOLD]] = p
+        tables.counters[TOLD] += 1
     pair.stamp = now
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1

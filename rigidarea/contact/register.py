@@ -1,123 +1,239 @@
-"""Which bodies and shapes a space has, and whose callbacks: as its tables know them."""
+"""Which bodies and shapes a space has, and whose callbacks: as its tables know them.
+
+pymunk tells of what comes and goes one by one (`space`), and machine code enters it when the next frame begins, or
+before; what does not move at once. Should Chipmunk know of others, the whole space is looked through.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+import copy
+from collections.abc import Iterable, Sequence
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of
 from ..outline import Outline
 from .arrays import Store
+from .geometry import PLACES
 
 if TYPE_CHECKING:
     from .hook import Hook
+
+_STATIC = pymunk.Body.STATIC
 
 
 class Register:
     """The shapes of one attached space that are in its tables. It keeps no space alive: that is handed over."""
 
     def __init__(self, store: Store, hook: Hook) -> None:
+        from . import entering
+
         self._store = store
         self._state = store.state[0]
         self._hook = hook
-        self._added: dict[int, tuple[Outline, Any]] = {}
+        self._where = np.array([int(self._state[name]) for name in PLACES], np.int64)
+        self._calls = {
+            name: ffi.cast(kind, getattr(entering, name).address)
+            for name, kind in (
+                ("shapes_come", "void(*)(uintptr_t, uintptr_t, uintptr_t, long long)"),
+                ("shapes_go", "void(*)(uintptr_t, uintptr_t, long long)"),
+                ("bodies_come", "void(*)(uintptr_t, uintptr_t, long long, long long)"),
+                ("bodies_go", "void(*)(uintptr_t, uintptr_t, long long)"),
+                ("placed_anew", "void(*)(uintptr_t, uintptr_t, long long)"),
+            )
+        }
+        self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self._new: dict[pymunk.Shape, None] = {}  # not entered yet
+        self._gone: list[int] = []  # ids of shapes that are entered still
+        self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
+        self._left: list[int] = []  # bodies that are entered still
 
-    @property
-    def shapes(self) -> dict[int, pymunk.Shape]:
-        """By Chipmunk's id."""
-        return self._store.shapes
+    # --- what pymunk tells ---
 
-    def update(self, space: pymunk.Space) -> None:
-        """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
-        store = self._store.draft()
-        present = {shape._hashid: shape for shape in space.shapes}
-        # not space.static_body, which makes one where there is none
-        still = [] if space._static_body is None else [space._static_body]
-        bodies = {address_of(body._body): body for body in (*space.bodies, *still)}
-        for shape in space.shapes:
-            if shape.body is not None:
-                bodies.setdefault(address_of(shape.body._body), shape.body)
-        for constraint in space.constraints:
-            for body in (constraint.a, constraint.b):
-                bodies.setdefault(address_of(body._body), body)
-        gone = store.shapes.keys() - present.keys()
-        store.forget(gone, store.known_bodies() - bodies.keys())
-        for ident in gone:
-            del store.shapes[ident], store.forms[ident]
-        for address in bodies:
-            store.body(address)
-        for ident, shape in present.items():
-            if ident not in store.shapes:
-                self._take(store, shape)
-        facts = self._hear(store, space)
-        store.settle()
-        counter = lib.cpSpaceGetShapeIDCounter(space._space)
-        self._store.publish(store, shape_counter=counter, shape_count=len(present), **facts)
-        self._added.clear()
-        if not space._locked and not self._state["explicit"]:
-            for body in bodies.values():
-                self._hook.hold(body)
-
-    def came(self, shape: pymunk.Shape) -> None:
+    def shape_came(self, shape: pymunk.Shape) -> None:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
-        if shape.body is not None and shape.body.body_type == pymunk.Body.STATIC:
+        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._new[shape] = None
+        if shape.body is not None and shape.body.body_type == _STATIC:
             try:
-                self._added[shape._hashid] = Outline.from_pymunk(shape), _form(shape)
+                heads = self._outlines([shape])
             except ValueError:  # said when the space is stepped
-                pass
+                return
+            self._forget()
+            self._enter([shape], heads)
+            del self._new[shape]
 
-    def reread(self, space: pymunk.Space, shapes: Iterable[pymunk.Shape]) -> None:
-        """Of these shapes, those whose geometry has been changed."""
-        for shape in shapes:
-            self._added.pop(shape._hashid, None)
-            known = self._store.forms
-            if shape._hashid in known and known[shape._hashid] != _form(shape):
-                self.refresh(space, shape)
+    def shape_goes(self, shape: pymunk.Shape) -> None:
+        """A shape is about to be removed."""
+        if shape in self._new:
+            del self._new[shape]
+        else:
+            self._gone.append(shape._hashid)
+        self._state["pending"] = max(1, int(self._state["pending"]))
 
-    def refresh(self, space: pymunk.Space, shape: pymunk.Shape) -> None:
+    def body_came(self, body: pymunk.Body) -> None:
+        """A body has been added."""
+        self._bodies[body] = None
+        self._state["pending"] = max(1, int(self._state["pending"]))
+
+    def body_goes(self, body: pymunk.Body) -> None:
+        """A body is about to be removed."""
+        if body in self._bodies:
+            del self._bodies[body]
+        else:
+            self._left.append(address_of(body._body))
+        self._state["pending"] = max(1, int(self._state["pending"]))
+
+    def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
+        """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
+        is now.
+        """
+        known = [shape for shape in shapes if self.shapes.get(shape._hashid) is shape]
+        rows, slots = self._store.known_shapes, self._store.slots
+        for shape in known:
+            if self._outlines([shape])[0] != rows["outline"][slots[shape._hashid]]:
+                self.refresh(shape)
+                rows = self._store.known_shapes
+        bodies = {address_of(shape.body._body) for shape in known}
+        if bodies:
+            self._call("placed_anew", _words(bodies))
+
+    def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again: `AreaContact.refresh`.
 
         Raises ValueError for a shape that is not entered, or that has no area now.
         """
         if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
             raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
-        store = self._store.draft()
-        store.forget([shape._hashid], ())
-        self._take(store, shape)
-        facts = self._hear(store, space)
-        store.settle()
-        self._store.publish(store, **facts)
+        self._outlines([shape])  # says what is wrong with it while nothing has changed
+        self._call("shapes_go", np.array([shape._hashid], np.uint64))
+        self._enter([shape])
+
+    # --- entering ---
+
+    def update(self, space: pymunk.Space) -> None:
+        """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
+        state = self._state
+        count = len(self.shapes) + len(self._new) - len(self._gone)
+        pending = state["pending"]
+        if count != len(space._shapes) or pending == 2:
+            self._look_through(space)
+        new = list(self._new)
+        heads = self._outlines(new)  # says what is wrong with one while nothing has changed
+        state["pending"] = 2  # until all is done: whoever is interrupted looks through the space
+        self._forget()
+        if self._bodies:
+            addresses = _words(address_of(body._body) for body in self._bodies)
+            self._store.room(0, len(addresses), 0)
+            self._call("bodies_come", addresses, not space._locked and not state["explicit"])
+            self._bodies.clear()
+        if pending >= 2:
+            self._enter_partners(space)
+        self._enter(new, heads)
+        self._new.clear()
+        self._store.tidy()
+        facts = self._hear(space)
+        facts |= {
+            "shape_counter": lib.cpSpaceGetShapeIDCounter(space._space),
+            "shape_count": len(self.shapes),
+        }
+        for name, value in facts.items():
+            state[name] = value
+        state["pending"] = 0
+
+    def _forget(self) -> None:
+        """What has gone is not in the tables any more."""
+        if self._gone:
+            self._call("shapes_go", np.array(self._gone, np.uint64))
+            for ident in self._gone:
+                self.shapes.pop(ident, None)
+            self._gone.clear()
+        if self._left:
+            self._call("bodies_go", _words(self._left))
+            self._left.clear()
+
+    def _look_through(self, space: pymunk.Space) -> None:
+        """What there is that pymunk has not told of, and what is no more."""
+        present = {shape._hashid: shape for shape in space._shapes}
+        rows = self._store.known_shapes
+        known = set(rows["ident"][rows["outline"] >= 0].tolist())
+        self.shapes = {ident: shape for ident, shape in present.items() if ident in known}
+        self._gone = [ident for ident in known if ident not in present]
+        self._new = {shape: None for ident, shape in present.items() if ident not in known}
+        bodies = {address_of(body._body): body for body in space._bodies}
+        held = {address_of(body._body) for joint in space._constraints for body in (joint.a, joint.b)}
+        found = self._store.tables.bodies
+        entered = set(found["address"][found["entered"] == 1].tolist())
+        self._left = [address for address in entered if address not in bodies and address not in held]
+        self._bodies = {body: None for address, body in bodies.items() if address not in entered}
+
+    def _enter_partners(self, space: pymunk.Space) -> None:
+        """Bodies that joints hold and that are not among the space's: its static one, those that the user moves."""
+        held = {address_of(body._body) for joint in space._constraints for body in (joint.a, joint.b)}
+        addresses = _words(sorted(address for address in held if self._store.row_of(address) < 0))
+        self._store.room(0, len(addresses), 0)
+        self._call("bodies_come", addresses, 0)
+
+    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> np.ndarray:
+        """The numbers of the shapes' outlines in the pool, in which they are then. ValueError if one has no area."""
+        heads = np.zeros(len(shapes), np.int32)
+        plain = [i for i, shape in enumerate(shapes) if not _given(shape)]
+        chosen = shapes if len(plain) == len(shapes) else [shapes[i] for i in plain]
+        addresses = _words(address_of(shape._shape) for shape in chosen)
+        heads[plain], bad = self._store.read(addresses, self._where)
+        if bad >= 0:
+            Outline.from_pymunk(chosen[bad])  # says what is wrong
+            raise ValueError(f"expected shapes with an area, got {chosen[bad]!r:.80}")
+        if len(plain) < len(shapes):
+            for i, shape in enumerate(shapes):
+                if _given(shape):
+                    heads[i] = self._given(Outline.from_pymunk(shape))
+        return heads
+
+    def _given(self, outline: Outline) -> int:
+        """The number in the pool of an outline that somebody has made."""
+        head = self._store.outline(outline, outline.smallest_extent)
+        if outline.mirror is not None:
+            self._store.forms.mirror[head] = self._store.outline(outline.mirror, outline.smallest_extent)
+        return head
+
+    def _enter(self, shapes: Sequence[pymunk.Shape], heads: np.ndarray | None = None) -> None:
+        """Enter shapes into the tables, whose outlines have these numbers."""
+        if not shapes:
+            return
+        heads = self._outlines(shapes) if heads is None else heads
+        idents = [shape._hashid for shape in shapes]
+        self._store.room(len(shapes), len(shapes), max(idents))
+        addresses = _words(address_of(shape._shape) for shape in shapes)
+        self._calls["shapes_come"](
+            self._store.state.ctypes.data, addresses.ctypes.data, heads.ctypes.data, len(shapes)
+        )
+        self.shapes.update(zip(idents, shapes))
+
+    def _call(self, name: str, words: np.ndarray, *more: int) -> None:
+        self._calls[name](self._store.state.ctypes.data, words.ctypes.data, len(words), *more)
 
     def largest(self) -> float:
         """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""
-        boxes = [shape.bb for shape in self.shapes.values() if _moves(shape)]
-        return max((max(bb.right - bb.left, bb.top - bb.bottom) for bb in boxes), default=1.0)
-
-    def _take(self, store: Store, shape: pymunk.Shape) -> None:
-        """Enter a shape into the tables."""
-        outline, form = self._added.get(shape._hashid) or (Outline.from_pymunk(shape), _form(shape))
-        body = shape.body
-        assert body is not None
-        left, bottom, right, top = outline.bounds
-        store.shape(
-            shape._hashid,
-            address_of(shape._shape),
-            outline,
-            outline.mirror,
-            address_of(body._body),
-            shape.sensor,
-            outline.smallest_extent,
-            (0.5 * (right - left), 0.5 * (top - bottom)),
+        tables = self._store.tables
+        shapes = self._store.known_shapes
+        moves = (
+            (shapes["outline"] >= 0)
+            & (tables.bodies["mobile"][shapes["body"]] == 1)
+            & (shapes["sensor"] == 0)
         )
-        store.shapes[shape._hashid] = shape
-        store.forms[shape._hashid] = form
+        sides = [
+            shapes[high][moves] - shapes[low][moves] for low, high in (("left", "right"), ("bottom", "top"))
+        ]
+        return float(max((side.max() for side in sides if len(side)), default=1.0))
 
-    def _hear(self, store: Store, space: pymunk.Space) -> dict[str, int]:
-        """Which shapes' collision types have callbacks of the user's, that may say no; facts by which it is known
-        whether there are others.
+    def _hear(self, space: pymunk.Space) -> dict[str, int]:
+        """Take down which collision types have callbacks of the user's, that may say no.
+
+        Returns facts by which it is known whether there are others.
         """
         everywhere = space._handlers.get((None, None))
         to_all = everywhere is not None and any(
@@ -125,24 +241,22 @@ class Register:
             for phase in ("begin", "pre_solve", "post_solve", "separate")
         )
         keys = [key for key in space._handlers if key != (None, None)]
-        alone = {a for a, b in keys if b is None}
-        pairs = {kind for a, b in keys if b is not None for kind in (a, b)}
-        for ident, shape in store.shapes.items():
-            kind = shape.collision_type
-            row = store.tables.shapes[store.slots[ident]]
-            row["type"], row["heard"] = kind, (to_all or kind in alone) + 2 * (kind in pairs)
-        entries = ffi.cast("unsigned int **", address_of(space._space) + int(self._state["space_handlers"]))
+        alone = _words({a for a, b in keys if b is None})
+        pairs = _words({kind for a, b in keys if b is not None for kind in (a, b)})
+        store, state = self._store, self._state
+        before = bool(state["heard_all"]), store.heard_alone.tolist(), store.heard_pairs.tolist()
+        if before != (to_all, alone.tolist(), pairs.tolist()):
+            new = copy.copy(store)
+            new.heard_alone, new.heard_pairs = alone, pairs
+            store.publish(new, heard_all=to_all, heard_epoch=int(state["heard_epoch"]) + 1)
+        entries = ffi.cast("unsigned int **", address_of(space._space) + int(state["space_handlers"]))
         return {"handler_count": int(entries[0][0]), **self._hook.callbacks()}
 
 
-def _form(shape: pymunk.Shape) -> Any:
-    """What of a shape's geometry can be changed by pymunk's unsafe functions."""
-    if isinstance(shape, pymunk.Circle):
-        return shape.radius, shape.offset
-    if isinstance(shape, pymunk.Segment):
-        return shape.radius, shape.a, shape.b
-    return shape.radius, shape.get_vertices() if isinstance(shape, pymunk.Poly) else None
+def _given(shape: pymunk.Shape) -> bool:
+    """Whether somebody has put an outline on a shape."""
+    return isinstance(getattr(shape, "outline", None), Outline)
 
 
-def _moves(shape: pymunk.Shape) -> bool:
-    return shape.body is not None and shape.body.body_type == pymunk.Body.DYNAMIC and not shape.sensor
+def _words(values: Iterable[Any]) -> np.ndarray:
+    return np.array(list(values), np.uint64)

@@ -32,22 +32,37 @@ def attached_class(plain: Any) -> type:
 
         def reindex_static(self: Any) -> None:
             plain.reindex_static(self)
-            still = [s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC]
-            self.__dict__[KEY]._register.reread(self, still)
+            still = [s for s in self._shapes if s.body.body_type == pymunk.Body.STATIC]
+            self.__dict__[KEY]._register.reread(still)
 
         def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
             plain.reindex_shape(self, shape)
-            self.__dict__[KEY]._register.reread(self, [shape])
+            self.__dict__[KEY]._register.reread([shape])
 
         def reindex_shapes_for_body(self: Any, body: pymunk.Body) -> None:
             plain.reindex_shapes_for_body(self, body)
-            self.__dict__[KEY]._register.reread(self, body.shapes)
+            self.__dict__[KEY]._register.reread(body.shapes)
 
         def _add_shape(self: Any, shape: pymunk.Shape) -> None:
             plain._add_shape(self, shape)
-            self.__dict__[KEY]._register.came(shape)
+            self.__dict__[KEY]._register.shape_came(shape)
 
-        own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        def _remove_shape(self: Any, shape: pymunk.Shape) -> None:
+            if shape in self._shapes:
+                self.__dict__[KEY]._register.shape_goes(shape)
+            plain._remove_shape(self, shape)
+
+        def _add_body(self: Any, body: pymunk.Body) -> None:
+            plain._add_body(self, body)
+            self.__dict__[KEY]._register.body_came(body)
+
+        def _remove_body(self: Any, body: pymunk.Body) -> None:
+            if body in self._bodies:
+                self.__dict__[KEY]._register.body_goes(body)
+            plain._remove_body(self, body)
+
+        own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        own |= {method.__name__: method for method in (_add_shape, _remove_shape, _add_body, _remove_body)}
         for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
             method.__doc__ = getattr(plain, method.__name__).__doc__
             own[method.__name__] = method

@@ -11,7 +11,7 @@ from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, has_room, join, nobody_comes_near, somebody_touches
 from ..kernel.joint import free_turning, geometric_stiffness
-from ..kernel.order import find_near
+from ..kernel.order import arrange, find_near
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     common,
@@ -25,19 +25,25 @@ from ..kernel.solve import (
     sweep,
     warm_start,
 )
-from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, Tables
+from ..kernel.tables import BOUNCES, ROWS, SUBSTEP, UNSORTED, Tables
 from ..store import load_law, load_pool, load_tables, load_work
 from .joints import ask_springs, own_joints
-from .record import floats
+from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
+from .record import floats, look_at_partners
 
 
 @kernel
 def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
     """Find the pairs that are near. Whether there was room for them."""
     tables = load_tables(s)
-    g = floats(space + s.space_gravity, 2)
-    found = find_near(load_pool(s), tables, s.frame, h, time, g[0], g[1])
-    return bool(found and (s.begun or has_room(tables)))
+    if not find_near(load_pool(s), tables, s.frame, h, time):
+        return False
+    if tables.counters[UNSORTED]:
+        look_at_partners(s, tables)
+        g = floats(space + s.space_gravity, 2)
+        arrange(tables, g[0], g[1])
+    lap(s, PAIRS)
+    return bool(s.begun or has_room(tables))
 
 
 @kernel
@@ -50,13 +56,18 @@ def find_contacts(s: Any, space: int, h: float, time: float, jointed: bool) -> b
     tables.counters[SUBSTEP] += 1
     tables.counters[ROWS] = 0
     tables.counters[BOUNCES] = 0
-    return bool(gather(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, jointed))
+    found = gather(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, jointed)
+    lap(s, OVERLAPS)
+    return bool(found)
 
 
 @kernel
 def _join(s: Any, tables: Tables, h: float, first: bool) -> int:
     """Rows that come up while the others are solved: how many; -1: there was no room for them."""
-    return int(join(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, first))
+    lap(s, POSITIONS if first else ITERATIONS)
+    joined = int(join(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, first))
+    lap(s, SPECULATIVE)
+    return joined
 
 
 @kernel
@@ -65,9 +76,8 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
 
     They go on while the last sweep has moved much, or contacts have added energy, which they never do.
     """
-    if (
-        _join(s, tables, h, True) < 0
-    ):  # before the warm start: what that adds is no speed at which anybody comes
+    # before the warm start: what that adds is no speed at which anybody comes
+    if _join(s, tables, h, True) < 0:
         return False
     if tables.counters[ROWS] == 0:
         return True  # nothing that could change a velocity
@@ -139,6 +149,7 @@ def _fly(s: Any, tables: Tables, dt: float, more: float, n: int) -> None:
     finish(tables, load_law(s), s.frame, dt, True)
     drift(tables, s.frame, 0.5 * dt)
     note(tables, n)
+    lap(s, POSITIONS)
 
 
 @kernel
@@ -153,6 +164,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     share_kicks(tables, n)
     for i in range(n):
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
+        lap(s, POSITIONS)
         if i == 0 and joints == 0 and not somebody_touches(tables):
             if not near_pairs(s, space, h, dt):
                 return False
@@ -167,6 +179,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         if not _solve(s, tables, h, sweeps, joints > 0):
             return False
+        lap(s, ITERATIONS)
         _relax(s, tables, h, sweeps)
         if joints > 0:
             free_turning(tables)
@@ -174,4 +187,5 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     drift(tables, s.frame, 0.5 * h)
     note(tables, n)
     s.contacts += tables.counters[ROWS]
+    lap(s, POSITIONS)
     return True

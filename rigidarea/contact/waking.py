@@ -10,10 +10,10 @@ from ..chipmunk import function
 from ..kernel.jit import callback
 from ..kernel.join import may_touch
 from ..kernel.meet import meets_within
-from ..kernel.order import find_near
 from ..kernel.tables import FIXED, MORE_WORK, NEAR, TURN
 from ..store import load_pool, load_tables, load_work, row_of_body
-from .record import floats, members, notice, state_of, user_data
+from .record import members, notice, state_of, user_data
+from .substep import near_pairs
 
 _activate = function("cpBodyActivate", types.void(types.uintp))
 
@@ -33,7 +33,7 @@ def rouse(space: int, dt: float) -> int:
     if user_data(space) == 0:
         return 1
     s = state_of(space)
-    if s.asleep == 0 or s.explicit:
+    if s.asleep == 0 or s.explicit or len(members(space, s.space_bodies)) == 0:
         return 1
     tables = load_tables(s)
     for address in members(space, s.space_bodies):
@@ -46,8 +46,8 @@ def rouse(space: int, dt: float) -> int:
             return 1
     tables.counters[TURN] = 0  # everybody
     ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
-    g = floats(space + s.space_gravity, 2)
-    if not find_near(load_pool(s), tables, s.frame, ahead, ahead, g[0], g[1]):
+    s.begun = 0
+    if not near_pairs(s, space, ahead, ahead):
         return 0
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]

@@ -1,8 +1,8 @@
-"""Which pairs may touch: sort and sweep over boxes with some room, made anew only when a shape leaves its box.
+"""Which pairs may touch: those whose boxes meet, of which one is awake; kept until the boxes part.
 
 Chipmunk looks for pairs once a step, and tells of those that touch then. A contact solved in several substeps needs
-those that come to touch within the frame as well. Sort and sweep (Baraff 1992): shapes in the order of their boxes'
-low x, which hardly changes from search to search, so that insertion sort takes it up where it was.
+those that come to touch within the frame as well. Every shape has a box with some room in one of two trees (`tree`);
+who leaves it gets another, and is asked about alone. What is static or asleep is met in the trees, and asks nobody.
 """
 
 from __future__ import annotations
@@ -10,49 +10,47 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import LOOK, MARGIN
+from .constants import AHEAD, LOOK, MARGIN
 from .jit import entry, kernel
 from .pool import Pool
 from .tables import (
     APART,
-    BODIES,
-    CONCAVE,
+    ASKED,
+    BOXED,
     DRIFTS,
-    FIXED,
     FREE_PAIRS,
     MORE_PAIRS,
-    NEAR,
+    MOVERS,
     SEARCH,
-    SHAPES,
-    TOOTHED,
     TURN,
+    UNSORTED,
     Tables,
     end_pair,
     find_pair,
     new_pair,
-    pairs_in_use,
-    rehash,
 )
+from .tree import MOVING, STILL, insert, move, next_met, remove
 
 
 @kernel
 def box_of(pool: Pool, shape: Any, body: Any) -> tuple[float, float, float, float]:
-    """(low x, low y, high x, high y) of the shape where its body is, either side of a two-sided one."""
+    """(low x, low y, high x, high y) of the shape where its body is; of a segment without thickness, its line's."""
     head = pool.heads[shape.outline]
     x = body.ox + body.c * head.x - body.s * head.y
     y = body.oy + body.s * head.x + body.c * head.y
+    if shape.mirror >= 0:
+        p = pool.points[head.point]
+        q = pool.points[head.point + 1]
+        px = x + body.c * p[0] - body.s * p[1]
+        py = y + body.s * p[0] + body.c * p[1]
+        qx = x + body.c * q[0] - body.s * q[1]
+        qy = y + body.s * q[0] + body.c * q[1]
+        return min(px, qx), min(py, qy), max(px, qx), max(py, qy)
     c = abs(body.c)
     s = abs(body.s)
     half_x = c * shape.half_x + s * shape.half_y
     half_y = s * shape.half_x + c * shape.half_y
-    low_x, low_y, high_x, high_y = x - half_x, y - half_y, x + half_x, y + half_y
-    if shape.mirror >= 0:
-        other = pool.heads[shape.mirror]
-        x = body.ox + body.c * other.x - body.s * other.y
-        y = body.oy + body.s * other.x + body.c * other.y
-        low_x, low_y = min(low_x, x - half_x), min(low_y, y - half_y)
-        high_x, high_y = max(high_x, x + half_x), max(high_y, y + half_y)
-    return low_x, low_y, high_x, high_y
+    return x - half_x, y - half_y, x + half_x, y + half_y
 
 
 @kernel(forceinline=True)
@@ -63,138 +61,226 @@ def swing(shape: Any, body: Any) -> float:
     return float(abs(body.w) * (abs(x) + abs(y)))
 
 
+@kernel(forceinline=True)
+def ask_about(tables: Tables, i: int) -> None:
+    """Shape i is to be asked about: whom does its box meet."""
+    n = tables.counters[ASKED]
+    k = tables.shapes[i].asked
+    if k >= n or tables.asked[k] != i:  # not among them yet
+        tables.asked[n] = i
+        tables.shapes[i].asked = n
+        tables.counters[ASKED] = n + 1
+
+
+@entry
+def put_in_tree(tables: Tables, i: int, which: int) -> None:
+    """Shape i in its present box in that tree, and in no other."""
+    shape = tables.shapes[i]
+    if shape.leaf >= 0 and shape.tree == which:
+        move(
+            tables.nodes,
+            tables.roots,
+            which,
+            shape.leaf,
+            shape.low_x,
+            shape.low_y,
+            shape.high_x,
+            shape.high_y,
+        )
+        return
+    if shape.leaf >= 0:
+        remove(tables.nodes, tables.roots, shape.tree, shape.leaf)
+    shape.tree = which
+    shape.leaf = insert(
+        tables.nodes, tables.roots, which, i, shape.low_x, shape.low_y, shape.high_x, shape.high_y
+    )
+
+
 @kernel
-def somebody_left(pool: Pool, tables: Tables, frame: int, h: float) -> bool:
-    """Whether a shape that moves leaves its box, h before now or h after it. Renews the boxes of the turn's shapes."""
-    gone = False
+def _widen(shape: Any, body: Any, h: float, time: float) -> None:
+    """A new box for a shape: where it is, was h ago and will be within AHEAD times `time`, and some room.
+
+    And where it has been in this frame, if that is farther than it is seen.
+    """
+    room = MARGIN * shape.extent + time * swing(shape, body)
+    ahead = AHEAD * time
+    shape.low_x = shape.left - room + min(ahead * body.vx, -h * body.vx)
+    shape.low_y = shape.bottom - room + min(ahead * body.vy, -h * body.vy)
+    shape.high_x = shape.right + room + max(ahead * body.vx, -h * body.vx)
+    shape.high_y = shape.top + room + max(ahead * body.vy, -h * body.vy)
+    if body.kind == DRIFTS:
+        dx = body.x - body.old_x
+        dy = body.y - body.old_y
+        if abs(dx) + abs(dy) > LOOK * shape.extent:
+            shape.low_x -= max(0.0, dx)
+            shape.low_y -= max(0.0, dy)
+            shape.high_x -= min(0.0, dx)
+            shape.high_y -= min(0.0, dy)
+
+
+@kernel
+def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
+    """Give each shape of the turn that leaves its box within h another, for `time` of motion, and ask about it."""
     turn = tables.counters[TURN]
-    for i in range(tables.counters[SHAPES]):
+    for k in range(tables.counters[MOVERS]):
+        i = tables.movers[k]
         shape = tables.shapes[i]
-        if shape.outline < 0:
-            continue
         body = tables.bodies[shape.body]
-        if body.stamp != frame and shape.low_x <= shape.high_x:
-            continue
-        if turn != 0 and body.steps != turn and body.kind != FIXED:
+        if turn != 0 and body.steps != turn:
             continue
         low_x, low_y, high_x, high_y = box_of(pool, shape, body)
         shape.left = low_x
         shape.bottom = low_y
         shape.right = high_x
         shape.top = high_y
-        carried = swing(shape, body)
-        dx = h * (abs(body.vx) + carried)
-        dy = h * (abs(body.vy) + carried)
+        carried = h * swing(shape, body)
+        dx = h * body.vx
+        dy = h * body.vy
         if (
-            low_x - dx < shape.low_x
-            or low_y - dy < shape.low_y
-            or high_x + dx > shape.high_x
-            or high_y + dy > shape.high_y
+            low_x - carried + min(0.0, dx) < shape.low_x
+            or low_y - carried + min(0.0, dy) < shape.low_y
+            or high_x + carried + max(0.0, dx) > shape.high_x
+            or high_y + carried + max(0.0, dy) > shape.high_y
         ):
-            gone = True
-    return gone
+            _widen(shape, body, h, time)
+            put_in_tree(tables, i, MOVING)
+            ask_about(tables, i)
 
 
 @kernel
-def _widen(pool: Pool, tables: Tables, time: float) -> None:
-    """A new box for every shape: where it is, where it was and will be within `time`, and some room.
-
-    And where it has been in this frame, if that is farther than it is seen.
+def find_pairs(tables: Tables) -> bool:
+    """Enter the pairs of all that are asked about, behind tables.near[:counters[BOXED]]. False: no room, for MORE_PAIRS
+    of them at least; those that are left are still to be asked about.
     """
-    for i in range(tables.counters[SHAPES]):
-        shape = tables.shapes[i]
-        if shape.outline < 0:
-            continue
-        body = tables.bodies[shape.body]
-        shape.left, shape.bottom, shape.right, shape.top = box_of(pool, shape, body)
-        carried = swing(shape, body)
-        dx = time * (abs(body.vx) + carried) + MARGIN * shape.extent
-        dy = time * (abs(body.vy) + carried) + MARGIN * shape.extent
-        shape.low_x = shape.left - dx
-        shape.low_y = shape.bottom - dy
-        shape.high_x = shape.right + dx
-        shape.high_y = shape.top + dy
-        if body.kind == DRIFTS:
-            dx = body.x - body.old_x
-            dy = body.y - body.old_y
-            if abs(dx) + abs(dy) > LOOK * shape.extent:
-                shape.low_x -= max(0.0, dx)
-                shape.low_y -= max(0.0, dy)
-                shape.high_x -= min(0.0, dx)
-                shape.high_y -= min(0.0, dy)
-
-
-@kernel
-def search(pool: Pool, tables: Tables, time: float, frame: int) -> bool:
-    """Find all pairs whose boxes meet, the boxes made for `time` of motion. False: no room, for MORE_PAIRS of them.
-
-    tables.near has them then, in no order. Pairs that are near no more are forgotten, but for those of
-    which Chipmunk has told in this frame: a blow may have parted them, and its impulse is yet to be reported.
-    """
-    _widen(pool, tables, time)
     counters = tables.counters
-    shapes = tables.shapes
-    order = tables.sorted
-    n = counters[SHAPES]
-    for i in range(n):  # as far as the last search left it in order
-        me = order[i]
-        key = shapes[me].low_x
-        j = i
-        while j > 0 and shapes[order[j - 1]].low_x > key:
-            order[j] = order[j - 1]
-            j -= 1
-        order[j] = me
-    counters[SEARCH] += 1
-    counters[MORE_PAIRS] = 0
-    mark = counters[SEARCH]
-    for i in range(n):
-        one = shapes[order[i]]
-        if one.outline < 0:
-            continue
-        me = tables.bodies[one.body]
-        for j in range(i + 1, n):
-            other = shapes[order[j]]
-            if other.outline < 0:
-                continue
-            if other.low_x > one.high_x:
-                break
-            if other.low_y > one.high_y or other.high_y < one.low_y or one.body == other.body:
-                continue
-            it = tables.bodies[other.body]
-            if not (me.mobile or it.mobile) or (
-                me.joined and it.joined and kept_apart(tables, one.body, other.body)
-            ):
-                continue
-            if one.sensor or other.sensor or not passes(one, other):
-                continue
-            p = find_pair(tables, order[i], order[j])
-            if p < 0:
-                if counters[FREE_PAIRS] == 0:
-                    counters[MORE_PAIRS] += 1
-                    continue
-                p = new_pair(tables, order[i], order[j])
-            tables.pairs[p].near = mark
-    if counters[MORE_PAIRS] > 0:
-        return False
-    k = 0
-    ended = 0
-    left = pairs_in_use(tables)
-    for p in range(len(tables.pairs)):
-        if left == 0:
-            break
-        pair = tables.pairs[p]
-        if pair.a >= 0:
-            left -= 1
-            if pair.near == mark:
-                tables.near[k].pair = p
-                k += 1
-            elif pair.stamp != frame:
-                end_pair(tables, p)
-                ended += 1
-    if ended > 0:
-        rehash(tables)
-    counters[NEAR] = k
+    while counters[ASKED] > 0:
+        i = int(tables.asked[counters[ASKED] - 1])
+        shape = tables.shapes[i]
+        if shape.outline >= 0:
+            if not _pairs_of(tables, i, MOVING):
+                return False
+            if shape.tree == MOVING and not _pairs_of(tables, i, STILL):
+                return False
+        counters[ASKED] -= 1
+        counters[UNSORTED] = 1
     return True
+
+
+@kernel
+def _pairs_of(tables: Tables, i: int, which: int) -> bool:
+    """Enter the pairs of shape i with what its box meets in a tree."""
+    counters = tables.counters
+    shape = tables.shapes[i]
+    me = tables.bodies[shape.body]
+    at = -1
+    while True:
+        at = next_met(
+            tables.nodes, tables.roots[which], at, shape.low_x, shape.low_y, shape.high_x, shape.high_y
+        )
+        if at < 0:
+            return True
+        j = int(tables.nodes[at].owner)
+        other = tables.shapes[j]
+        it = tables.bodies[other.body]
+        if shape.body == other.body or not (me.awake or it.awake) or not (me.mobile or it.mobile):
+            continue
+        if me.awake and it.awake and (shape.sensor or other.sensor or not passes(shape, other)):
+            continue  # (what a shape that is not awake lets pass may have changed since it was last looked at)
+        p = find_pair(tables, i, j)
+        if p < 0:
+            if counters[FREE_PAIRS] == 0:
+                counters[MORE_PAIRS] = max(counters[MORE_PAIRS], counters[ASKED])
+                return False
+            p = new_pair(tables, i, j)
+        list_pair(tables, p)
+
+
+@kernel
+def list_pair(tables: Tables, p: int) -> None:
+    """Pair p is among those of tables.near."""
+    pair = tables.pairs[p]
+    if pair.near != tables.counters[SEARCH]:
+        pair.near = tables.counters[SEARCH]
+        tables.near[tables.counters[BOXED]].pair = p
+        tables.counters[BOXED] += 1
+        tables.counters[UNSORTED] = 1
+
+
+@kernel(forceinline=True)
+def _boxes_part(one: Any, other: Any) -> bool:
+    return bool(
+        one.low_x > other.high_x
+        or other.low_x > one.high_x
+        or one.low_y > other.high_y
+        or other.low_y > one.high_y
+    )
+
+
+@entry
+def drop_pairs(tables: Tables, frame: int) -> None:
+    """Forget the pairs whose boxes have parted, but for those of which Chipmunk has told in this frame: a blow may have
+    parted them, and its impulse is yet to be reported. Those of which nobody is awake are remembered, but near no more.
+    """
+    counters = tables.counters
+    k = 0
+    for n in range(counters[BOXED]):
+        p = tables.near[n].pair
+        pair = tables.pairs[p]
+        if pair.a < 0:
+            continue
+        one = tables.shapes[pair.a]
+        other = tables.shapes[pair.b]
+        if not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
+            pair.near = -1
+        elif _boxes_part(one, other) and pair.stamp != frame:
+            end_pair(tables, p)
+        else:
+            tables.near[k].pair = p
+            k += 1
+    counters[BOXED] = k
+
+
+@entry
+def end_pairs_of(tables: Tables, i: int) -> None:
+    """Shape i goes: its pairs end, and it is in no tree. `tables.near` is to be cleared of them by `drop_pairs`."""
+    shape = tables.shapes[i]
+    if shape.leaf < 0:
+        return
+    for which in (STILL, MOVING):
+        at = -1
+        while True:
+            at = next_met(
+                tables.nodes, tables.roots[which], at, shape.low_x, shape.low_y, shape.high_x, shape.high_y
+            )
+            if at < 0:
+                break
+            p = find_pair(tables, i, int(tables.nodes[at].owner))
+            if p >= 0:
+                end_pair(tables, p)
+    remove(tables.nodes, tables.roots, shape.tree, shape.leaf)
+    shape.leaf = -1
+
+
+@kernel
+def list_anew(tables: Tables) -> None:
+    """All pairs are to be found again, since the tables are not as the list was made of them."""
+    counters = tables.counters
+    counters[SEARCH] += 1
+    counters[BOXED] = 0
+    for k in range(counters[MOVERS]):
+        ask_about(tables, tables.movers[k])
+
+
+@kernel
+def end_unlisted(tables: Tables) -> None:
+    """After `list_anew` and `find_pairs`: pairs that have not been found again are none."""
+    for p in range(len(tables.pairs)):
+        pair = tables.pairs[p]
+        if pair.a >= 0 and pair.near != tables.counters[SEARCH]:
+            a = tables.bodies[tables.shapes[pair.a].body]
+            b = tables.bodies[tables.shapes[pair.b].body]
+            if a.awake or b.awake:
+                end_pair(tables, p)
 
 
 @kernel
@@ -216,20 +302,28 @@ def passes(one: Any, other: Any) -> bool:
     )
 
 
-@entry
-def extents(pool: Pool, tables: Tables) -> None:
-    """Every body's smallest extent and its reach, from its shapes'; how many of these are toothed, and not convex."""
-    tables.counters[TOOTHED] = 0
-    tables.counters[CONCAVE] = 0
-    for i in range(tables.counters[BODIES]):
-        tables.bodies[i].extent = 0.0
-        tables.bodies[i].reach = 0.0
-    for i in range(tables.counters[SHAPES]):
-        shape = tables.shapes[i]
-        if shape.outline >= 0 and not shape.sensor:
-            body = tables.bodies[shape.body]
-            body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)
-            head = pool.heads[shape.outline]
-            tables.counters[TOOTHED] += head.mouth < math.inf
-            tables.counters[CONCAVE] += not head.convex
-            body.reach = max(body.reach, abs(head.x) + abs(head.y) + shape.half_x + shape.half_y)
+@kernel
+def may_collide(tables: Tables, pair: Any) -> bool:
+    """Whether a pair's shapes are none of them sensors, and neither filters nor joints keep them apart."""
+    one = tables.shapes[pair.a]
+    other = tables.shapes[pair.b]
+    a = tables.bodies[one.body]
+    b = tables.bodies[other.body]
+    if one.sensor or other.sensor or not passes(one, other) or not (a.mobile or b.mobile):
+        return False
+    return not (a.joined and b.joined and kept_apart(tables, one.body, other.body))
+
+
+@kernel
+def measure(pool: Pool, shape: Any, body: Any) -> None:
+    """Take a shape into account in its body's smallest extent and reach."""
+    if not shape.sensor:
+        body.extent = shape.extent if body.extent == 0.0 else min(body.extent, shape.extent)
+        head = pool.heads[shape.outline]
+        body.reach = max(body.reach, abs(head.x) + abs(head.y) + shape.half_x + shape.half_y)
+
+
+@kernel(forceinline=True)
+def toothed(pool: Pool, shape: Any) -> bool:
+    """Whether a shape has teeth or slots."""
+    return bool(pool.heads[shape.outline].mouth < math.inf)

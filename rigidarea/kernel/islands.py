@@ -18,11 +18,11 @@ from .clearance import clearance
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .jit import kernel
 from .motion import earlier, pose_of
-from .order import arrange, bound, line_up, turn_of
+from .order import arrange, bound, enlist, turn_of
 from .place import seen_from
 from .pool import Pool
 from .sides import shown_sides
-from .tables import BODIES, FIRST, FIXED, LAST, LIVE, MET, NEAR, TOOTHED, TURN, TURNED, Law, Tables
+from .tables import AWAKE, FIRST, FIXED, LAST, LIVE, MET, NEAR, TOOTHED, TURN, TURNED, Law, Tables
 from .work import Work
 
 #: More substeps than any turn has.
@@ -82,16 +82,14 @@ def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, 
     """
     most = 1 if free else n
     slow = CALM * law.gravity * dt
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
         body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
             3.0 * slow if before else slow
         )
-        body.wants = 1 if free and before and body.calm else n
-        if body.kind != FIXED:
-            body.wants = max(body.wants, body.asked)
-            most = max(most, body.wants)
+        body.wants = max(1 if free and before and body.calm else n, body.asked)
+        most = max(most, body.wants)
     if not free or tables.counters[TOOTHED] == 0:
         return most
     for i in range(tables.counters[NEAR]):
@@ -110,14 +108,11 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
     """All bodies and pairs in one turn; (gx, gy) gravity, by which pairs are sorted."""
     counters = tables.counters
     counters[TURN] = 0
-    if counters[LIVE] != counters[BODIES]:
-        counters[LIVE] = counters[BODIES]
-        for i in range(counters[BODIES]):
-            tables.live[i] = i
-        line_up(tables, gx, gy)
     if counters[TURNED]:
         counters[TURNED] = 0
         arrange(tables, gx, gy)
+    else:
+        enlist(tables)
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
 
@@ -125,11 +120,10 @@ def everybody(tables: Tables, gx: float, gy: float) -> None:
 @kernel
 def company(tables: Tables, least: int) -> None:
     """Note in `steps` who is near somebody, and have everybody want so many substeps at least."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         body.steps = 0
-        if body.kind != FIXED:
-            body.wants = max(body.wants, least)
+        body.wants = max(body.wants, least)
     for k in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[k].pair]
         tables.bodies[tables.shapes[pair.a].body].steps = 1
@@ -169,8 +163,8 @@ def connect(tables: Tables, i: int, j: int) -> None:
 @kernel
 def part(tables: Tables) -> None:
     """Every body for itself, then what is near is one."""
-    for i in range(tables.counters[BODIES]):
-        tables.bodies[i].island = i
+    for k in range(tables.counters[AWAKE]):
+        tables.bodies[tables.awake[k]].island = tables.awake[k]
     for k in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[k].pair]
         connect(tables, tables.shapes[pair.a].body, tables.shapes[pair.b].body)
@@ -184,22 +178,22 @@ def number(tables: Tables, gx: float, gy: float) -> int:
     """
     counters = tables.counters
     bodies = tables.bodies
-    for i in range(counters[BODIES]):
-        bodies[i].steps = bodies[i].wants if bodies[i].kind != FIXED else 0
-    for i in range(counters[BODIES]):
-        if bodies[i].kind != FIXED:
-            root = _root(tables, i)
-            bodies[root].steps = max(bodies[root].steps, bodies[i].steps)
+    awake = tables.awake
+    for k in range(counters[AWAKE]):
+        bodies[awake[k]].steps = bodies[awake[k]].wants
+    for k in range(counters[AWAKE]):
+        root = _root(tables, awake[k])
+        bodies[root].steps = max(bodies[root].steps, bodies[awake[k]].steps)
     first = 0
     numbers = 0
-    for i in range(counters[BODIES]):
-        if bodies[i].kind != FIXED:
-            bodies[i].steps = bodies[_root(tables, i)].steps
-            if numbers == 0:
-                first = bodies[i].steps
-                numbers = 1
-            elif bodies[i].steps != first:
-                numbers = 2
+    for k in range(counters[AWAKE]):
+        body = bodies[awake[k]]
+        body.steps = bodies[_root(tables, awake[k])].steps
+        if numbers == 0:
+            first = body.steps
+            numbers = 1
+        elif body.steps != first:
+            numbers = 2
     moved = counters[TURNED] == 0
     for k in range(counters[NEAR]):
         pair = tables.pairs[tables.near[k].pair]
@@ -214,29 +208,19 @@ def number(tables: Tables, gx: float, gy: float) -> int:
 
 
 @kernel
-def next_turn(tables: Tables, last: int, gx: float, gy: float) -> int:
+def next_turn(tables: Tables, last: int) -> int:
     """The largest number of substeps below `last` that an island takes; 0: there is none.
 
     Its bodies and pairs are live then. What does not move belongs to every turn.
     """
     counters = tables.counters
     turn = 0
-    for i in range(counters[BODIES]):
-        steps = tables.bodies[i].steps
+    for k in range(counters[AWAKE]):
+        steps = tables.bodies[tables.awake[k]].steps
         if steps < last:
             turn = max(turn, steps)
     counters[TURN] = turn
-    n = 0
-    for i in range(counters[BODIES]):
-        n += tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn
-    if n < counters[BODIES] or counters[LIVE] < n:  # else everybody is, and lined up
-        n = 0
-        for i in range(counters[BODIES]):
-            if tables.bodies[i].kind == FIXED or tables.bodies[i].steps == turn:
-                tables.live[n] = i
-                n += 1
-        counters[LIVE] = n
-        line_up(tables, gx, gy)
+    enlist(tables)
     bound(tables)
     return turn
 

@@ -30,9 +30,9 @@ from .tables import (
     LIVE,
     MORE_PAIRS,
     MORE_REGIONS,
+    MOVERS,
     NEAR,
     ROWS,
-    SHAPES,
     STRUCK,
     SUBSTEP,
     Law,
@@ -41,7 +41,7 @@ from .tables import (
 from .verdict import allowed
 from .work import Work
 
-#: Rows to spare, of pairs and of regions, beside one of each a shape and a near pair; and regions a concave shape.
+#: Rows to spare, of pairs and of regions, beside one of each a shape that moves and a near pair; regions a concave one.
 SPARE = 24
 
 
@@ -196,7 +196,7 @@ def has_room(tables: Tables) -> bool:
     Asked before a frame changes anything: hardly ever does one have to be run again from further on.
     """
     counters = tables.counters
-    pairs = counters[SHAPES] + SPARE - counters[FREE_PAIRS]
+    pairs = counters[MOVERS] + SPARE - counters[FREE_PAIRS]
     regions = counters[NEAR] + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
     counters[MORE_PAIRS] = max(0, pairs)
     counters[MORE_REGIONS] = max(0, regions)

@@ -5,11 +5,15 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .broad import search, somebody_left
+from .broad import drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .jit import kernel
 from .pool import Pool
 from .tables import (
     ANEW,
+    ASKED,
+    AWAKE,
+    BOXED,
+    ENLISTED,
     FIRST,
     FIXED,
     JOINTS,
@@ -17,23 +21,32 @@ from .tables import (
     LIVE,
     MET,
     NEAR,
+    REJOINED,
     TURN,
     TURNED,
+    UNSORTED,
     Tables,
 )
 
 
 @kernel
-def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float, gx: float, gy: float) -> bool:
-    """Search pairs again if somebody has left the boxes of the last search. False: no room for them."""
-    left = somebody_left(pool, tables, frame, h)
-    if not (left or tables.counters[ANEW]):
-        return True
-    tables.counters[ANEW] = 1  # until it is done
-    if not search(pool, tables, max(time, 2.0 * h), frame):
+def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> bool:
+    """Bring the list of near pairs up to where bodies are, h before and after. False: no room for them.
+
+    To be sorted (`arrange`) where counters[UNSORTED] says so.
+    """
+    counters = tables.counters
+    if counters[ANEW] == 1:
+        list_anew(tables)
+        counters[ANEW] = 2
+    renew_boxes(pool, tables, h, max(time, 2.0 * h))
+    if counters[ASKED] > 0 and not find_pairs(tables):
         return False
-    tables.counters[ANEW] = 0
-    arrange(tables, gx, gy)
+    if counters[ANEW]:
+        end_unlisted(tables)
+        counters[ANEW] = 0
+    if counters[UNSORTED]:
+        drop_pairs(tables, frame)
     return True
 
 
@@ -46,13 +59,19 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 @kernel
 def arrange(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the near pairs from the bottom to the top: by places alone, so that nothing depends on who came first.
-
-    Where a frame is made of turns (`islands`), turn by turn.
+    """Sort the near pairs that may collide from the bottom to the top, before all others: by places alone, so that
+    nothing depends on who came first. Where a frame is made of turns (`islands`), turn by turn.
     """
     ux, uy = up(gx, gy)
     near = tables.near
-    n = tables.counters[NEAR]
+    last = len(near) - 1  # room for one
+    n = 0
+    for i in range(tables.counters[BOXED]):
+        if may_collide(tables, tables.pairs[near[i].pair]):
+            near[i].pair, near[n].pair = near[n].pair, near[i].pair
+            n += 1
+    tables.counters[NEAR] = n
+    sorted_already = True
     for i in range(n):
         one = near[i]
         pair = tables.pairs[one.pair]
@@ -68,43 +87,50 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
             y += b.y
         share = 0.5 if a.mobile and b.mobile else 1.0
         one.order = share * (ux * x + uy * y)
-        one.beside = share * abs(ux * y - uy * x)
+        one.beside = share * (ux * y - uy * x)
         one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
         if one.turn < 0:
             tables.counters[MET] = 1
+        sorted_already = sorted_already and (i == 0 or not _after(tables, near[i - 1], one))
     gap = 1
-    while gap < n:
+    while gap < n and not sorted_already:
         gap = 3 * gap + 1
-    while gap > 0:  # Shell's sort, in place
+    while gap > 0 and not sorted_already:  # Shell's sort, in place
         for i in range(gap, n):
-            _set(near[n], near[i])
+            _set(near[last], near[i])
             j = i
-            while j >= gap and _after(near[j - gap], near[n]):
+            while j >= gap and _after(tables, near[j - gap], near[last]):
                 _set(near[j], near[j - gap])
                 j -= gap
-            _set(near[j], near[n])
+            _set(near[j], near[last])
         gap //= 3
+    tables.counters[UNSORTED] = 0
     line_up(tables, gx, gy)
+    enlist(tables)
     bound(tables)
 
 
 @kernel
 def line_up(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the live bodies in the same way: sums over them then do not depend on who came first either."""
+    """Sort the bodies that are awake in the same way: sums over them then do not depend on who came first either."""
     ux, uy = up(gx, gy)
-    live = tables.live
-    n = tables.counters[LIVE]
+    awake = tables.awake
+    n = tables.counters[AWAKE]
     gap = 1
-    while gap < n:
-        gap = 3 * gap + 1
+    for i in range(1, n):
+        if _above(tables.bodies[awake[i - 1]], tables.bodies[awake[i]], ux, uy):
+            while gap < n:
+                gap = 3 * gap + 1
+            break
+    gap //= 3
     while gap > 0:
         for i in range(gap, n):
-            k = live[i]
+            k = awake[i]
             j = i
-            while j >= gap and _above(tables.bodies[live[j - gap]], tables.bodies[k], ux, uy):
-                live[j] = live[j - gap]
+            while j >= gap and _above(tables.bodies[awake[j - gap]], tables.bodies[k], ux, uy):
+                awake[j] = awake[j - gap]
                 j -= gap
-            live[j] = k
+            awake[j] = k
         gap //= 3
 
 
@@ -130,6 +156,7 @@ def order_joints(tables: Tables) -> None:
             if i >= 0:
                 bodies[i].joints += 1
                 bodies[i].sum_of_joints += k
+    tables.counters[REJOINED] = 0
     done = 0
     seed = 0
     while done < n:
@@ -162,20 +189,58 @@ def _ends_at(tables: Tables, i: int) -> bool:
 
 
 @kernel(forceinline=True)
+def _enlist_fixed(tables: Tables, i: int, n: int) -> int:
+    """List a body that does not move, unless it is listed; how many are."""
+    body = tables.bodies[i]
+    if body.kind == FIXED and body.listed != tables.counters[ENLISTED]:
+        body.listed = tables.counters[ENLISTED]
+        tables.live[n] = i
+        n += 1
+    return n
+
+
+@kernel
+def enlist(tables: Tables) -> None:
+    """List the bodies that are live: those of the turn, then what does not move and is near or jointed to one."""
+    counters = tables.counters
+    turn = counters[TURN]
+    n = 0
+    for k in range(counters[AWAKE]):
+        i = tables.awake[k]
+        if turn == 0 or tables.bodies[i].steps == turn:
+            tables.live[n] = i
+            n += 1
+    counters[ENLISTED] += 1
+    for k in range(counters[NEAR]):
+        pair = tables.pairs[tables.near[k].pair]
+        n = _enlist_fixed(tables, tables.shapes[pair.a].body, n)
+        n = _enlist_fixed(tables, tables.shapes[pair.b].body, n)
+    for k in range(counters[JOINTS]):
+        for i in (tables.joints[k].a, tables.joints[k].b):
+            if i >= 0:
+                n = _enlist_fixed(tables, i, n)
+    counters[LIVE] = n
+
+
+@kernel(forceinline=True)
 def _above(one: Any, other: Any, ux: float, uy: float) -> bool:
     here = ux * one.x + uy * one.y
     there = ux * other.x + uy * other.y
     if here != there:
         return bool(here > there)
-    return bool(abs(ux * one.y - uy * one.x) > abs(ux * other.y - uy * other.x))
+    one_beside = ux * one.y - uy * one.x
+    other_beside = ux * other.y - uy * other.x
+    if abs(one_beside) != abs(other_beside):
+        return bool(abs(one_beside) > abs(other_beside))
+    return bool(one_beside > other_beside)
 
 
 @kernel
 def turn_of(a: Any, b: Any) -> int:
     """The turn to which a pair of bodies belongs; -1: to two."""
-    if a.kind == FIXED or b.kind == FIXED or a.steps == b.steps:
-        return int(max(a.steps, b.steps))
-    return -1
+    if a.kind == FIXED:
+        return int(b.steps)
+    return int(a.steps) if b.kind == FIXED or a.steps == b.steps else -1
 
 
 @kernel
@@ -202,9 +267,28 @@ def _set(one: Any, other: Any) -> None:
 
 
 @kernel(forceinline=True)
-def _after(one: Any, other: Any) -> bool:
+def _after(tables: Tables, one: Any, other: Any) -> bool:
     if one.turn != other.turn:
         return bool(one.turn > other.turn)
     if one.order != other.order:
         return bool(one.order > other.order)
-    return bool(one.beside > other.beside)
+    if abs(one.beside) != abs(other.beside):
+        return bool(abs(one.beside) > abs(other.beside))
+    if one.beside != other.beside:
+        return bool(one.beside > other.beside)
+    return _lies_beyond(tables, tables.pairs[one.pair], tables.pairs[other.pair])
+
+
+@kernel
+def _lies_beyond(tables: Tables, one: Any, other: Any) -> bool:
+    """Of two pairs in one place (of a box on two tiles): which has its shapes further to the right, and higher."""
+    for side in range(2):
+        s = tables.shapes[one.b if side else one.a]
+        t = tables.shapes[other.b if side else other.a]
+        if s.left != t.left:
+            return bool(s.left > t.left)
+        if s.bottom != t.bottom:
+            return bool(s.bottom > t.bottom)
+        if s.ident != t.ident:
+            return bool(s.ident > t.ident)
+    return False

@@ -22,7 +22,7 @@ from .motion import pose_of, seen_whole
 from .place import Pose, place
 from .pool import LEAF, Pool
 from .sides import over
-from .tables import DRIFTS, FIXED, NEAR, SHAPES, Tables, free_regions
+from .tables import DRIFTS, FIXED, MOVERS, NEAR, Tables, free_regions
 from .verdict import refused
 
 
@@ -241,35 +241,38 @@ def _line(
 
 
 @kernel
-def went_far(tables: Tables, frame: int) -> tuple[bool, bool]:
-    """Whether two may have gone farther in the frame than is seen (not `seen_whole`), and whether there are segments
-    without thickness, whose side is kept.
+def went_far(tables: Tables) -> tuple[bool, bool]:
+    """Whether two may have gone farther in the frame than is seen (not `seen_whole`), and whether somebody is near a
+    segment without thickness, whose side is kept.
     """
     most = 0.0
     least = np.inf
     lines = False
-    for i in range(tables.counters[SHAPES]):
-        shape = tables.shapes[i]
-        if shape.outline < 0 or shape.sensor:
+    for k in range(tables.counters[MOVERS]):
+        shape = tables.shapes[tables.movers[k]]
+        if shape.sensor:
             continue
-        lines |= shape.mirror >= 0
         least = min(least, shape.extent)
         body = tables.bodies[shape.body]
-        if body.stamp == frame and body.kind == DRIFTS:
+        if body.kind == DRIFTS:
             way = abs(body.x - body.old_x) + abs(body.y - body.old_y)
             most = max(most, way + abs(body.angle - body.old_a) * (shape.half_x + shape.half_y))
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i].pair]
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        lines |= sa.mirror >= 0 or sb.mirror >= 0
+        least = min(least, sa.extent, sb.extent)
     return 2.0 * most > LOOK * least, lines
 
 
 @kernel
-def somebody_flew_off(pool: Pool, tables: Tables, frame: int) -> bool:
+def somebody_flew_off(pool: Pool, tables: Tables) -> bool:
     """Whether a blow has sent a shape out of its box, farther than it is seen: there it may have passed anybody."""
-    for i in range(tables.counters[SHAPES]):
-        shape = tables.shapes[i]
-        if shape.outline < 0:
-            continue
+    for k in range(tables.counters[MOVERS]):
+        shape = tables.shapes[tables.movers[k]]
         body = tables.bodies[shape.body]
-        if body.stamp != frame or body.kind != DRIFTS:
+        if body.kind != DRIFTS:
             continue
         if abs(body.x - body.old_x) + abs(body.y - body.old_y) <= LOOK * shape.extent:
             continue

@@ -15,7 +15,7 @@ from .jit import kernel
 from .joint import settle_joint
 from .place import place, shift
 from .row import push, settle, visit
-from .tables import BODIES, BORNE, BOUNCED, DRIFTS, LIVE, ROWS, STRUCK, Law, Tables
+from .tables import AWAKE, BORNE, BOUNCED, DRIFTS, LIVE, ROWS, STRUCK, Law, Tables
 
 
 @kernel
@@ -203,12 +203,10 @@ def respond_explicitly(tables: Tables) -> None:
 
 
 @kernel
-def finite(tables: Tables, frame: int) -> int:
+def finite(tables: Tables) -> int:
     """The first body whose state is not finite; -1: all are."""
-    for i in range(tables.counters[BODIES]):
-        body = tables.bodies[i]
-        if body.stamp == frame:
-            total = body.x + body.y + body.angle + body.vx + body.vy + body.w
-            if not math.isfinite(total):
-                return i
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
+            return int(tables.awake[k])
     return -1

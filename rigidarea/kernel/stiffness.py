@@ -7,7 +7,7 @@ from typing import Any
 
 from .constants import LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
 from .jit import kernel
-from .tables import BODIES, LAW_AREA, LED, LIVE, NEAR, Law, Tables
+from .tables import AWAKE, LAW_AREA, LED, NEAR, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -116,18 +116,17 @@ def carry(pair: Any, load: float, dt: float, most: float) -> None:
 
 
 @kernel
-def adapt_stiffness(tables: Tables, law: Law, frame: int, dt: float) -> None:
+def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
     """Once a frame, where the user gave none: each pair's stiffness follows the load that its bodies carry.
 
     Nobody carries more than what pushes everybody, together, but for who hangs in a joint or lies on a kinematic body:
     those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
     """
     most = 0.0
-    lined_up = tables.counters[LIVE] == tables.counters[BODIES]
-    for k in range(tables.counters[BODIES]):
-        body = tables.bodies[tables.live[k] if lined_up else k]
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
         body.load = 0.0 if body.inverse_mass > 0.0 else math.inf
-        if body.stamp == frame and body.inverse_mass > 0.0:
+        if body.inverse_mass > 0.0:
             most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]

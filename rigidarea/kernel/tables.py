@@ -66,6 +66,7 @@ BODY = record(
         ("old_vx", "f8"),
         ("old_vy", "f8"),
         ("old_w", "f8"),
+        ("old_since", "f8"),
         ("old_fx", "f8"),  # force and torque that the user has given it
         ("old_fy", "f8"),
         ("old_torque", "f8"),
@@ -83,6 +84,12 @@ BODY = record(
         ("steps", "i4"),  # that its island takes; 0: it does not move
         ("taken", "i4"),  # that it took in the last frame; 0: it was not there
         ("island", "i4"),  # row of a body of the same island (`islands`)
+        ("awake", "i4"),  # 1: it is in `Tables.awake`
+        ("changed", "i4"),  # 1: in this frame it has come to be awake, or mobile
+        ("held", "i4"),  # for how many of its shapes, and for the space itself, it has its row
+        ("entered", "i4"),  # 1: it is in the space
+        ("unmeasured", "i4"),  # 1: its shapes have changed since `extent` and `reach` were found
+        ("listed", "i8"),  # which list of those that are live has it, of what does not move
     ]
 )
 
@@ -114,7 +121,12 @@ SHAPE = record(
         ("group", "u8"),  # its filter
         ("categories", "u4"),
         ("mask", "u4"),
-        ("low_x", "f8"),  # box within which it stays until pairs are searched again (length)
+        ("epoch", "i4"),  # of the user's callbacks, when `heard` was made
+        ("asked", "i4"),  # where it is in `Tables.asked`, if it is
+        ("leaf", "i4"),  # its node; -1: it is in no tree
+        ("tree", "i4"),  # which tree that is
+        ("seen", "i8"),  # frame in which what the user sets of it was last read
+        ("low_x", "f8"),  # box within which it stays until it is asked about again (length)
         ("low_y", "f8"),
         ("high_x", "f8"),
         ("high_y", "f8"),
@@ -140,7 +152,7 @@ PAIR = record(
         ("now_a", "i4"),  # the same of this frame
         ("now_b", "i4"),
         ("side_b", "i4"),
-        ("near", "i8"),  # search that last found it near
+        ("near", "i8"),  # counters[SEARCH]: it is in `Tables.near`
         (
             "waiting",
             "i8",
@@ -181,7 +193,7 @@ NEIGHBOURS = record(
             "order",
             "f8",
         ),  # where it comes in a sweep: its height at the last search, then how far off the middle
-        ("beside", "f8"),
+        ("beside", "f8"),  # against gravity's left
         ("a", "u4"),  # rows of the two bodies
         ("b", "u4"),
         (
@@ -260,17 +272,22 @@ REGION = record(
 )
 
 #: Counters: free regions' list head, how many are free, free pairs' list head, how many; shapes and bodies in use;
-#: searches and substeps so far; pairs that are near; rows of this substep; body pairs kept apart by joints; the first
-#: substep of this frame; 1: search anew. Of turns (`islands`): bodies that are live; where the live pairs begin in
-#: `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by turns; 1: two turns have met.
-#: Shapes with teeth or slots; rows of this substep that bounce; shapes that are not convex; joints. How many pairs,
-#: regions and joints more than there is room for a frame wants at least, and 1 where the scratch is too small.
+#: which list `near` is, and substeps so far; pairs that are near and may collide; rows of this substep; body pairs kept
+#: apart by joints; the first substep of this frame; 1: list all pairs anew. Of turns (`islands`): bodies that are live;
+#: where the live pairs begin in `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by
+#: turns; 1: two turns have met. Shapes with teeth or slots; rows of this substep that bounce. Pairs in `near`, those
+#: behind counters[NEAR] such as may not collide; 1: to be sorted anew; shapes in `asked`, in `movers`, bodies in
+#: `awake`, pairs in `told`; which list `live` is;
+#: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
+#: other ones than in the last frame. How many pairs, regions and joints more than there is room for a frame wants at
+#: least, and 1 where the scratch is too small.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
-LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES, CONCAVE = range(12, 21)
-JOINTS = 21
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK = range(22, 26)
-COUNTERS = 26
+LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
+BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
+JOINTS, REJOINED = range(30, 32)
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK = range(32, 36)
+COUNTERS = 36
 
 
 class Law(NamedTuple):
@@ -297,12 +314,19 @@ class Tables(NamedTuple):
     rows: np.ndarray  # (n,) ROW
     factors: np.ndarray  # (n,) FACTOR, of the rows
     mobility: np.ndarray  # (n,) MOBILITY, of the bodies
-    live: np.ndarray  # (n,) int32: bodies that go through the substeps now
+    live: (
+        np.ndarray
+    )  # (n,) int32: bodies that go through the substeps now, and what does not move and they are near
+    awake: np.ndarray  # (n,) int32: bodies that are awake, in the order of sums over them
+    movers: np.ndarray  # (m,) int32: their shapes
+    asked: np.ndarray  # (m,) int32: shapes whose box is to be asked whom it meets
+    told: np.ndarray  # (k,) int32: pairs of which Chipmunk has told in this frame
+    nodes: np.ndarray  # (2 m,) NODE: of the two trees of boxes
+    roots: np.ndarray  # (3,) int32, see `tree`
     near: (
         np.ndarray
-    )  # (n,) NEIGHBOURS: pairs that may touch, in the order of the sweeps; room for all, and one
+    )  # (k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; the last for sorting
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
-    sorted: np.ndarray  # (n,) int32: shapes in the order of their boxes' low_x
     joints: np.ndarray  # (n,) JOINT
     keys: np.ndarray  # (m,) int64: hash table of pairs, a << 32 | b, a < b; -1: empty
     values: np.ndarray  # (m,) int32
@@ -315,12 +339,17 @@ def pairs_in_use(tables: Tables) -> int:
     return len(tables.pairs) - int(tables.counters[FREE_PAIRS])
 
 
+@kernel(forceinline=True)
+def _home(key: int, mask: int) -> int:
+    return int(((key >> 32) * 73856093 ^ (key & 0xFFFFFFFF) * 19349663) & mask)
+
+
 @kernel
 def find_pair(tables: Tables, a: int, b: int) -> int:
     """The pair of shape rows a and b; -1: there is none."""
     key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
     mask = len(tables.keys) - 1
-    i = int((np.int64(min(a, b)) * 73856093 ^ np.int64(max(a, b)) * 19349663) & mask)
+    i = _home(key, mask)
     while tables.keys[i] != -1:
         if tables.keys[i] == key:
             return int(tables.values[i])
@@ -332,16 +361,37 @@ def find_pair(tables: Tables, a: int, b: int) -> int:
 def _enter(tables: Tables, a: int, b: int, p: int) -> None:
     key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
     mask = len(tables.keys) - 1
-    i = int((np.int64(min(a, b)) * 73856093 ^ np.int64(max(a, b)) * 19349663) & mask)
+    i = _home(key, mask)
     while tables.keys[i] != -1:
         i = (i + 1) & mask
     tables.keys[i] = key
     tables.values[i] = p
 
 
+@kernel
+def _leave(tables: Tables, a: int, b: int) -> None:
+    """Take a pair's key out: those that would be found by it move up (Knuth, vol. 3, 6.4, algorithm R)."""
+    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
+    mask = len(tables.keys) - 1
+    i = _home(key, mask)
+    while tables.keys[i] != key:
+        if tables.keys[i] == -1:
+            return
+        i = (i + 1) & mask
+    k = (i + 1) & mask
+    while tables.keys[k] != -1:
+        home = _home(tables.keys[k], mask)
+        if ((k - home) & mask) >= ((k - i) & mask):
+            tables.keys[i] = tables.keys[k]
+            tables.values[i] = tables.values[k]
+            i = k
+        k = (k + 1) & mask
+    tables.keys[i] = -1
+
+
 @entry
 def rehash(tables: Tables) -> None:
-    """Make the hash table anew from the pairs in use: nothing is ever taken out of it singly."""
+    """Make the hash table anew from the pairs in use."""
     tables.keys[:] = -1
     left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
@@ -446,8 +496,9 @@ def forget_contacts(tables: Tables) -> None:
 
 @entry
 def end_pair(tables: Tables, p: int) -> None:
-    """Forget the pair and its regions. The hash table keeps its key until `rehash`."""
+    """Forget the pair and its regions."""
     pair = tables.pairs[p]
+    _leave(tables, pair.a, pair.b)
     free_regions(tables.regions, tables.counters, pair.head)
     pair.head = -1
     pair.a = -1
