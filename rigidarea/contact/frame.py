@@ -413,7 +413,6 @@ def solve(constraint: int, coefficient: float) -> None:
     s = state_of(space)
     iterations = array_at(space, (1,), np.int32)
     s.sweeps = iterations[0]
-    s.before = time_step(space) / coefficient if coefficient > 0.0 else 0.0
     if s.frame == np.int64(timestamp(space)):
         _whole_frame(s, space)
     if s.explicit == 0:  # the sweeps are ours; of an explicit step, the joints' are Chipmunk's
@@ -433,6 +432,7 @@ def report(constraint: int, space: int) -> None:
     start(s)
     for joint in joints_of(s):
         give_back(s, joint)
+    s.before = time_step(space)
     s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
     tables = load_tables(s)
     for k in range(tables.counters[TOLD]):

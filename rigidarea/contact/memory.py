@@ -48,6 +48,8 @@ class Memory(NamedTuple):
     counters: np.ndarray
     joints: list[np.ndarray]
     """Impulses."""
+    before: float
+    """In which time they did them."""
     bodies: np.ndarray
     """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
     calm, and for how long it has moved by itself."""
@@ -80,6 +82,7 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.shapes.copy(),
         tables.counters.copy(),
         [np.array(joint_impulse(joint)) for joint in space.constraints],
+        float(store.state["before"][0]),
         np.array(
             [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
@@ -146,6 +149,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         row = tables.bodies[store.row_of(address_of(body._body))]
         for name, value in zip(_BODY, values):
             row[name] = value
+    store.state["before"] = memory.before
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)

@@ -68,6 +68,9 @@ TOO_STIFF = 10.0
 STRAIGHT_WAY = 0.1
 #: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
 SPREAD = 1.0
+#: A joint gives way by this part of its effective mass: of joints that contradict each other, each is held as far as it
+#: can. What hangs in one sinks by this part of the way that it falls in a substep, over the part of an error that goes.
+JOINT_GIVE = 1e-4
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
 #: Most steps of a search: it ends sooner where it has converged, or an end lets go.

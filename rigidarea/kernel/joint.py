@@ -13,7 +13,8 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 | rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
 
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
-max_bias. A limit that is not reached yet is a speculative row: it may close by what is left of it, over h. A
+max_bias. Joints that cannot all be held share what is asked of them (`JOINT_GIVE`). A limit that is not reached yet is a
+speculative row: it may close by what is left of it, over h. A
 spring's damping is exact for the pair alone, exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the
 step's end where the step is too long to follow it, as a contact's (`row`).
 """
@@ -23,6 +24,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .constants import JOINT_GIVE
 from .jit import kernel
 from .memory import record
 from .tables import JOINTS, LIVE, Tables
@@ -248,15 +250,18 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     row.f1 = 0.0
     row.f2 = 0.0
     row.ft = 0.0
-    row.alpha = 0.0
-    row.gamma_a = 1.0 / row.m11
+    row.alpha = JOINT_GIVE / (1.0 + JOINT_GIVE)
+    row.gamma_a = row.alpha / (JOINT_GIVE * row.m11)
     row.gamma_b = 0.0
     row.alpha_t = 0.0
     row.gamma_t = 1.0
-    give = row.m11 * row.m22 - row.m12 * row.m12
-    row.grips = row.low_t < row.high_t and give > 1e-12 * row.m11 * row.m22
+    row.grips = row.low_t < row.high_t and row.m22 > 0.0
     if row.grips:
-        row.det = 1.0 / give
+        row.alpha_t = row.alpha
+        row.gamma_t = row.alpha / (JOINT_GIVE * row.m22)
+        row.m11 *= 1.0 + JOINT_GIVE
+        row.m22 *= 1.0 + JOINT_GIVE
+        row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m12)
     if kind == SPRING or kind == ROTARY_SPRING:
         _load_spring(row, joint, a, b, h, followed)
     elif joint.step > 0.0:
@@ -343,8 +348,8 @@ def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
     if not row.grips:  # alpha + gamma W = 1
         l1, _ = clamp_joint(row, row.l1 + r1, 0.0)
         return l1 - row.l1, 0.0
-    r1 = v - row.t1
-    rt = slip - row.tt
+    r1 = v - row.t1 - row.alpha / row.gamma_a * row.l1
+    rt = slip - row.tt - row.alpha_t / row.gamma_t * row.lt
     lt = row.lt + (row.m11 * rt - row.m12 * r1) * row.det
     within = min(row.high_t, max(row.low_t, lt))
     l1 = row.l1 + (row.m22 * r1 - row.m12 * rt) * row.det
