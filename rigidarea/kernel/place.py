@@ -80,6 +80,19 @@ def _without_thin(work: Work, n: int, width: float) -> int:
 
 
 @kernel
+def _common_way(a: Any, b: Any, rel: Relative) -> float:
+    """A direction in A's frame (radians) that, asked for (B, A), is the same one in the world, and turned round: B
+    shifted by it is A shifted by that."""
+    half = 0.5 * math.atan2(rel.s, rel.c)
+    along = math.cos(half) * rel.tx + math.sin(half) * rel.ty
+    if a.radius != b.radius:
+        along = a.radius - b.radius
+    elif a.area != b.area:
+        along = a.area - b.area
+    return half if along >= 0.0 else half + math.pi
+
+
+@kernel
 def _shifted(pool: Pool, ia: int, ib: int, rel: Relative, work: Work) -> int:
     """`overlap_kernel` with B a little beside `rel`: the least of a series of shifts where nothing is in doubt.
 
@@ -90,7 +103,7 @@ def _shifted(pool: Pool, ia: int, ib: int, rel: Relative, work: Work) -> int:
     """
     width = noise_of(pool.heads[ia].radius, pool.heads[ib].radius, rel)
     step = SHIFT * width
-    way = FIRST_WAY
+    way = FIRST_WAY + _common_way(pool.heads[ia], pool.heads[ib], rel)
     for _ in range(SHIFTS):
         beside = Relative(rel.c, rel.s, rel.tx + step * math.cos(way), rel.ty + step * math.sin(way))
         n = overlap_kernel(pool, ia, pool, ib, beside, work)
