@@ -14,9 +14,8 @@ a nearer one is UNSURE, and the query is asked again with B shifted (`place.over
 answer rests on are all those of the same two boundaries: of closed curves through the very ends that the doubles say,
 on arcs that lie within rounding of the stored circles. Hence
 
-- *tangency*: ends alike, and whether "twice" or "not at all" only rounding knows. Either is true of arcs that differ by
-  no more than rounding, wherever the two could touch is no end (it would be UNSURE), and the decision is made once a
-  pair for both boundaries. What it adds or takes is a sliver of rounding's depth.
+- *tangency*: where ends are alike and the two come nearest, they cross twice or not at all by more than rounding, or
+  the pair is UNSURE. After the shift they are apart, or cross well.
 - *an end on a tangent, on an arc, on another end* is UNSURE, and after the shift it is beside it.
 - *arcs of one radius and centre*: wherever they lie on each other one of them ends, so that is UNSURE too. Circles are
   of two halves, so they have ends.
@@ -171,10 +170,9 @@ def line_arc(
     length2 = ux * ux + uy * uy
     turn = ux * wy - uy * wx
     room = noise + ROUND * abs(r)
-    far = abs(r) + 2.0 * room
+    far = abs(r) + room
     if turn * turn > far * far * length2:  # beyond all rounding: neither the arc nor an end of it is there
         return 0, 0.0, 0.0, 0.0, 0.0
-    missed = turn * turn >= r * r * length2
     p_side = side(ax, ay, bx, by, px, py, arc_of_b)
     q_side = side(ax, ay, bx, by, qx, qy, arc_of_b)
     a_deep = inside(ax, ay, cx, cy, r)
@@ -192,8 +190,16 @@ def line_arc(
     q_left = q_side > 0.0
     a_in = a_deep > 0.0
     b_in = b_deep > 0.0
-    if (missed and p_left == q_left and a_in == b_in) or (a_in and b_in):
+    if a_in and b_in:
         return 0, 0.0, 0.0, 0.0, 0.0
+    if p_left == q_left and a_in == b_in:
+        least = max(0.0, abs(r) - room)
+        if turn * turn >= least * least * length2:  # a tangent, or passing by
+            tangent = turn * turn <= (abs(r) + room) ** 2 * length2 and 0.0 < ux * wx + uy * wy < length2
+            foot = turn / length2
+            if tangent and on_arc(px, py, qx, qy, r, cx + foot * uy, cy - foot * ux):
+                return UNSURE, 0.0, 0.0, 0.0, 0.0
+            return 0, 0.0, 0.0, 0.0, 0.0
     length = math.sqrt(length2)
     ex = ux / length
     ey = uy / length
@@ -261,10 +267,9 @@ def arc_arc(
     dy = gy - cy
     d2 = dx * dx + dy * dy
     room = noise + ROUND * (a + b)
-    far = a + b + 2.0 * room
+    far = a + b + room
     if d2 > far * far:  # beyond all rounding
         return 0, 0.0, 0.0, 0.0, 0.0
-    apart = d2 >= (a + b) * (a + b) or d2 <= (a - b) * (a - b)
     p_deep = inside(px, py, gx, gy, b)
     q_deep = inside(qx, qy, gx, gy, b)
     s_deep = inside(sx, sy, cx, cy, a)
@@ -282,8 +287,20 @@ def arc_arc(
     q_in = q_deep > 0.0
     s_in = s_deep > 0.0
     t_in = t_deep > 0.0
-    if apart and p_in == q_in and s_in == t_in:
-        return 0, 0.0, 0.0, 0.0, 0.0
+    if p_in == q_in and s_in == t_in:
+        most = max(0.0, a + b - room)
+        least = abs(a - b) + room
+        if d2 >= most * most or d2 <= least * least:  # they touch, or do not meet
+            least = max(0.0, abs(a - b) - room)
+            if least * least <= d2 and d2 > 0.0:
+                d = math.sqrt(d2)
+                near_a = a / d if d2 >= most * most or a > b else -a / d
+                near_b = -b / d if d2 >= most * most or a < b else b / d
+                if on_arc(px, py, qx, qy, r, cx + near_a * dx, cy + near_a * dy) and on_arc(
+                    sx, sy, tx, ty, u, gx + near_b * dx, gy + near_b * dy
+                ):
+                    return UNSURE, 0.0, 0.0, 0.0, 0.0
+            return 0, 0.0, 0.0, 0.0, 0.0
     dx, dy, x1, y1, x2, y2 = circle_circle(cx, cy, a, gx, gy, b)
     if p_in != q_in:
         bits = SECOND if p_in == (r > 0.0) else FIRST

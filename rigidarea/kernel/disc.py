@@ -192,19 +192,21 @@ def _close_between(
 @kernel
 def _cut_by_arc(
     px: float, py: float, qx: float, qy: float, ax: float, ay: float, a: float, p_in: bool, q_in: bool,
-    cx: float, cy: float, r: float,
-) -> tuple[bool, bool, float, float, float, float]:  # fmt: skip
-    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit). The two
-    circles cross."""
+    cx: float, cy: float, r: float, room: float,
+) -> tuple[bool, bool, bool, float, float, float, float]:  # fmt: skip
+    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether it touches it within `room`,
+    whether it enters, whether it leaves, entry, exit)."""
     if p_in == q_in:
-        d2 = (cx - ax) ** 2 + (cy - ay) ** 2
-        reach = (-a if p_in else a) / math.sqrt(d2)
+        d = math.sqrt((cx - ax) ** 2 + (cy - ay) ** 2)
+        reach = (-a if p_in else a) / d if d > 0.0 else 0.0
         if not on_arc(px, py, qx, qy, a, ax + reach * (cx - ax), ay + reach * (cy - ay)):
-            return False, False, 0.0, 0.0, 0.0, 0.0
+            return False, False, False, 0.0, 0.0, 0.0, 0.0
+        if d >= a + r - room or d <= abs(a - r) + room:
+            return d <= a + r + room and d >= abs(a - r) - room, False, False, 0.0, 0.0, 0.0, 0.0
     _, _, x1, y1, x2, y2 = circle_circle(ax, ay, a, cx, cy, r)
     if p_in == q_in:
-        return True, True, x1, y1, x2, y2
-    return q_in, p_in, x1, y1, x2, y2
+        return False, True, True, x1, y1, x2, y2
+    return False, q_in, p_in, x1, y1, x2, y2
 
 
 @kernel
@@ -309,10 +311,15 @@ def disc_convex(
                     wy = ky - py
                     turn = ux * wy - uy * wx
                     length2 = ux * ux + uy * uy
-                    hit = turn * turn < r * r * length2
-                    if not hit and turn < 0.0:
-                        return 0  # the whole disc lies beyond this edge
-                    if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
+                    deep = r * r * length2 - turn * turn
+                    if turn < 0.0 and deep <= near * length2 and not (p_in or q_in):
+                        return 0  # the whole disc lies beyond this edge, or what does not is rounding
+                    cuts = p_in or q_in
+                    if not cuts and 0.0 < ux * wx + uy * wy < length2:
+                        if abs(deep) <= near * length2:
+                            return TANGLED
+                        cuts = deep > 0.0
+                    if cuts:
                         inverse = 1.0 / math.sqrt(length2)
                         ux *= inverse
                         uy *= inverse
@@ -334,10 +341,14 @@ def disc_convex(
                 ax = arcs[e, 0]
                 ay = arcs[e, 1]
                 d2 = (kx - ax) ** 2 + (ky - ay) ** 2
-                if p_in != q_in or (a - r) * (a - r) < d2 < (a + r) * (a + r):
-                    enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
-                        px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r
+                room = noise + ROUND * (a + r)
+                least = max(0.0, abs(a - r) - room)
+                if p_in != q_in or least * least <= d2 <= (a + r + room) ** 2:
+                    touches, enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
+                        px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r, room
                     )
+                    if touches:
+                        return TANGLED
             # what of p -> q lies inside the disc, and the disc's arc before it
             back = enters and leaves and p_in  # an arc goes out and comes in again
             if back:
