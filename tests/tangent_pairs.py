@@ -1,9 +1,9 @@
 """Pairs of outlines that touch along a tangent or coincide, by construction, and their exact overlap.
 
-Where B stands exactly, the area is known in closed form. Moved by a little s, it grows, to first order, by the flux of s
-through B's boundary: all of it where that boundary lies inside A, of coincident boundaries only what moves into A (the
-solids lie on opposite sides) or out of it (on the same side). What is left out is the area of segments that a tangent
-cuts off at a depth of |s|: `rest`, 2 sqrt(2 r) |s|^1.5 a tangent, 1e-13 of the size for |s| = 1e-9.
+Where B stands exactly, the area is known in closed form. Moved by a little s, it grows, to first order, by the flux of
+s through B's boundary: all of it where that boundary lies inside A, of coincident boundaries only what moves into A
+(the solids lie on opposite sides) or out of it (on the same side). What is left out is the area of segments that a
+tangent cuts off at a depth of |s|: `rest`, 2 sqrt(2 r) |s|^1.5 a tangent, 1e-13 of the size for |s| = 1e-9.
 """
 
 from __future__ import annotations
@@ -17,7 +17,9 @@ import numpy as np
 import rigidarea as ra
 from rigidarea import shapes
 
-Pieces = tuple[np.ndarray, np.ndarray, np.ndarray]  # starts (n, 2), ends (n, 2), arcs (n, 3) of B, at B's own place
+Pieces = tuple[
+    np.ndarray, np.ndarray, np.ndarray
+]  # starts (n, 2), ends (n, 2), arcs (n, 3) of B, at B's own place
 NONE: Pieces = (np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))
 
 
@@ -112,7 +114,12 @@ def gear(rng: np.random.Generator, size: float, bore: bool) -> tuple[ra.Outline,
     for k in range(n):
         t = k * step + phase
         bend = math.tan(width / 4), math.tan((step - width) / 4)
-        for r, angle, bulge in ((tip, t, bend[0]), (tip, t + width, 0.0), (root, t + width, bend[1]), (root, t + step, 0.0)):
+        for r, angle, bulge in (
+            (tip, t, bend[0]),
+            (tip, t + width, 0.0),
+            (root, t + width, bend[1]),
+            (root, t + step, 0.0),
+        ):
             ring.append((r * math.cos(angle), r * math.sin(angle), bulge))
     points, arcs = ra.arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
     rings, bows = [points], [arcs]
@@ -155,7 +162,18 @@ def pin_in_slot(rng: np.random.Generator, size: float) -> Pair:
         top, bottom = np.array([0, r]), np.array([0, -r])
         p, q = (bottom, top) if where > 0 else (top, bottom)
         against = (p[None], q[None], end[2][:1])
-    return Pair("pin in slot", plate(shapes.capsule(length, r)), pin, (where * (length / 2), 0.0), 0.0, np.zeros(2), against, NONE, (0,), r)  # fmt: skip
+    return Pair(
+        "pin in slot",
+        plate(shapes.capsule(length, r)),
+        pin,
+        (where * (length / 2), 0.0),
+        0.0,
+        np.zeros(2),
+        against,
+        NONE,
+        (0,),
+        r,
+    )
 
 
 def capsule_over_bore(rng: np.random.Generator, size: float) -> Pair:
@@ -164,7 +182,18 @@ def capsule_over_bore(rng: np.random.Generator, size: float) -> Pair:
     square = np.array([(-w, -w), (w, -w), (w, w), (-w, w)])
     hole = ra.arcs.circle_ring((0.0, 0.0), r)
     bored = ra.Outline.from_curve([square, hole[0]], arcs=[np.zeros((4, 3)), hole[1]])
-    return Pair("capsule over bore", bored, shapes.capsule(length, r), (0.0, 0.0), 2 * r * length, np.zeros(2), NONE, NONE, (1, 2), r)  # fmt: skip
+    return Pair(
+        "capsule over bore",
+        bored,
+        shapes.capsule(length, r),
+        (0.0, 0.0),
+        2 * r * length,
+        np.zeros(2),
+        NONE,
+        NONE,
+        (1, 2),
+        r,
+    )
 
 
 def plug(rng: np.random.Generator, size: float) -> Pair:
@@ -176,7 +205,9 @@ def plug(rng: np.random.Generator, size: float) -> Pair:
 def twins(rng: np.random.Generator, size: float) -> Pair:
     shape = any_shape(rng, size) if rng.random() < 0.7 else gear(rng, size, True)[0]
     flat = max(float(np.abs(arc[:, 2]).max()) for arc in shape.arcs)
-    return Pair("twins", shape, shape, (0.0, 0.0), shape.area, np.zeros(2), NONE, pieces_of(shape), (1,), flat)
+    return Pair(
+        "twins", shape, shape, (0.0, 0.0), shape.area, np.zeros(2), NONE, pieces_of(shape), (1,), flat
+    )
 
 
 def disc_outside(rng: np.random.Generator, size: float) -> Pair:
@@ -202,11 +233,26 @@ def disc_inside(rng: np.random.Generator, size: float) -> Pair:
     how = rng.integers(3)
     small = r * rng.uniform(0.1, 0.95) if how == 0 else r
     disc = ra.Outline.circle(small)
-    x = half if how == 2 else half * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1])) * (1 if how == 0 else 0.9)
+    x = (
+        half
+        if how == 2
+        else half * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1])) * (1 if how == 0 else 0.9)
+    )
     along = NONE
     if how == 2:
         along = (np.array([[0, -r]]), np.array([[0, r]]), np.array([[0, 0, r]]))
-    return Pair("disc inside", body, disc, (x, r - small), math.pi * small**2, -chord(along), NONE, along, (1,), 20 * r)
+    return Pair(
+        "disc inside",
+        body,
+        disc,
+        (x, r - small),
+        math.pi * small**2,
+        -chord(along),
+        NONE,
+        along,
+        (1,),
+        20 * r,
+    )
 
 
 def slid_capsules(rng: np.random.Generator, size: float) -> Pair:
@@ -216,7 +262,18 @@ def slid_capsules(rng: np.random.Generator, size: float) -> Pair:
     low, high = -length / 2, length / 2 - a  # of B's faces on A's
     along = line((low, -r), (high, -r), (high, r), (low, r))
     inside = np.array([0.0, -2 * r])  # B's left end
-    return Pair("slid capsules", body, body, (a, 0.0), 2 * r * (length - a) + math.pi * r * r, inside, NONE, along, (1,), 4 * r)  # fmt: skip
+    return Pair(
+        "slid capsules",
+        body,
+        body,
+        (a, 0.0),
+        2 * r * (length - a) + math.pi * r * r,
+        inside,
+        NONE,
+        along,
+        (1,),
+        4 * r,
+    )
 
 
 def stacked_boxes(rng: np.random.Generator, size: float) -> Pair:
@@ -234,19 +291,43 @@ def disc_in_crescent(rng: np.random.Generator, size: float) -> Pair:
     x, y, r = arcs[0]
     disc = ra.Outline.circle(-r)
     against = (q - (x, y), p - (x, y), np.array([[0, 0, -r]] * len(p)))
-    return Pair("disc in crescent", moon, disc, (float(x), float(y)), 0.0, np.zeros(2), against, NONE, (0,), -r)
+    return Pair(
+        "disc in crescent", moon, disc, (float(x), float(y)), 0.0, np.zeros(2), against, NONE, (0,), -r
+    )
 
 
 def gear_in_bore(rng: np.random.Generator, size: float) -> Pair:
     wheel, tip, _ = gear(rng, size, False)
     tips = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] > 0.97 * tip))
-    return Pair("gear in bore", plate(ra.Outline.circle(tip)), wheel, (0.0, 0.0), 0.0, np.zeros(2), tips, NONE, (0,), tip)
+    return Pair(
+        "gear in bore",
+        plate(ra.Outline.circle(tip)),
+        wheel,
+        (0.0, 0.0),
+        0.0,
+        np.zeros(2),
+        tips,
+        NONE,
+        (0,),
+        tip,
+    )
 
 
 def disc_in_gear(rng: np.random.Generator, size: float) -> Pair:
     wheel, tip, root = gear(rng, size, False)
     along = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] < 0.97 * tip))
-    return Pair("disc in gear", wheel, ra.Outline.circle(root), (0.0, 0.0), math.pi * root**2, -chord(along), NONE, along, (1,), root)  # fmt: skip
+    return Pair(
+        "disc in gear",
+        wheel,
+        ra.Outline.circle(root),
+        (0.0, 0.0),
+        math.pi * root**2,
+        -chord(along),
+        NONE,
+        along,
+        (1,),
+        root,
+    )
 
 
 FAMILIES = (
@@ -263,6 +344,50 @@ class Posed(NamedTuple):
     s: np.ndarray
 
 
+def lattice(rng: np.random.Generator, size: float) -> tuple[ra.Outline, ra.Outline, Posed]:
+    """Two outlines of three lengths and their sums, at places of such sums, turned by eighths: whatever can touch,
+    conform or coincide does, somewhere."""
+    u, v, w = size * rng.uniform(0.2, 1, 3)
+    shapes_of: list[Callable[[], ra.Outline]] = [
+        lambda: ra.Outline.circle(u),
+        lambda: ra.Outline.circle(v),
+        lambda: shapes.capsule(2 * u, v),
+        lambda: shapes.capsule(2 * v, u),
+        lambda: shapes.box(2 * (u + v), 2 * v),
+        lambda: shapes.rounded_polygon(
+            [(-u - w, -v - u), (u + w, -v - u), (u + w, v + u), (-u - w, v + u)], u
+        ),
+        lambda: shapes.ring(u, u + v),
+        lambda: plate(ra.Outline.circle(u)),
+        lambda: plate(shapes.capsule(2 * v, u)),
+        lambda: ra.Outline.from_bulges(
+            [
+                (-u - w, -v, 0),
+                (u + w, -v, 0),
+                (u + w, u + v, 0),
+                (u, u + v, -1),
+                (-u, u + v, 0),
+                (-u - w, u + v, 0),
+            ]
+        ),
+    ]
+    a, b = (shapes_of[k]() for k in rng.integers(0, len(shapes_of), 2))
+    sums = [
+        k * p + m * q for k in (-1, 0, 1) for m in (-1, 0, 1) for p, q in ((u, v), (v, w), (u, w), (2 * u, v))
+    ]
+    angle = float(rng.uniform(-7, 7)) if rng.random() < 0.5 else 0.0
+    turn = float(rng.integers(0, 8)) * math.pi / 4 if rng.random() < 0.6 else 0.0
+    x, y = rng.choice(sums, 2) + (
+        0 if rng.random() < 0.5 else size * 10 ** rng.uniform(-17, -9)
+    ) * rng.normal(size=2)
+    home = size * 10 ** rng.uniform(-2, 9) * rng.uniform(-1, 1, 2) * (rng.random() < 0.3)
+    c, s = math.cos(angle), math.sin(angle)
+    there = home + (c * x - s * y, s * x + c * y)
+    pose_a = np.array([[*home, c, s]])
+    pose_b = np.array([[*there, math.cos(angle + turn), math.sin(angle + turn)]])
+    return a, b, Posed(pose_a, pose_b, np.zeros((1, 2)))
+
+
 def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Posed:
     """At angle 0 and turned, moved by 0 and 1e-17 to 1e-9 of the size, at the origin and up to 1e9 sizes off it."""
     wide = np.longdouble
@@ -277,7 +402,10 @@ def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Pose
     home = far[:, None] * rng.uniform(-1, 1, (count, 2))
     there = home + np.stack([c * x - s * y, s * x + c * y], 1)
     d = there.astype(wide) - home
-    real = np.stack([c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]], 1) / (c.astype(wide) ** 2 + s.astype(wide) ** 2)[:, None]
+    real = (
+        np.stack([c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]], 1)
+        / (c.astype(wide) ** 2 + s.astype(wide) ** 2)[:, None]
+    )
     s_real = (real - np.array(pair.place, wide)).astype(float)
     turn = np.stack([c, s], 1)
     return Posed(np.hstack([home, turn]), np.hstack([there, turn]), s_real)
