@@ -16,6 +16,8 @@ from mpmath import mpc, mpf
 
 DIGITS = 50
 TINY = "1e-30"
+#: Where on a piece it is asked: not in the very middle, where by symmetry a corner may lie on the ray.
+MIDDLE = 0.4142135
 
 
 class Edge(NamedTuple):
@@ -146,6 +148,6 @@ def area(a: Any, b: Any, pose_a: tuple[float, ...], pose_b: tuple[float, ...]) -
                             cuts.append(t)
                 cuts.sort()
                 for t, u in itertools.pairwise(cuts):
-                    if u > t and _inside(other, e.at((t + u) / 2)):
+                    if u > t and _inside(other, e.at(t + (u - t) * MIDDLE)):
                         total += e.green(t, u)
         return float(total)

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 import tangent_pairs
 import wide_overlap
-from conftest import PURE_PYTHON
+from conftest import PURE_PYTHON, kernel_module
 
 import rigidarea as ra
 from rigidarea import shapes
@@ -277,19 +277,35 @@ def test_a_hundred_thousand_random_pairs(kernel: Any, seed: int) -> None:
 # --- tangent or coincident by construction ---
 
 
-def check_tangent(kernel: Any, family: Any, seed: int, pairs: int, each: int) -> None:
-    """`pairs` of a family, each at `each` places, asked as (A, B) and as (B, A)."""
+class Posed(NamedTuple):
+    """Pairs of a family, each at some places: outlines A, B, A, B, and the first of each query, its poses."""
+
+    made: list[tangent_pairs.Pair]
+    sizes: np.ndarray
+    moved: list[np.ndarray]
+    outlines: list[ra.Outline]
+    first: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+
+
+def tangent(family: Any, seed: int, pairs: int, each: int) -> Posed:
     rng = np.random.default_rng(seed)
     sizes = 10 ** rng.uniform(-6, 6, pairs)
     made = [family(rng, size) for size in sizes]
     posed = [tangent_pairs.poses(rng, pair, size, each) for pair, size in zip(made, sizes)]
-    outlines = [outline for pair in made for outline in (pair.a, pair.b)]
-    first = np.repeat(2 * np.arange(pairs), each)
     a, b = (np.concatenate(column) for column in list(zip(*posed))[:2])
+    outlines = [outline for pair in made for outline in (pair.a, pair.b)]
+    return Posed(made, sizes, [p.s for p in posed], outlines, np.repeat(2 * np.arange(pairs), each), a, b)
+
+
+def check_tangent(kernel: Any, family: Any, seed: int, pairs: int, each: int) -> None:
+    """`pairs` of a family, each at `each` places, asked as (A, B) and as (B, A)."""
+    made, sizes, moved, outlines, first, a, b = tangent(family, seed, pairs, each)
     one = kernel.many(outlines, first, first + 1, a, b)
     other = kernel.many(outlines, first + 1, first, b, a)
     wrong = []
-    for k, (pair, size, (_, _, s)) in enumerate(zip(made, sizes, posed)):
+    for k, (pair, size, s) in enumerate(zip(made, sizes, moved)):
         here = slice(k * each, (k + 1) * each)
         want, small = pair.area_at(s), min(pair.a.area, pair.b.area)
         # there as exactly as it can be said: else a sliver may be one, of a width that rounding says
@@ -328,6 +344,42 @@ def test_a_million_tangent_and_coincident_pairs(kernel: Any, family: Any) -> Non
         check_tangent(kernel, family, 200 + seed, 20, 20)
 
 
+@pytest.mark.slow
+def test_impossible_results_do_not_arise(kernel: Any) -> None:
+    """Undecided pairs are plenty here; a result that no two outlines allow is none of them."""
+    posed = [tangent(family, 7, 300, 20) for family in tangent_pairs.FAMILIES]
+    outlines = [outline for p in posed for outline in p.outlines]
+    start = np.repeat(np.cumsum([0, *(len(p.outlines) for p in posed[:-1])]), [len(p.first) for p in posed])
+    first = start + np.concatenate([p.first for p in posed])
+    a, b = np.concatenate([p.a for p in posed]), np.concatenate([p.b for p in posed])
+    undecided, caught = kernel.refused(outlines, first, first + 1, a, b)
+    assert undecided > 0.1 * len(first)
+    assert caught == 0
+
+
+def test_impossible_results_are_told(kernel: Any) -> None:
+    """More area than the smaller outline has, or a region of none; entries and exits that do not alternate."""
+    work = kernel.overlap.new_work()
+    for areas, most, impossible in (
+        ((0.5, 0.4), 1.0, False),
+        ((0.5, 0.6), 1.0, True),
+        ((0.5, -0.1), 1.0, True),
+    ):
+        work.loops["area"][:2] = areas
+        assert kernel.overlap.impossible(work.loops, 2, most) == impossible
+    alternate = kernel_module("sequence").alternate
+    cross = np.array([[0, 0, 1], [0, 1, 1], [0, 2, -1], [0, 3, -1]], np.int32)
+    for spots, near, wanted, want in (
+        ([0, 1, 2, 3], 0.5, 1, None),  # in, in, out, out, and apart
+        ([0, 1, 1.1, 3], 0.5, 1, [0, 2, 1, 3]),  # two in the middle as good as in one point
+        ([0, 1, 1.1, 3], 0.5, -1, None),  # but that is no way out of it, if it starts inside
+    ):
+        order = np.arange(4, dtype=np.int32)
+        spot = np.array([(x, 0.0) for x in spots])
+        assert alternate(cross, spot, order, 0, wanted, near) == (want is not None)
+        assert want is None or order.tolist() == want
+
+
 def check_lattice(kernel: Any, seed: int, count: int) -> None:
     rng = np.random.default_rng(seed)
     wrong = []
@@ -335,20 +387,23 @@ def check_lattice(kernel: Any, seed: int, count: int) -> None:
     outlines = [outline for a, b, _ in made for outline in (a, b)]
     pose_a, pose_b = (np.concatenate([made_at[2][k] for made_at in made]) for k in (0, 1))
     first = 2 * np.arange(count)
+    exact = [
+        exact_overlap.area(a, b, tuple(one.tolist()), tuple(other.tolist()))
+        for (a, b, _), one, other in zip(made, pose_a, pose_b)
+    ]
     for found in (
         kernel.many(outlines, first, first + 1, pose_a, pose_b),
         kernel.many(outlines, first + 1, first, pose_b, pose_a),
     ):
         area = found.total(found.area)
-        for k, (a, b, _) in enumerate(made):
-            want = exact_overlap.area(a, b, tuple(pose_a[k].tolist()), tuple(pose_b[k].tolist()))
+        for k, ((a, b, _), want) in enumerate(zip(made, exact)):
             if found.count[k] < 0 or not abs(area[k] - want) <= 1e-9 * min(a.area, b.area):
                 wrong.append(f"{k}: {area[k]} instead of {want}, {a!r} {pose_a[k]} {b!r} {pose_b[k]}")
     assert not wrong, "\n".join([f"{len(wrong)} wrong of {2 * count}", *wrong[:20]])
 
 
 def test_pairs_on_one_lattice(kernel: Any) -> None:
-    check_lattice(kernel, 1, 2 if PURE_PYTHON else 30)
+    check_lattice(kernel, 1, 2 if PURE_PYTHON else 100)
 
 
 @pytest.mark.slow
