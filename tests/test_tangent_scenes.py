@@ -83,24 +83,31 @@ def test_a_pin_slides_and_rolls_down_its_slot(friction: float, r: float) -> None
         way = gain * t * t / 2
         if way < 3.0:
             off.append(abs(body.position.x + 1.5 - way) / 3.0)
+            assert abs(body.position.y) <= 0.01 * r
         fastest = max(fastest, abs(body.velocity))
-        assert abs(body.position.y) <= 0.02 * r
+        assert (
+            abs(body.position.y) <= 0.5 * r and body.position.x <= length / 2 + 0.5 * r
+        )  # it hits the end hard
 
     run(space, MINUTE, look)
     assert max(off) <= 0.005
     assert fastest <= math.sqrt(2 * gain * 3.5) * 1.01 + G * DT
     assert abs(body.position.x - length / 2) <= 0.05 * r
-    assert abs(body.velocity) <= 1e-3
+    assert abs(body.velocity) <= 0.01
 
 
+@pytest.mark.parametrize("spin", [0.0, 3.0])
 @pytest.mark.parametrize("r", [0.07, 0.25, 0.7654321])
-def test_a_pin_spins_in_its_bore(r: float) -> None:
-    """Smooth and under gravity: it lies there, and its spin stays."""
+def test_a_pin_lies_and_spins_in_its_bore(spin: float, r: float) -> None:
+    """Smooth and under gravity: it lies there, and its spin stays. (Spun it may whirl, a hundredth of r about.)"""
     space, body = pin_in(ra.Outline.circle(r), r, (0.0, 0.0), (0.0, -G))
-    body.angular_velocity = 3.0
-    run(space, MINUTE, lambda t: None)
-    assert abs(body.position) <= 0.05 * r and abs(body.velocity) <= 1e-3
-    assert body.angular_velocity == pytest.approx(3.0, rel=1e-6)
+    body.angular_velocity = spin
+    far = []
+    run(space, MINUTE, lambda t: far.append(abs(body.position)))
+    assert max(far) <= (0.05 * r if spin else 1e-3 * r)
+    assert body.angular_velocity == pytest.approx(spin, abs=1e-6)
+    if not spin:
+        assert abs(body.velocity) <= 1e-6
 
 
 @pytest.mark.parametrize("r", [0.1, 0.1234567])
@@ -128,7 +135,7 @@ def test_a_scotch_yoke_without_clearance(r: float) -> None:
 @pytest.mark.parametrize("pin", [0.8, 0.8123457])
 def test_a_geneva_drive_without_clearance(pin: float) -> None:
     """The wheel turns by a sixth a turn, along tan psi = l sin phi / (1 - l cos phi); the pin as wide as the slots."""
-    parts = shapes.geneva.geneva(6, 5.0, pin, 0.0, locking_clearance=0.01)
+    parts = shapes.geneva(6, 5.0, pin, 0.0, locking_clearance=0.01)
     speed, start = math.pi, -parts.entry_angle - 0.3
     space = pymunk.Space()
     drive = pymunk.Body(body_type=pymunk.Body.KINEMATIC)

@@ -139,6 +139,6 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
     if arcs and n > 0:
         # rounding moves the smaller's boundary by the noise
         most = min(ha.area, hb.area) * (1.0 + 1e-9) + 8.0 * noise * min(ha.radius, hb.radius)
-        if impossible(work.loops, n, most):
+        if not 0.0 < work.loops[0].area <= most or (n > 1 and impossible(work.loops, n, most)):
             return CAUGHT
     return n
