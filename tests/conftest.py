@@ -133,6 +133,32 @@ class Kernel:
                 begin += 1
         return Found(counts, where[:m], out[:m, 0], out[:m, 1:3], out[:m, 3:5], out[:m, 5])
 
+    def refused(
+        self, outlines: Sequence[Any], ia: np.ndarray, ib: np.ndarray, pa: np.ndarray, pb: np.ndarray
+    ) -> tuple[int, int]:
+        """(how many of the pairs are undecided where they are, how many results are caught as impossible): both are
+        asked again, with B shifted."""
+        overlap_kernel, seen_from, Pose = self.overlap.overlap_kernel, self.place.seen_from, self.place.Pose
+        tangled, caught = self.overlap.TANGLED, self.overlap.CAUGHT
+
+        @numba.njit
+        def count(pool: Any, ia: Any, ib: Any, pa: Any, pb: Any, work: Any, out: Any) -> None:
+            for i in range(len(ia)):
+                a = Pose(pa[i, 0], pa[i, 1], pa[i, 2], pa[i, 3])
+                b = Pose(pb[i, 0], pb[i, 1], pb[i, 2], pb[i, 3])
+                rel = seen_from(pool.heads[ia[i]], a, pool.heads[ib[i]], b)
+                n = overlap_kernel(pool, ia[i], pool, ib[i], rel, work)
+                if n == tangled:
+                    out[0] += 1
+                if n == caught:
+                    out[1] += 1
+
+        if isinstance(count, numba.core.registry.CPUDispatcher):
+            count.__class__ = kernel_module("jit").Whole
+        out = np.zeros(2, np.int64)
+        count(self.pool.pack(outlines), ia, ib, pa, pb, self.work(outlines), out)
+        return int(out[0]), int(out[1])
+
     def one(
         self, a: Any, pose_a: Sequence[float], b: Any, pose_b: Sequence[float], work: Any = None
     ) -> Found:

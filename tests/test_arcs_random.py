@@ -1,4 +1,8 @@
-"""Random pairs of outlines with arcs against `wide_overlap`: area and centroid to 1e-9 of the smaller, counts right."""
+"""Random pairs of outlines with arcs: area and centroid to 1e-9 of the smaller, counts right.
+
+Any two against `wide_overlap`; those that touch along a tangent or coincide by construction (`tangent_pairs`) against
+their closed forms, and those that do so anyhow against sums at 50 digits (`exact_overlap`).
+"""
 
 from __future__ import annotations
 
@@ -7,15 +11,17 @@ from collections.abc import Callable
 from functools import lru_cache
 from typing import Any, NamedTuple
 
+import exact_overlap
 import numpy as np
 import pytest
+import tangent_pairs
 import wide_overlap
-from conftest import PURE_PYTHON
+from conftest import PURE_PYTHON, kernel_module
 
 import rigidarea as ra
 from rigidarea import shapes
 
-pytestmark = pytest.mark.skipif(not wide_overlap.WIDE, reason="needs 80-bit long doubles")
+wide = pytest.mark.skipif(not wide_overlap.WIDE, reason="needs 80-bit long doubles")
 
 TAU = 2 * math.pi
 
@@ -256,11 +262,165 @@ def check(kernel: Any, seed: int, count: int, batch: int = 200) -> None:
     assert counted > 0.4 * count  # else the test would show little
 
 
+@wide
 def test_a_few_hundred_random_pairs(kernel: Any) -> None:
     check(kernel, 1, 40 if PURE_PYTHON else 400)
 
 
+@wide
 @pytest.mark.slow
 @pytest.mark.parametrize("seed", range(10))
 def test_a_hundred_thousand_random_pairs(kernel: Any, seed: int) -> None:
     check(kernel, 100 + seed, 10_000)
+
+
+# --- tangent or coincident by construction ---
+
+
+class Posed(NamedTuple):
+    """Pairs of a family, each at some places: outlines A, B, A, B, and the first of each query, its poses."""
+
+    made: list[tangent_pairs.Pair]
+    sizes: np.ndarray
+    moved: list[np.ndarray]
+    outlines: list[ra.Outline]
+    first: np.ndarray
+    a: np.ndarray
+    b: np.ndarray
+
+
+def tangent(family: Any, seed: int, pairs: int, each: int) -> Posed:
+    rng = np.random.default_rng(seed)
+    sizes = 10 ** rng.uniform(-6, 6, pairs)
+    made = [family(rng, size) for size in sizes]
+    posed = [tangent_pairs.poses(rng, pair, size, each) for pair, size in zip(made, sizes)]
+    a, b = (np.concatenate(column) for column in list(zip(*posed))[:2])
+    outlines = [outline for pair in made for outline in (pair.a, pair.b)]
+    return Posed(made, sizes, [p.s for p in posed], outlines, np.repeat(2 * np.arange(pairs), each), a, b)
+
+
+def check_tangent(kernel: Any, family: Any, seed: int, pairs: int, each: int) -> None:
+    """`pairs` of a family, each at `each` places, asked as (A, B) and as (B, A)."""
+    made, sizes, moved, outlines, first, a, b = tangent(family, seed, pairs, each)
+    one = kernel.many(outlines, first, first + 1, a, b)
+    other = kernel.many(outlines, first + 1, first, b, a)
+    wrong = []
+    for k, (pair, size, s) in enumerate(zip(made, sizes, moved)):
+        here = slice(k * each, (k + 1) * each)
+        want, small = pair.area_at(s), min(pair.a.area, pair.b.area)
+        # there as exactly as it can be said: else a sliver may be one, of a width that rounding says
+        still = np.hypot(*s.T) <= 1e-16 * size
+        for found in (one, other):
+            off = (np.abs(found.total(found.area)[here] - want) - pair.rest(s)) / small
+            count = found.count[here]
+            bad = ~(off <= 1e-9) | (count < 0) | (still & ~np.isin(count, pair.counts))
+            wrong += [
+                f"{pair.family} {k}, {i}: area off by {off[i]:.2e}, {count[i]} regions, "
+                f"{pair.a!r} {pair.b!r} at {pair.place} + {s[i]}"
+                for i in np.flatnonzero(bad)
+            ]
+        unlike = still & (one.count[here] != other.count[here])
+        wrong += [
+            f"{pair.family} {k}, {i}: {one.count[here][i]} regions and {other.count[here][i]} the other way round"
+            for i in np.flatnonzero(unlike)
+        ]
+    assert not wrong, "\n".join([f"{len(wrong)} wrong of {2 * pairs * each}", *wrong[:20]])
+
+
+by_family = pytest.mark.parametrize("family", tangent_pairs.FAMILIES, ids=lambda family: family.__name__)
+
+
+@by_family
+def test_tangent_and_coincident_pairs(kernel: Any, family: Any) -> None:
+    check_tangent(kernel, family, 1, 3 if PURE_PYTHON else 100, 3 if PURE_PYTHON else 20)
+
+
+@pytest.mark.slow
+@by_family
+def test_a_million_tangent_and_coincident_pairs(kernel: Any, family: Any) -> None:
+    """That many queries of all families together, of random sizes each."""
+    for seed in range(10):
+        check_tangent(kernel, family, 100 + seed, 460, 10)
+        check_tangent(kernel, family, 200 + seed, 20, 20)
+
+
+@pytest.mark.slow
+def test_impossible_results_do_not_arise(kernel: Any) -> None:
+    """Undecided pairs are plenty here; a result that no two outlines allow is none of them."""
+    posed = [tangent(family, 7, 300, 20) for family in tangent_pairs.FAMILIES]
+    outlines = [outline for p in posed for outline in p.outlines]
+    start = np.repeat(np.cumsum([0, *(len(p.outlines) for p in posed[:-1])]), [len(p.first) for p in posed])
+    first = start + np.concatenate([p.first for p in posed])
+    a, b = np.concatenate([p.a for p in posed]), np.concatenate([p.b for p in posed])
+    undecided, caught = kernel.refused(outlines, first, first + 1, a, b)
+    assert undecided > 0.1 * len(first)
+    assert caught == 0
+
+
+def test_impossible_results_are_told(kernel: Any) -> None:
+    """More area than the smaller outline has, or a region of none; entries and exits that do not alternate."""
+    work = kernel.overlap.new_work()
+    for areas, most, impossible in (
+        ((0.5, 0.4), 1.0, False),
+        ((0.5, 0.6), 1.0, True),
+        ((0.5, -0.1), 1.0, True),
+    ):
+        work.loops["area"][:2] = areas
+        assert kernel.overlap.impossible(work.loops, 2, most) == impossible
+    alternate = kernel_module("sequence").alternate
+    cross = np.array([[0, 0, 1], [0, 1, 1], [0, 2, -1], [0, 3, -1]], np.int32)
+    for spots, near, wanted, want in (
+        ([0, 1, 2, 3], 0.5, 1, None),  # in, in, out, out, and apart
+        ([0, 1, 1.1, 3], 0.5, 1, [0, 2, 1, 3]),  # two in the middle as good as in one point
+        ([0, 1, 1.1, 3], 0.5, -1, None),  # but that is no way out of it, if it starts inside
+    ):
+        order = np.arange(4, dtype=np.int32)
+        spot = np.array([(x, 0.0) for x in spots])
+        assert alternate(cross, spot, order, 0, wanted, near) == (want is not None)
+        assert want is None or order.tolist() == want
+
+
+def check_lattice(kernel: Any, seed: int, count: int) -> None:
+    rng = np.random.default_rng(seed)
+    wrong = []
+    made = [tangent_pairs.lattice(rng, 10 ** rng.uniform(-6, 6)) for _ in range(count)]
+    outlines = [outline for a, b, _ in made for outline in (a, b)]
+    pose_a, pose_b = (np.concatenate([made_at[2][k] for made_at in made]) for k in (0, 1))
+    first = 2 * np.arange(count)
+    exact = [
+        exact_overlap.area(a, b, tuple(one.tolist()), tuple(other.tolist()))
+        for (a, b, _), one, other in zip(made, pose_a, pose_b)
+    ]
+    for found in (
+        kernel.many(outlines, first, first + 1, pose_a, pose_b),
+        kernel.many(outlines, first + 1, first, pose_b, pose_a),
+    ):
+        area = found.total(found.area)
+        for k, ((a, b, _), want) in enumerate(zip(made, exact)):
+            if found.count[k] < 0 or not abs(area[k] - want) <= 1e-9 * min(a.area, b.area):
+                wrong.append(f"{k}: {area[k]} instead of {want}, {a!r} {pose_a[k]} {b!r} {pose_b[k]}")
+    assert not wrong, "\n".join([f"{len(wrong)} wrong of {2 * count}", *wrong[:20]])
+
+
+def test_pairs_on_one_lattice(kernel: Any) -> None:
+    check_lattice(kernel, 1, 2 if PURE_PYTHON else 100)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("seed", range(4))
+def test_thousands_of_pairs_on_one_lattice(kernel: Any, seed: int) -> None:
+    check_lattice(kernel, 10 + seed, 1000)
+
+
+def test_closed_forms_are_exact_sums() -> None:
+    """The two oracles agree: to first order in how far the pair is moved, and to 1e-14 where it is not."""
+    rng = np.random.default_rng(3)
+    for family in tangent_pairs.FAMILIES:
+        pair = family(rng, 1.0)
+        while sum(map(len, (*pair.a.rings, *pair.b.rings))) > 40:  # gears of many teeth take seconds
+            pair = family(rng, 1.0)
+        posed = tangent_pairs.poses(rng, pair, 1.0, 2)
+        for a, b, s in zip(*posed):
+            want = exact_overlap.area(pair.a, pair.b, tuple(a.tolist()), tuple(b.tolist()))
+            found = pair.area_at(s[None])[0]
+            assert abs(found - want) <= 1e-14 + pair.rest(s[None])[0] + 10 * s @ s, pair.family

@@ -113,7 +113,7 @@ def find_regions(
         at, body, there, other = (at_a, a, at_b, b) if side == 0 else (at_b, b, at_a, a)
         if not link(
             at, body.following, body.ring_of, there, other.following, own, n,
-            work.cross, work.param, work.spot, work.order, side, 0.0,
+            work.cross, work.param, work.spot, work.order, side,
         ):  # fmt: skip
             return TORN
     work.done[:n] = 0

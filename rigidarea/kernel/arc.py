@@ -5,15 +5,20 @@ turn at the most (`rigidarea/arcs.py`), so its points are those of the circle to
 left for r < 0, and half a chord and a radius say all of its measures.
 
 *Which crossings there are* is decided by signs at the ends of the edges alone: on which side of a line an end lies
-(exact, `predicates.side`), inside or outside which circle (a plain sign, of the same bits for both edges that share
-the end). An edge whose ends differ crosses once; one whose ends are alike crosses twice or not at all, both together.
-So the crossings of a whole ring with a line or circle always come in pairs, however the roots are rounded, and a root
-is never compared with an end. Where ends are alike, "twice" is asked of the one point of the arc that lies furthest
-across: if rounding gets that wrong, the arc dips across by no more than rounding, and so does the area that is lost.
+(exact, `predicates.side`), inside or outside which circle. An edge whose ends differ crosses once; one whose ends are
+alike crosses twice or not at all, both together, and a root is never compared with an end.
 
-Two such signs can still contradict each other where an end of one boundary lies on the other to rounding: the exact tie
-of `side` is broken as if B were shifted, that of a circle by whatever rounding says. Shared edges and arcs are full of
-such ends. So an end that near is UNSURE, and the query is asked again with B shifted in earnest, by 1e-13.
+No double holds a point of a circle, so a sign at a circle cannot be exact. It is a filter: an end that lies further
+from the other edge or arc than all rounding together (`noise`, and ROUND of the radii) has the sign it seems to have;
+a nearer one is UNSURE, and the query is asked again with B shifted (`place.overlap_of_outlines`). So the signs that an
+answer rests on are all those of the same two boundaries: of closed curves through the very ends that the doubles say,
+on arcs that lie within rounding of the stored circles. Hence
+
+- *tangency*: where ends are alike and the two come nearest, they cross twice or not at all by more than rounding, or
+  the pair is UNSURE. After the shift they are apart, or cross well.
+- *an end on a tangent, on an arc, on another end* is UNSURE, and after the shift it is beside it.
+- *arcs of one radius and centre*: wherever they lie on each other one of them ends, so that is UNSURE too. Circles are
+  of two halves, so they have ends.
 """
 
 from __future__ import annotations
@@ -27,8 +32,8 @@ from .predicates import side
 FIRST, SECOND = 1, 2
 #: An end lies on the other edge to rounding, or the circles are one: undecided. (No other result has this bit.)
 UNSURE = 4
-#: So near in centre and radius, over the radii: 20 times the rounding of either.
-SAME_CIRCLE = 1e-14
+#: What an arc may be off its stored circle by, over the radius: roundings of centre, radius and distance.
+ROUND = 2.0**-50
 #: (half chord / radius)^2 below which the series is used: there the closed form would lose two digits.
 FLAT = 0.02
 
@@ -90,6 +95,27 @@ def on_arc(px: float, py: float, qx: float, qy: float, r: float, x: float, y: fl
     return ((qx - px) * (y - py) - (qy - py) * (x - px)) * r < 0.0
 
 
+@kernel
+def near_edge(ax: float, ay: float, bx: float, by: float, x: float, y: float, room: float) -> bool:
+    """Whether a point lies within `room` (length) of the edge a -> b."""
+    ux = bx - ax
+    uy = by - ay
+    t = min(1.0, max(0.0, ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)))
+    dx = x - ax - t * ux
+    dy = y - ay - t * uy
+    return dx * dx + dy * dy <= room * room
+
+
+@kernel
+def near_arc(px: float, py: float, qx: float, qy: float, r: float, x: float, y: float, room: float) -> bool:
+    """Whether a point within `room` (length) of the circle lies as near to its arc p -> q; flat arcs may say so too
+    often."""
+    ux = qx - px
+    uy = qy - py
+    left = ux * (y - py) - uy * (x - px)
+    return (left if r > 0.0 else -left) < room * math.sqrt(ux * ux + uy * uy)
+
+
 @kernel(forceinline=True)
 def top(px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float) -> tuple[float, float]:
     """The middle of the arc p -> q. (Any point of it will do for its measures: halves add up.)"""
@@ -143,30 +169,37 @@ def line_arc(
     wy = cy - ay
     length2 = ux * ux + uy * uy
     turn = ux * wy - uy * wx
-    far = abs(r) + 2.0 * noise + SAME_CIRCLE * abs(r)
+    room = noise + ROUND * abs(r)
+    far = abs(r) + room
     if turn * turn > far * far * length2:  # beyond all rounding: neither the arc nor an end of it is there
         return 0, 0.0, 0.0, 0.0, 0.0
-    missed = turn * turn >= r * r * length2
     p_side = side(ax, ay, bx, by, px, py, arc_of_b)
     q_side = side(ax, ay, bx, by, qx, qy, arc_of_b)
     a_deep = inside(ax, ay, cx, cy, r)
     b_deep = inside(bx, by, cx, cy, r)
-    close = noise * noise * length2
-    if (p_side * p_side <= close and 0.0 <= (px - ax) * ux + (py - ay) * uy <= length2) or (
-        q_side * q_side <= close and 0.0 <= (qx - ax) * ux + (qy - ay) * uy <= length2
-    ):
-        return UNSURE, 0.0, 0.0, 0.0, 0.0
-    close = 2.0 * noise * abs(r)
-    if (abs(a_deep) <= close and on_arc(px, py, qx, qy, r, ax, ay)) or (
-        abs(b_deep) <= close and on_arc(px, py, qx, qy, r, bx, by)
+    close = room * room * length2
+    deep = 2.0 * room * abs(r)
+    if (
+        (p_side * p_side <= close and near_edge(ax, ay, bx, by, px, py, room))
+        or (q_side * q_side <= close and near_edge(ax, ay, bx, by, qx, qy, room))
+        or (abs(a_deep) <= deep and near_arc(px, py, qx, qy, r, ax, ay, room))
+        or (abs(b_deep) <= deep and near_arc(px, py, qx, qy, r, bx, by, room))
     ):
         return UNSURE, 0.0, 0.0, 0.0, 0.0
     p_left = p_side > 0.0
     q_left = q_side > 0.0
     a_in = a_deep > 0.0
     b_in = b_deep > 0.0
-    if (missed and p_left == q_left and a_in == b_in) or (a_in and b_in):
+    if a_in and b_in:
         return 0, 0.0, 0.0, 0.0, 0.0
+    if p_left == q_left and a_in == b_in:
+        least = max(0.0, abs(r) - room)
+        if turn * turn >= least * least * length2:  # a tangent, or passing by
+            tangent = turn * turn <= (abs(r) + room) ** 2 * length2 and 0.0 < ux * wx + uy * wy < length2
+            foot = turn / length2
+            if tangent and on_arc(px, py, qx, qy, r, cx + foot * uy, cy - foot * ux):
+                return UNSURE, 0.0, 0.0, 0.0, 0.0
+            return 0, 0.0, 0.0, 0.0, 0.0
     length = math.sqrt(length2)
     ex = ux / length
     ey = uy / length
@@ -233,30 +266,41 @@ def arc_arc(
     dx = gx - cx
     dy = gy - cy
     d2 = dx * dx + dy * dy
-    far = (a + b) * (1.0 + SAME_CIRCLE) + 4.0 * noise
+    room = noise + ROUND * (a + b)
+    far = a + b + room
     if d2 > far * far:  # beyond all rounding
         return 0, 0.0, 0.0, 0.0, 0.0
-    apart = d2 >= (a + b) * (a + b) or d2 <= (a - b) * (a - b)
     p_deep = inside(px, py, gx, gy, b)
     q_deep = inside(qx, qy, gx, gy, b)
     s_deep = inside(sx, sy, cx, cy, a)
     t_deep = inside(tx, ty, cx, cy, a)
+    deep_a = 2.0 * room * a
+    deep_b = 2.0 * room * b
     if (
-        (abs(p_deep) <= 2.0 * noise * b and on_arc(sx, sy, tx, ty, u, px, py))
-        or (abs(q_deep) <= 2.0 * noise * b and on_arc(sx, sy, tx, ty, u, qx, qy))
-        or (abs(s_deep) <= 2.0 * noise * a and on_arc(px, py, qx, qy, r, sx, sy))
-        or (abs(t_deep) <= 2.0 * noise * a and on_arc(px, py, qx, qy, r, tx, ty))
+        (abs(p_deep) <= deep_b and near_arc(sx, sy, tx, ty, u, px, py, room))
+        or (abs(q_deep) <= deep_b and near_arc(sx, sy, tx, ty, u, qx, qy, room))
+        or (abs(s_deep) <= deep_a and near_arc(px, py, qx, qy, r, sx, sy, room))
+        or (abs(t_deep) <= deep_a and near_arc(px, py, qx, qy, r, tx, ty, room))
     ):
         return UNSURE, 0.0, 0.0, 0.0, 0.0
     p_in = p_deep > 0.0
     q_in = q_deep > 0.0
     s_in = s_deep > 0.0
     t_in = t_deep > 0.0
-    if d2 < (SAME_CIRCLE * (a + b)) ** 2:
-        bits = UNSURE if abs(a - b) < SAME_CIRCLE * (a + b) else 0
-        return bits, 0.0, 0.0, 0.0, 0.0
-    if apart and p_in == q_in and s_in == t_in:
-        return 0, 0.0, 0.0, 0.0, 0.0
+    if p_in == q_in and s_in == t_in:
+        most = max(0.0, a + b - room)
+        least = abs(a - b) + room
+        if d2 >= most * most or d2 <= least * least:  # they touch, or do not meet
+            least = max(0.0, abs(a - b) - room)
+            if least * least <= d2 and d2 > 0.0:
+                d = math.sqrt(d2)
+                near_a = a / d if d2 >= most * most or a > b else -a / d
+                near_b = -b / d if d2 >= most * most or a < b else b / d
+                if on_arc(px, py, qx, qy, r, cx + near_a * dx, cy + near_a * dy) and on_arc(
+                    sx, sy, tx, ty, u, gx + near_b * dx, gy + near_b * dy
+                ):
+                    return UNSURE, 0.0, 0.0, 0.0, 0.0
+            return 0, 0.0, 0.0, 0.0, 0.0
     dx, dy, x1, y1, x2, y2 = circle_circle(cx, cy, a, gx, gy, b)
     if p_in != q_in:
         bits = SECOND if p_in == (r > 0.0) else FIRST

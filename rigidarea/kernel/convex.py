@@ -13,10 +13,7 @@ import numpy as np
 from .arc import FIRST, SECOND, UNSURE, arc_arc, line_arc
 from .curved import along_edge, line_line
 from .jit import kernel
-from .work import A_EDGE, B_EDGE, TANGLED, Relative, measure, placed, put
-
-#: Instead of a number of regions: not two crossings.
-OTHERWISE = -3
+from .work import A_EDGE, B_EDGE, NEARBY, OTHERWISE, TANGLED, Relative, measure, placed, put
 
 
 @kernel
@@ -79,10 +76,10 @@ def convex_pair(
         cx, cy = placed(qb, j, rel)
         dx, dy = placed(qb, j + 1 if j + 1 < b0 + nb else b0, rel)
         bow = arcs_b[j, 3]
-        low_x = min(cx, dx) - bow
-        high_x = max(cx, dx) + bow
-        low_y = min(cy, dy) - bow
-        high_y = max(cy, dy) + bow
+        low_x = min(cx, dx) - bow - noise
+        high_x = max(cx, dx) + bow + noise
+        low_y = min(cy, dy) - bow - noise
+        high_y = max(cy, dy) + bow + noise
         u = arcs_b[j, 2]
         gx = gy = 0.0
         if u != 0.0:
@@ -170,6 +167,10 @@ def convex_pair(
         b_holds_a = b_left <= left and b_right >= right and b_bottom <= bottom and b_top >= top
         return OTHERWISE if a_holds_b or b_holds_a else 0
     if n != 2 or in_a < 0 or out_a < 0:
+        return OTHERWISE
+    if (in_a == out_a or in_b == out_b) and abs(in_x - out_x) + abs(in_y - out_y) < NEARBY * (
+        right - left + top - bottom
+    ):
         return OTHERWISE
     v = 0
     e = in_a

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .curved import cross_curved_leaves, mend
+from .curved import cross_curved_leaves
 from .jit import kernel
 from .pool import LEAF, Pool
 from .predicates import order_exact, side
@@ -239,13 +239,10 @@ def _before(
 def link(
     q: np.ndarray, following: np.ndarray, ring_of: np.ndarray, other: np.ndarray, other_following: np.ndarray,
     rel: Relative, n: int, cross: np.ndarray, param: np.ndarray, spot: np.ndarray, order: np.ndarray, along: int,
-    near: float,
 ) -> bool:  # fmt: skip
     """order[2 + along, k]: the crossing after k along its ring of A (0) or B (1). False if they do not alternate.
 
-    ~k where the ring's first point is passed on the way. `near` is 0 for polygons, whose order is exact. Else there are
-    arcs, and two crossings nearer to each other than that (length) may have been ordered wrongly: they are put so that
-    all alternate.
+    ~k where the ring's first point is passed on the way. For polygons, whose order is exact; else see `sequence.py`.
     """
     for i in range(n):  # insertion sort: n is small, and crossings come nearly in order
         edge = cross[i, along]
@@ -255,14 +252,10 @@ def link(
             e = cross[m, along]
             if e < edge:
                 break
-            if e == edge:
-                if near > 0.0:
-                    if param[i, along] >= param[m, along]:
-                        break
-                elif not _before(
-                    q, other, other_following, rel, edge, following[edge], i, m, cross, param, spot, along
-                ):
-                    break
+            if e == edge and not _before(
+                q, other, other_following, rel, edge, following[edge], i, m, cross, param, spot, along
+            ):
+                break
             order[along, j] = m
             j -= 1
         order[along, j] = i
@@ -273,8 +266,6 @@ def link(
         last = low
         while last + 1 < n and ring_of[cross[order[along, last + 1], along]] == ring:
             last += 1
-        if near > 0.0:
-            mend(order[along, low : last + 1], cross, spot, near)
         for high in range(low, last + 1):
             k = order[along, high]
             m = order[along, high + 1 if high < last else low]

@@ -32,18 +32,18 @@ def cross_curved_leaves(
 
     Returns their number, or OVERFLOW, or TANGLED.
     """
-    near_x = boxes[box, 0] - boxes[box, 2] - noise
-    far_x = boxes[box, 0] + boxes[box, 2] + noise
-    near_y = boxes[box, 1] - boxes[box, 3] - noise
-    far_y = boxes[box, 1] + boxes[box, 3] + noise
+    near_x = boxes[box, 0] - boxes[box, 2]
+    far_x = boxes[box, 0] + boxes[box, 2]
+    near_y = boxes[box, 1] - boxes[box, 3]
+    far_y = boxes[box, 1] + boxes[box, 3]
     for j in range(b0, b1):
         cx, cy = placed(qb, j, rel)
         dx, dy = placed(qb, next_b[j], rel)
         bow = arcs_b[j, 3]
-        low_x = min(cx, dx) - bow
-        high_x = max(cx, dx) + bow
-        low_y = min(cy, dy) - bow
-        high_y = max(cy, dy) + bow
+        low_x = min(cx, dx) - bow - noise
+        high_x = max(cx, dx) + bow + noise
+        low_y = min(cy, dy) - bow - noise
+        high_y = max(cy, dy) + bow + noise
         if high_x < near_x or low_x > far_x or high_y < near_y or low_y > far_y:
             continue
         gx, gy = placed(arcs_b, j, rel)
@@ -124,26 +124,3 @@ def line_line(
         return bits, cx + t * vx, cy + t * vy
     t = sa / (sa - sb)
     return bits, ax + t * ux, ay + t * uy
-
-
-@kernel
-def mend(order: np.ndarray, cross: np.ndarray, spot: np.ndarray, near: float) -> None:
-    """Exchange neighbours of a ring's crossings, nearer than `near`, where that makes entering and leaving alternate.
-
-    Two crossings that rounding cannot tell apart (a corner that pokes through by less) have only one order that a
-    boundary can have.
-    """
-    n = len(order)
-    for h in range(n - 1):
-        if cross[order[h], 2] != cross[order[h + 1], 2]:
-            continue
-        for g in (h + 1, h - 1):
-            if g < 0 or g + 1 >= n:
-                continue
-            k = order[g]
-            m = order[g + 1]
-            apart = abs(spot[k, 0] - spot[m, 0]) + abs(spot[k, 1] - spot[m, 1])
-            if cross[k, 2] != cross[m, 2] and apart <= near:
-                order[g] = m
-                order[g + 1] = k
-                break

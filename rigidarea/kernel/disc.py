@@ -1,9 +1,11 @@
 """Overlap of a disc with a disc, and of a disc with any convex outline, edges and arcs.
 
 A disc's boundary has no corner and no start, so nothing of it can lie on a corner of the other: every decision is
-whether an end of an edge lies inside the circle, a plain sign that both edges at that end share. One walk round the
-other outline, past what lies out of the disc's reach, finds where it enters the disc and leaves it, in order; between a
-leaving and the next entering the disc's own arc closes the region, because both are convex. The region is one.
+whether an end of an edge lies inside the circle, a sign that both edges at that end share, and that rounding cannot
+touch (else TANGLED, see `arc`). One walk round the other outline, past what lies out of the disc's reach, finds where
+it enters the disc and leaves it, in order; between a leaving and the next entering the disc's own arc closes the
+region, because both are convex. The region is one. Where the two lie so near to each other that the arc between could
+as well be the rest of the circle (OTHERWISE), the general way asks a point.
 """
 
 from __future__ import annotations
@@ -12,14 +14,11 @@ import math
 
 import numpy as np
 
-from .arc import SAME_CIRCLE, across, circle_circle, on_arc, segment
+from .arc import ROUND, across, circle_circle, inside, on_arc, segment
 from .jit import kernel
 from .pool import LEAF
-from .work import A_EDGE, B_EDGE, NO_AREA, TANGLED, Relative, measure, placed, put
+from .work import A_EDGE, B_EDGE, NEARBY, NO_AREA, OTHERWISE, TANGLED, Relative, measure, placed, put
 
-#: Two crossings nearer than this, over the radius: the boundaries only touch. (An edge cuts off a chord of nothing or
-#: of 1e-8 of the radius: less comes from a corner that lies on the circle to rounding.)
-TOUCH = 1e-12
 #: A depth below this, over the radii, is computed from the exact difference of squares.
 SHALLOW = 1e-3
 #: Instead of a number of vertices: the region is all of the disc.
@@ -165,8 +164,7 @@ def _close(
     ay = py - cy
     bx = qx - cx
     by = qy - cy
-    gap = (bx - ax) ** 2 + (by - ay) ** 2
-    if ax * by - ay * bx < 0.0 and gap >= (TOUCH * r) ** 2:
+    if ax * by - ay * bx < 0.0:
         # more than half a turn: halved opposite the middle of the chord
         mx = -(ax + bx)
         my = -(ay + by)
@@ -194,32 +192,34 @@ def _close_between(
 @kernel
 def _cut_by_arc(
     px: float, py: float, qx: float, qy: float, ax: float, ay: float, a: float, p_in: bool, q_in: bool,
-    cx: float, cy: float, r: float,
-) -> tuple[bool, bool, float, float, float, float]:  # fmt: skip
-    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether, whether, entry, exit). The two
-    circles cross."""
+    cx: float, cy: float, r: float, room: float,
+) -> tuple[bool, bool, bool, float, float, float, float]:  # fmt: skip
+    """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether it touches it within `room`,
+    whether it enters, whether it leaves, entry, exit)."""
     if p_in == q_in:
-        d2 = (cx - ax) ** 2 + (cy - ay) ** 2
-        reach = (-a if p_in else a) / math.sqrt(d2)
+        d = math.sqrt((cx - ax) ** 2 + (cy - ay) ** 2)
+        reach = (-a if p_in else a) / d if d > 0.0 else 0.0
         if not on_arc(px, py, qx, qy, a, ax + reach * (cx - ax), ay + reach * (cy - ay)):
-            return False, False, 0.0, 0.0, 0.0, 0.0
+            return False, False, False, 0.0, 0.0, 0.0, 0.0
+        if d >= a + r - room or d <= abs(a - r) + room:
+            return d <= a + r + room and d >= abs(a - r) - room, False, False, 0.0, 0.0, 0.0, 0.0
     _, _, x1, y1, x2, y2 = circle_circle(ax, ay, a, cx, cy, r)
     if p_in == q_in:
-        return True, True, x1, y1, x2, y2
-    return q_in, p_in, x1, y1, x2, y2
+        return False, True, True, x1, y1, x2, y2
+    return False, q_in, p_in, x1, y1, x2, y2
 
 
 @kernel
 def _cut_off(
     p: np.ndarray, label: np.ndarray, bows: np.ndarray, loops: np.ndarray, own: int,
-    cx: float, cy: float, r: float, ux: float, uy: float, half: float, distance: float,
+    cx: float, cy: float, r: float, ux: float, uy: float, half: float, distance: float, noise: float,
 ) -> int:  # fmt: skip
     """The region that one straight edge along (ux, uy) cuts off a disc whose centre lies `distance` to its right.
 
     half: of the chord. No more than half of the disc, and in closed form.
     """
     area, moment = segment(half, distance, r)
-    if area <= NO_AREA * 16.0 * half * half:
+    if area <= max(NO_AREA * 16.0 * half, 2.0 * noise) * half:  # as `measure` has it
         return 0
     fx = cx - distance * uy
     fy = cy + distance * ux
@@ -273,7 +273,9 @@ def disc_convex(
     kx = place.c * dx + place.s * dy
     ky = place.c * dy - place.s * dx
     mine = B_EDGE if own == A_EDGE else A_EDGE
-    reach = r + noise
+    reach = r + 2.0 * noise
+    close2 = (NEARBY * r) ** 2
+    near = 2.0 * r * (noise + ROUND * r)  # radius squared less distance squared: undecided below
     v = 0
     crossed = 0
     open_ = False  # left, and not entered since, at (out_x, out_y)
@@ -287,12 +289,15 @@ def disc_convex(
             continue
         px = points[begin + first, 0]
         py = points[begin + first, 1]
-        p_in = across(px, py, kx, ky, r)
+        p_in = inside(px, py, kx, ky, r) > 0.0
         for e in range(begin + first, begin + min(first + LEAF, count)):
             k = e + 1 if e + 1 < begin + count else begin
             qx = points[k, 0]
             qy = points[k, 1]
-            q_in = across(qx, qy, kx, ky, r)
+            deep = inside(qx, qy, kx, ky, r)
+            if abs(deep) <= near:
+                return TANGLED
+            q_in = deep > 0.0
             a = arcs[e, 2]
             enters = False
             leaves = False
@@ -306,10 +311,15 @@ def disc_convex(
                     wy = ky - py
                     turn = ux * wy - uy * wx
                     length2 = ux * ux + uy * uy
-                    hit = turn * turn < r * r * length2
-                    if not hit and turn < 0.0:
-                        return 0  # the whole disc lies beyond this edge
-                    if p_in or q_in or (hit and 0.0 < ux * wx + uy * wy < length2):
+                    deep = r * r * length2 - turn * turn
+                    if turn < 0.0 and deep <= near * length2 and not (p_in or q_in):
+                        return 0  # the whole disc lies beyond this edge, or what does not is rounding
+                    cuts = p_in or q_in
+                    if not cuts and 0.0 < ux * wx + uy * wy < length2:
+                        if abs(deep) <= near * length2:
+                            return TANGLED
+                        cuts = deep > 0.0
+                    if cuts:
                         inverse = 1.0 / math.sqrt(length2)
                         ux *= inverse
                         uy *= inverse
@@ -331,12 +341,14 @@ def disc_convex(
                 ax = arcs[e, 0]
                 ay = arcs[e, 1]
                 d2 = (kx - ax) ** 2 + (ky - ay) ** 2
-                if d2 < (SAME_CIRCLE * (a + r)) ** 2 and abs(a - r) < SAME_CIRCLE * (a + r):
-                    return TANGLED
-                if p_in != q_in or (a - r) * (a - r) < d2 < (a + r) * (a + r):
-                    enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
-                        px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r
+                room = noise + ROUND * (a + r)
+                least = max(0.0, abs(a - r) - room)
+                if p_in != q_in or least * least <= d2 <= (a + r + room) ** 2:
+                    touches, enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
+                        px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r, room
                     )
+                    if touches:
+                        return TANGLED
             # what of p -> q lies inside the disc, and the disc's arc before it
             back = enters and leaves and p_in  # an arc goes out and comes in again
             if back:
@@ -347,6 +359,8 @@ def disc_convex(
             if enters:
                 crossed += 1
                 if open_:
+                    if (x1 - out_x) ** 2 + (y1 - out_y) ** 2 < close2:
+                        return OTHERWISE
                     v = _close_between(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
                     open_ = False
                 else:
@@ -365,17 +379,18 @@ def disc_convex(
             px = qx
             py = qy
             p_in = q_in
-    touched = crossed == 1 and open_ and (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (TOUCH * r) ** 2
     n = 0
-    if crossed == 0 or touched:
+    if crossed == 0:
         v = _nested(kx, ky, r, points, arcs, begin, count, own, p, label, bows)
         if v == WHOLE:
             v = 0
             n = whole_disc(p, label, bows, loops, mine, kx, ky, r)
     elif crossed == 1 and v == 1 and edge_distance < 0.0 and bows[0, 2] == 0.0:
         v = 0
-        n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance)
+        n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance, noise)
     elif open_:
+        if (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < close2:
+            return OTHERWISE
         v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
     if v > 0:
         n = measure(p, label, bows, loops, 0, 0, v, True, False, noise)

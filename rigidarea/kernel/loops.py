@@ -4,16 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arc import across, on_arc, top
+from .arc import across, on_arc
 from .crossings import crossings, link
 from .jit import kernel
-from .pool import LEAF, Pool
-from .predicates import side
-from .work import A_EDGE, B_EDGE, TANGLED, Relative, Work, measure, noise_of, placed, put
-
-#: Crossings nearer than this to each other, over the radii of the outlines, may be in the wrong order where there are
-#: arcs: two curves that nearly touch cross at places known to the root of a rounding.
-NEAR = 1e-7
+from .locate import inside_outline
+from .pool import Pool
+from .sequence import link_curved, link_two
+from .work import A_EDGE, B_EDGE, CAUGHT, NEARBY, TANGLED, Relative, Work, measure, noise_of, placed, put
 
 
 @kernel
@@ -85,63 +82,6 @@ def _curved_arc(
 
 
 @kernel
-def _inside(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_b: bool, work: Work) -> bool:
-    """Whether the point (x, y) of A's frame lies inside outline i: crossings of the ray to +x, by the hierarchy.
-
-    `point_of_b`: the outline is A and the point is B's; False: the outline is B, placed by `rel`.
-    """
-    h = p.heads[i]
-    c = 1.0 if point_of_b else rel.c
-    s = 0.0 if point_of_b else rel.s
-    tx = 0.0 if point_of_b else rel.tx
-    ty = 0.0 if point_of_b else rel.ty
-    place = Relative(c, s, tx, ty)
-    pad = 8.0 * 2.0**-52 * (h.radius + abs(x) + abs(y) + abs(tx) + abs(ty))
-    arcs = h.arcs > 0
-    work.stack[0, 0] = 1
-    depth = 1
-    inside = False
-    while depth > 0:
-        depth -= 1
-        node = work.stack[depth, 0]
-        mx = p.boxes[h.box + node, 0]
-        my = p.boxes[h.box + node, 1]
-        hx = p.boxes[h.box + node, 2] + pad
-        hy = p.boxes[h.box + node, 3] + pad
-        if abs(s * mx + c * my + ty - y) > abs(s) * hx + abs(c) * hy:
-            continue
-        if c * mx - s * my + tx + abs(c) * hx + abs(s) * hy < x:
-            continue
-        if node < h.leaves:
-            work.stack[depth, 0] = 2 * node
-            work.stack[depth + 1, 0] = 2 * node + 1
-            depth += 2
-            continue
-        first = (node - h.leaves) * LEAF
-        for e in range(h.point + first, h.point + min(first + LEAF, h.count)):
-            if point_of_b:
-                ux, uy = p.points[e, 0], p.points[e, 1]
-                vx, vy = p.points[p.following[e], 0], p.points[p.following[e], 1]
-                up = uy > y  # the point is B's, shifted up by d^2: a vertex at its height is below it
-                vp = vy > y
-            else:
-                ux, uy = placed(p.points, e, place)
-                vx, vy = placed(p.points, p.following[e], place)
-                up = uy >= y  # the edge is B's, shifted up
-                vp = vy >= y
-            if up != vp and (side(ux, uy, vx, vy, x, y, point_of_b) > 0.0) == vp:
-                inside = not inside
-            if (
-                arcs and p.arcs[e, 2] != 0.0
-            ):  # what lies between chord and arc is inside where the rest is not
-                cx, cy = placed(p.arcs, e, place)
-                r = p.arcs[e, 2]
-                if across(x, y, cx, cy, r) and (side(ux, uy, vx, vy, x, y, point_of_b) < 0.0) == (r > 0.0):
-                    inside = not inside
-    return inside
-
-
-@kernel
 def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
     """Whether (x, y) lies inside loop n (even-odd)."""
     inside = False
@@ -188,8 +128,9 @@ def _off_corner(work: Work, start: int, stop: int) -> tuple[float, float]:
 
 
 @kernel
-def _gather(work: Work, n: int) -> int:
-    """Give each hole loop to its region, put the regions first; their number."""
+def _gather(work: Work, n: int, most: float) -> int:
+    """Give each hole loop to its region, put the regions first; their number. CAUGHT if holes of more than `most`
+    (length^2) lie in none."""
     loops = work.loops
     holes = 0
     for i in range(n):
@@ -197,6 +138,7 @@ def _gather(work: Work, n: int) -> int:
             holes += 1
     if holes == 0:
         return n
+    lost = 0.0
     for i in range(n):
         hole = loops[i]
         if hole.area > 0.0:
@@ -208,6 +150,10 @@ def _gather(work: Work, n: int) -> int:
                 if best < 0 or loops[j].area < loops[best].area:
                     best = j
         hole.region = best
+        if best < 0:
+            lost -= hole.area
+    if lost > most:
+        return CAUGHT
     for i in range(n):
         hole = loops[i]
         if hole.area > 0.0 or hole.region < 0:
@@ -234,14 +180,15 @@ def _gather(work: Work, n: int) -> int:
                 for j in range(n):
                     if loops[j].area < 0.0 and loops[j].region == i:
                         loops[j].region = m
-                _exchange(loops, i, m)
+                exchange(loops, i, m)
             loops[m].region = m
             m += 1
     return m
 
 
 @kernel
-def _exchange(loops: np.ndarray, i: int, j: int) -> None:
+def exchange(loops: np.ndarray, i: int, j: int) -> None:
+    """Exchange two loops."""
     a = loops[i]
     b = loops[j]
     a.start, b.start = b.start, a.start
@@ -255,40 +202,6 @@ def _exchange(loops: np.ndarray, i: int, j: int) -> None:
     a.straight, b.straight = b.straight, a.straight
     a.region, b.region = b.region, a.region
     a.arcs, b.arcs = b.arcs, a.arcs
-
-
-@kernel
-def _ring_inside(
-    pool: Pool,
-    begin: int,
-    end: int,
-    place: Relative,
-    other: Pool,
-    o: int,
-    rel: Relative,
-    point_of_b: bool,
-    work: Work,
-) -> bool:
-    """Whether a ring that does not cross outline `o` lies inside it: two of three of its points do.
-
-    One is enough for polygons, where `side` is exact. Among arcs one may touch, and be anywhere to rounding.
-    """
-    votes = 0
-    x, y = placed(pool.points, begin, place)
-    votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
-    qx, qy = placed(pool.points, pool.following[begin], place)
-    r = pool.arcs[begin, 2]
-    if r != 0.0:
-        cx, cy = placed(pool.arcs, begin, place)
-        x, y = top(x, y, qx, qy, cx, cy, r)
-    else:
-        x = 0.5 * (x + qx)
-        y = 0.5 * (y + qy)
-    votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
-    if votes == 1:
-        x, y = placed(pool.points, begin + (end - begin) // 2, place)
-        votes += 1 if _inside(other, o, rel, x, y, point_of_b, work) else 0
-    return votes >= 2
 
 
 @kernel
@@ -310,11 +223,7 @@ def _whole_rings(
         near = np.hypot(x - rel.tx, y - rel.ty) if along == A_EDGE else np.hypot(x, y)
         if near > g.radius * (1.0 + 1e-12):
             continue
-        if arcs:
-            inside = _ring_inside(pool, begin, end, place, other, o, rel, along == B_EDGE, work)
-        else:
-            inside = _inside(other, o, rel, x, y, along == B_EDGE, work)
-        if not inside:
+        if not inside_outline(other, o, rel, x, y, along == B_EDGE, work):
             continue
         start = v
         for k in range(begin, end):
@@ -334,31 +243,12 @@ def _whole_rings(
     return n, v
 
 
-@kernel(forceinline=True)
-def _link_two(
-    ring_a: np.ndarray, ring_b: np.ndarray, cross: np.ndarray, param: np.ndarray, order: np.ndarray
-) -> bool:
-    """`link` along both outlines for the two crossings that most pairs with arcs have: they must alternate."""
-    for along in range(2):
-        e = cross[0, along]
-        f = cross[1, along]
-        first = 0 if e < f or (e == f and param[0, along] <= param[1, along]) else 1
-        order[2 + along, first] = 1 - first
-        order[2 + along, 1 - first] = ~first
-    return bool(
-        cross[0, 2] != cross[1, 2]
-        and ring_a[cross[0, 0]] == ring_a[cross[1, 0]]
-        and ring_b[cross[0, 1]] == ring_b[cross[1, 1]]
-    )
-
-
 @kernel
 def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Any two outlines: crossings, loops, whole rings, holes."""
     ha = pa.heads[ia]
     hb = pb.heads[ib]
     arcs = ha.arcs > 0 or hb.arcs > 0
-    near = NEAR * (ha.radius + hb.radius) if arcs else 0.0
     noise = noise_of(ha.radius, hb.radius, rel)
     own = Relative(1.0, 0.0, 0.0, 0.0)
     half = work.hit.size // 2
@@ -370,15 +260,22 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
     n = 0
     v = 0
     if k > 0:
-        if k == 2 and arcs:
-            if not _link_two(pa.ring_of, pb.ring_of, work.cross, work.param, work.order):
+        if arcs:
+            near = NEARBY * (ha.radius + hb.radius)
+            if not (
+                k == 2
+                and link_two(pa.ring_of, pb.ring_of, work.cross, work.param, work.spot, work.order, near)
+            ) and not (
+                link_curved(pa, ia, pb, ib, rel, k, A_EDGE, work, near)
+                and link_curved(pb, ib, pa, ia, rel, k, B_EDGE, work, near)
+            ):
                 return TANGLED
         elif not link(
             pa.points, pa.following, pa.ring_of, pb.points, pb.following, rel, k,
-            work.cross, work.param, work.spot, work.order, 0, near,
+            work.cross, work.param, work.spot, work.order, 0,
         ) or not link(
             pb.points, pb.following, pb.ring_of, pa.points, pa.following, rel, k,
-            work.cross, work.param, work.spot, work.order, 1, near,
+            work.cross, work.param, work.spot, work.order, 1,
         ):  # fmt: skip
             return TANGLED
         for i in range(k):
@@ -411,4 +308,6 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
         n, v = _whole_rings(pa, ia, own, pb, ib, rel, 0, work, n, v, noise)
     if hb.rings > 1 or not work.hit[half]:
         n, v = _whole_rings(pb, ib, rel, pa, ia, rel, 1, work, n, v, noise)
-    return n if n == 0 or (n == 1 and work.loops[0].area > 0.0) else _gather(work, n)
+    return (
+        n if n == 0 or (n == 1 and work.loops[0].area > 0.0) else _gather(work, n, noise if arcs else np.inf)
+    )

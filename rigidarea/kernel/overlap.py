@@ -20,9 +20,12 @@ else, with holes, concave, thousands of edges, arcs, goes the general way:
 4. *Signs.* A loop with positive area is a region, one with negative area is a hole of the region around it.
 
 Degenerate cases of polygons need no code: the predicate shifts B by an infinitesimal (see `predicates`), after which
-there are none. What the shift leaves behind, loops of no area, is dropped. Of arcs, whose crossings no double holds,
-`arc.py` and `curved.mend` say what is decided how; what remains undecided (two circles that are one) is TANGLED, and
-`place.overlap_of_outlines` asks again with B shifted by 1e-13.
+there are none. What the shift leaves behind, loops of no area, is dropped. With arcs the signs are those of a filter
+(`arc`); where it cannot tell the answer is TANGLED, and `place.overlap_of_outlines` asks again with B shifted in
+earnest. So each answer is that of boundaries moved by rounding, or by that shift, with all signs beyond doubt:
+crossings come in pairs, their order alternates (`sequence`), of a ring without a crossing any corner tells where it is.
+What is no wider than the rounding, or than the shift, is dropped: no force comes of it. An answer that no two outlines
+allow (`impossible`) would say that one of these arguments is wrong; it is CAUGHT, and asked again like a tangle.
 
 Differences from the paper: Alg. 1 asks for a node of each body inside the other and for two crossings; here a region
 is there when its area is positive, however many crossings it has, and whatever nodes (theory 1). Area and centroid
@@ -34,8 +37,10 @@ Kernel arguments: a `Pool` and the number of an outline in it for A and for B, a
 
 from __future__ import annotations
 
+import numpy as np
+
 from .clip import clip
-from .convex import OTHERWISE, convex_pair
+from .convex import convex_pair
 from .disc import disc_convex, disc_disc
 from .jit import kernel
 from .loops import general
@@ -43,7 +48,9 @@ from .pool import Pool
 from .work import (
     A_EDGE,
     B_EDGE,
+    CAUGHT,
     LOOP,
+    OTHERWISE,
     OVERFLOW,
     TANGLED,
     Relative,
@@ -63,6 +70,7 @@ WALKED_PAIRS = 144
 __all__ = [
     "A_EDGE",
     "B_EDGE",
+    "CAUGHT",
     "LOOP",
     "OVERFLOW",
     "TANGLED",
@@ -77,15 +85,28 @@ __all__ = [
 
 
 @kernel
+def impossible(loops: np.ndarray, n: int, most: float) -> bool:
+    """Whether n regions are together larger than `most` (length^2), or one of them is not positive."""
+    total = 0.0
+    for k in range(n):
+        if not loops[k].area > 0.0:
+            return True
+        total += loops[k].area
+    return total > most
+
+
+@kernel
 def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
-    """Regions of A and B placed by `rel`: their number, work.loops[:number]; or OVERFLOW, or TANGLED.
+    """Regions of A and B placed by `rel`: their number, work.loops[:number]; or OVERFLOW, TANGLED, CAUGHT.
 
     The work must hold the two outlines (`fits`). Holes of regions follow them in work.loops where there are any.
     """
     ha = pa.heads[ia]
     hb = pb.heads[ib]
+    arcs = ha.arcs + hb.arcs > 0
+    noise = noise_of(ha.radius, hb.radius, rel)
+    n = OTHERWISE
     if ha.convex and hb.convex:
-        noise = noise_of(ha.radius, hb.radius, rel)
         if ha.disc and hb.disc:
             return disc_disc(ha.radius, hb.radius, rel, work.polygon, work.label, work.bows, work.loops)
         if ha.disc or hb.disc:
@@ -98,21 +119,26 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
                 x = 0.0
                 y = 0.0
                 radius = ha.radius
-            return disc_convex(
+            n = disc_convex(
                 x, y, radius, pool.points, pool.arcs, pool.boxes, head.point, head.count, head.box + head.leaves, place,
                 own, work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-        if ha.arcs + hb.arcs == 0 and ha.count * hb.count <= CLIP_PAIRS:
+        elif not arcs and ha.count * hb.count <= CLIP_PAIRS:
             return clip(
                 pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel,
                 work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-        if ha.arcs + hb.arcs > 0 and ha.count * hb.count <= WALKED_PAIRS:
+        elif arcs and ha.count * hb.count <= WALKED_PAIRS:
             n = convex_pair(
                 pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + 1,
                 pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + 1, rel,
                 work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-            if n != OTHERWISE:
-                return n
-    return general(pa, ia, pb, ib, rel, work)
+    if n == OTHERWISE:
+        n = general(pa, ia, pb, ib, rel, work)
+    if arcs and n > 0:
+        # rounding moves the smaller's boundary by the noise
+        most = min(ha.area, hb.area) * (1.0 + 1e-9) + 8.0 * noise * min(ha.radius, hb.radius)
+        if not 0.0 < work.loops[0].area <= most or (n > 1 and impossible(work.loops, n, most)):
+            return CAUGHT
+    return n

@@ -10,11 +10,17 @@ import numpy as np
 from .apart import gap_along
 from .direction import chord_direction
 from .jit import entry, kernel
-from .overlap import TANGLED, Relative, Work, overlap_kernel, relative
+from .loops import exchange
+from .overlap import OVERFLOW, Relative, Work, overlap_kernel, relative
 from .pool import Pool
+from .work import noise_of
 
-#: A tangle is tried again with B shifted by (i, i^2) times 1e-13 of the size.
-SHIFTS = (1, 2, 3, 4, 5, 6, 7, 8, 16, 32, 64, 128)
+#: A tangle is asked again with B shifted: at first by so many times the rounding of coordinates,
+SHIFT = 16.0
+#: each time by so much more, so often at the most (1e-14 to 1e-3 of the size),
+GROWTH, SHIFTS = 1.5, 64
+#: and another way: 22.5 degrees at first, no multiple of the 15, 30, 45 that are drawn; then the golden angle on.
+FIRST_WAY, NEXT_WAY = math.pi / 8.0, math.pi * (3.0 - math.sqrt(5.0))
 
 
 class Pose(NamedTuple):
@@ -50,25 +56,73 @@ def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
     )  # fmt: skip
 
 
+@kernel
+def _without_thin(work: Work, n: int, width: float) -> int:
+    """Leave out regions of no more area than a shift by `width` (length) makes along their boundary; the others'
+    number."""
+    m = 0
+    for k in range(n):
+        loop = work.loops[k]
+        around = 0.0
+        ux = work.polygon[loop.stop - 1, 0]
+        uy = work.polygon[loop.stop - 1, 1]
+        for i in range(loop.start, loop.stop):
+            vx = work.polygon[i, 0]
+            vy = work.polygon[i, 1]
+            around += abs(vx - ux) + abs(vy - uy)
+            ux = vx
+            uy = vy
+        if loop.area > 0.5 * width * around:
+            if m != k:
+                exchange(work.loops, m, k)
+            m += 1
+    return m
+
+
+@kernel
+def _common_way(a: Any, b: Any, rel: Relative) -> float:
+    """A direction in A's frame (radians) that, asked for (B, A), is the same one in the world, and turned round: B
+    shifted by it is A shifted by that."""
+    half = 0.5 * math.atan2(rel.s, rel.c)
+    along = math.cos(half) * rel.tx + math.sin(half) * rel.ty
+    if a.radius != b.radius:
+        along = a.radius - b.radius
+    elif a.area != b.area:
+        along = a.area - b.area
+    return half if along >= 0.0 else half + math.pi
+
+
+@kernel
+def _shifted(pool: Pool, ia: int, ib: int, rel: Relative, work: Work) -> int:
+    """`overlap_kernel` with B a little beside `rel`: the least of a series of shifts where nothing is in doubt.
+
+    A shift by w moves a corner off an edge of another direction by a part of w; it is undecided while that part is less
+    than the rounding. (Two gears of 400 edges that are one need 300 times the rounding, flat arcs, whose circles round
+    like their radii, as much more as they are flat.) The area is off by w times the overlap's extent at the most, and
+    what is no thicker than w is left out: it may be the shift's own.
+    """
+    width = noise_of(pool.heads[ia].radius, pool.heads[ib].radius, rel)
+    step = SHIFT * width
+    way = FIRST_WAY + _common_way(pool.heads[ia], pool.heads[ib], rel)
+    for _ in range(SHIFTS):
+        beside = Relative(rel.c, rel.s, rel.tx + step * math.cos(way), rel.ty + step * math.sin(way))
+        n = overlap_kernel(pool, ia, pool, ib, beside, work)
+        if n >= 0:
+            return _without_thin(work, n, step + width)
+        if n == OVERFLOW:
+            return n
+        step *= GROWTH
+        way += NEXT_WAY
+    return 0
+
+
 @entry
 def overlap_of_outlines(pool: Pool, ia: int, a: Pose, ib: int, b: Pose, work: Work) -> tuple[int, Relative]:
-    """(number of regions, in `work`; B relative to A) of two placed outlines.
-
-    A tangle is rounding, and undone by shifts, of 1e-13 of the size at first. Two flat arcs that are one to rounding
-    are one within 1e-14 of their radius, which may be any number of sizes: SHIFTS go as far as
-    1.6e-9 of the size, enough for radii of 8e4. If none of them helps, there is no contact this time.
-    """
+    """(number of regions, in `work`; B relative to A) of two placed outlines; or OVERFLOW instead of a number."""
     rel = seen_from(pool.heads[ia], a, pool.heads[ib], b)
     n = overlap_kernel(pool, ia, pool, ib, rel, work)
-    if n == TANGLED:
-        size = 1e-13 * (pool.heads[ia].radius + pool.heads[ib].radius)
-        for i in SHIFTS:
-            shifted = Relative(rel.c, rel.s, rel.tx + i * size, rel.ty + i * i * size)
-            n = overlap_kernel(pool, ia, pool, ib, shifted, work)
-            if n != TANGLED:
-                break
-        if n == TANGLED:
-            n = 0
+    if n < OVERFLOW:
+        n = _shifted(pool, ia, ib, rel, work)
     return n, rel
 
 

@@ -15,8 +15,14 @@ from .memory import record
 NO_AREA = 1e-16
 #: Instead of a number of crossings or regions. The scratch is too small: enlarge it (`enlarged`) and call again.
 OVERFLOW = -1
-#: The crossings do not alternate: an outline crosses itself within rounding. Shift it a little and call again.
+#: Rounding cannot tell: an end lies on the other boundary, crossings do not alternate. Shift it a little and ask again.
 TANGLED = -2
+#: An answer that no two outlines allow was caught (`overlap.impossible`). As TANGLED; that it never happens is tested.
+CAUGHT = -4
+#: Of the short ways through two convex outlines: the general one is to be asked.
+OTHERWISE = -3
+#: Two crossings nearer than this, over the radii: which comes first is not taken from where they are alone.
+NEARBY = 1e-5
 #: Which outline an edge of a region lies on.
 A_EDGE, B_EDGE = 0, 1
 
@@ -162,7 +168,7 @@ def measure(
 
     arcs: whether its edges may be arcs, by `bows`: two vertices each, start and middle. flat: whether both outlines
     have straight edges; else there is no straight stretch to look for. noise: see `noise_of`; edges that turn by no
-    more at a vertex are one straight stretch.
+    more at a vertex are one straight stretch, and a region with arcs that is no wider is none.
     """
     if stop - start < 2:
         return n
@@ -268,8 +274,8 @@ def measure(
         ux = vx
         uy = vy
         i = j
-    if abs(doubled) <= 2.0 * NO_AREA * perimeter * perimeter:
-        return n
+    if abs(doubled) <= 2.0 * NO_AREA * perimeter * perimeter or (arcs and abs(doubled) <= noise * perimeter):
+        return n  # with arcs, whose crossings rounding moves: nor what a displacement by rounding makes
     if not leading and run_of == first_of and run_of != 2:  # does the last stretch go on in the first?
         room = noise * (abs(run_dx) + abs(run_dy) + abs(first_dx) + abs(first_dy))
         if abs(run_dx * first_dy - run_dy * first_dx) <= room and run_dx * first_dx + run_dy * first_dy > 0.0:

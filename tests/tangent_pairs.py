@@ -1,0 +1,411 @@
+"""Pairs of outlines that touch along a tangent or coincide, by construction, and their exact overlap.
+
+Where B stands exactly, the area is known in closed form. Moved by a little s, it grows, to first order, by the flux of
+s through B's boundary: all of it where that boundary lies inside A, of coincident boundaries only what moves into A
+(the solids lie on opposite sides) or out of it (on the same side). What is left out is the area of segments that a
+tangent cuts off at a depth of |s|: `rest`, 2 sqrt(2 r) |s|^1.5 a tangent, 1e-13 of the size for |s| = 1e-9.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+import rigidarea as ra
+from rigidarea import shapes
+
+Pieces = tuple[
+    np.ndarray, np.ndarray, np.ndarray
+]  # starts (n, 2), ends (n, 2), arcs (n, 3) of B, at B's own place
+NONE: Pieces = (np.zeros((0, 2)), np.zeros((0, 2)), np.zeros((0, 3)))
+
+
+class Pair(NamedTuple):
+    """A pair and its area where B stands at `place` (x, y) in A's frame, unturned."""
+
+    family: str
+    a: ra.Outline
+    b: ra.Outline
+    place: tuple[float, float]
+    area: float
+    inside: np.ndarray  # (2,) sum of end - start over B's boundary inside A (length)
+    against: Pieces  # of B's boundary that coincides with A's, solids on opposite sides
+    along: Pieces  # on the same side
+    counts: tuple[int, ...]  # of regions, where B stands exactly; more may appear where it is moved
+    flat: float  # largest radius that a tangent cuts a segment off (length)
+
+    def area_at(self, s: np.ndarray) -> np.ndarray:
+        """Area (n,) with B moved by s (n, 2), to first order."""
+        area = self.area + s[:, 0] * self.inside[1] - s[:, 1] * self.inside[0]
+        for pieces, sign in ((self.against, 1.0), (self.along, -1.0)):
+            chord = (pieces[1] - pieces[0]).sum(0)
+            area = area + 0.5 * (s[:, 0] * chord[1] - s[:, 1] * chord[0] + sign * swept(pieces, s))
+        return area
+
+    def rest(self, s: np.ndarray) -> np.ndarray:
+        """What `area_at` may leave out (n,)."""
+        return 8 * math.sqrt(2 * self.flat) * np.hypot(*s.T) ** 1.5
+
+
+def swept(pieces: Pieces, s: np.ndarray) -> np.ndarray:
+    """Integral of |s . n| (n,) along the pieces."""
+    p, q, arcs = pieces
+    total = np.zeros(len(s))
+    toward, size = np.arctan2(s[:, 1], s[:, 0]), np.hypot(*s.T)
+    for start, end, (x, y, r) in zip(p, q, arcs):
+        if r == 0:
+            d = end - start
+            total += np.abs(s[:, 0] * d[1] - s[:, 1] * d[0])
+            continue
+        low = math.atan2(start[1] - y, start[0] - x)
+        high = math.atan2(end[1] - y, end[0] - x)
+        if r < 0:
+            low, high = high, low
+        high += 2 * math.pi * (high <= low)
+        total += abs(r) * size * (_primitive(high - toward) - _primitive(low - toward))
+    return total
+
+
+def _primitive(x: np.ndarray) -> np.ndarray:
+    """Integral of |cos| from 0 to x."""
+    k = np.floor(x / math.pi + 0.5)
+    return 2 * k + np.sin(x - k * math.pi)
+
+
+def pieces_of(outline: ra.Outline, keep: Callable[[np.ndarray], np.ndarray] | None = None) -> Pieces:
+    """All edges of an outline, or those whose arcs `keep` (n,) bool picks."""
+    p = np.concatenate(outline.rings)
+    q = np.concatenate([np.roll(ring, -1, axis=0) for ring in outline.rings])
+    arcs = np.concatenate(outline.arcs) if outline.arcs else np.zeros((len(p), 3))
+    chosen = np.ones(len(p), bool) if keep is None else keep(arcs)
+    return p[chosen], q[chosen], arcs[chosen]
+
+
+def chord(pieces: Pieces) -> np.ndarray:
+    return np.asarray((pieces[1] - pieces[0]).sum(0))
+
+
+def line(*ends: tuple[float, float]) -> Pieces:
+    """Straight pieces, ends two by two."""
+    points = np.array(ends, float).reshape(-1, 2, 2)
+    return points[:, 0], points[:, 1], np.zeros((len(points), 3))
+
+
+def plate(hole: ra.Outline) -> ra.Outline:
+    """A square three times as wide as the hole in it."""
+    x0, y0, x1, y1 = hole.bounds
+    w = 1.5 * max(x1 - x0, y1 - y0, abs(x0 + x1), abs(y0 + y1))
+    square = np.array([(-w, -w), (w, -w), (w, w), (-w, w)])
+    arcs = hole.arcs or (np.zeros((len(hole.rings[0]), 3)),)
+    return ra.Outline.from_curve([square, hole.rings[0]], arcs=[np.zeros((4, 3)), arcs[0]])
+
+
+def gear(rng: np.random.Generator, size: float, bore: bool) -> tuple[ra.Outline, float, float]:
+    """(teeth of radial flanks between arcs about the origin, tip radius, root radius)."""
+    n = int(rng.integers(3, 25))
+    tip, root = size, size * rng.uniform(0.5, 0.95)
+    step = 2 * math.pi / n
+    width = step * rng.uniform(0.2, 0.8)
+    phase = rng.uniform(0, step) if rng.random() < 0.5 else 0.0
+    ring = []
+    for k in range(n):
+        t = k * step + phase
+        bend = math.tan(width / 4), math.tan((step - width) / 4)
+        for r, angle, bulge in (
+            (tip, t, bend[0]),
+            (tip, t + width, 0.0),
+            (root, t + width, bend[1]),
+            (root, t + step, 0.0),
+        ):
+            ring.append((r * math.cos(angle), r * math.sin(angle), bulge))
+    points, arcs = ra.arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
+    rings, bows = [points], [arcs]
+    if bore:
+        hole = ra.arcs.circle_ring((0.0, 0.0), 0.5 * root)
+        rings.append(hole[0])
+        bows.append(hole[1])
+    return ra.Outline.from_curve(rings, arcs=bows), tip, root
+
+
+def crescent(rng: np.random.Generator, size: float) -> ra.Outline:
+    return ra.Outline.from_bulges([(0, -size, rng.uniform(0.6, 1)), (0, size, -rng.uniform(0.05, 0.55))])
+
+
+def rounded(rng: np.random.Generator, size: float) -> tuple[ra.Outline, float, float, float]:
+    """(box of half widths w, h, w, h, radius of its corners)."""
+    w, h = size * rng.uniform(0.3, 1.0, 2)
+    r = min(w, h) * 10 ** rng.uniform(-3, -0.01)
+    return shapes.rounded_polygon([(-w, -h), (w, -h), (w, h), (-w, h)], r), w, h, r
+
+
+def any_shape(rng: np.random.Generator, size: float) -> ra.Outline:
+    kind = rng.integers(5)
+    if kind == 0:
+        return ra.Outline.circle(size * rng.uniform(0.2, 1))
+    if kind == 1:
+        return shapes.capsule(size * rng.uniform(0.1, 2), size * rng.uniform(0.1, 1))
+    if kind == 2:
+        return rounded(rng, size)[0]
+    return crescent(rng, size) if kind == 3 else gear(rng, size, False)[0]
+
+
+def pin_in_slot(rng: np.random.Generator, size: float) -> Pair:
+    r, length = size * rng.uniform(0.05, 1), size * rng.uniform(0.1, 3)
+    pin = ra.Outline.circle(r)
+    where = float(rng.choice([-1, -1 + 2 * rng.random(), 0, 1]))
+    end = pieces_of(pin, lambda arcs: arcs[:, 2] != 0)
+    against = NONE
+    if abs(where) == 1:  # the slot's round end
+        top, bottom = np.array([0, r]), np.array([0, -r])
+        p, q = (bottom, top) if where > 0 else (top, bottom)
+        against = (p[None], q[None], end[2][:1])
+    return Pair(
+        "pin in slot",
+        plate(shapes.capsule(length, r)),
+        pin,
+        (where * (length / 2), 0.0),
+        0.0,
+        np.zeros(2),
+        against,
+        NONE,
+        (0,),
+        r,
+    )
+
+
+def capsule_over_bore(rng: np.random.Generator, size: float) -> Pair:
+    r, length = size * rng.uniform(0.05, 1), size * rng.uniform(0.1, 1)
+    w = 3 * (length + r)
+    square = np.array([(-w, -w), (w, -w), (w, w), (-w, w)])
+    hole = ra.arcs.circle_ring((0.0, 0.0), r)
+    bored = ra.Outline.from_curve([square, hole[0]], arcs=[np.zeros((4, 3)), hole[1]])
+    return Pair(
+        "capsule over bore",
+        bored,
+        shapes.capsule(length, r),
+        (0.0, 0.0),
+        2 * r * length,
+        np.zeros(2),
+        NONE,
+        NONE,
+        (1, 2),
+        r,
+    )
+
+
+def plug(rng: np.random.Generator, size: float) -> Pair:
+    shape = any_shape(rng, size)
+    flat = max(float(np.abs(arc[:, 2]).max()) for arc in shape.arcs)
+    return Pair("plug", plate(shape), shape, (0.0, 0.0), 0.0, np.zeros(2), pieces_of(shape), NONE, (0,), flat)
+
+
+def twins(rng: np.random.Generator, size: float) -> Pair:
+    shape = any_shape(rng, size) if rng.random() < 0.7 else gear(rng, size, True)[0]
+    flat = max(float(np.abs(arc[:, 2]).max()) for arc in shape.arcs)
+    return Pair(
+        "twins", shape, shape, (0.0, 0.0), shape.area, np.zeros(2), NONE, pieces_of(shape), (1,), flat
+    )
+
+
+def disc_outside(rng: np.random.Generator, size: float) -> Pair:
+    """A disc that touches a face, where the face is, at its very end (which is an arc's), or on a round end."""
+    disc = ra.Outline.circle(size * rng.uniform(0.05, 1))
+    r = disc.arcs[0][0, 2]
+    if rng.random() < 0.5:
+        half, thick = size * rng.uniform(0.05, 1), size * rng.uniform(0.05, 1)
+        body: ra.Outline = shapes.capsule(2 * half, thick)
+        face, top = half, thick
+    else:
+        body, w, top, bend = rounded(rng, size)
+        face = w - bend
+    x = face * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1]))
+    place = (x, (top + r) * float(rng.choice([-1, 1])))
+    return Pair("disc outside", body, disc, place, 0.0, np.zeros(2), NONE, NONE, (0,), 4 * size)
+
+
+def disc_inside(rng: np.random.Generator, size: float) -> Pair:
+    """A disc in a capsule, at its side, between both sides, or in its end."""
+    half, r = size * rng.uniform(0.05, 1), size * rng.uniform(0.05, 1)
+    body = shapes.capsule(2 * half, r)
+    how = rng.integers(3)
+    small = r * rng.uniform(0.1, 0.95) if how == 0 else r
+    disc = ra.Outline.circle(small)
+    x = (
+        half
+        if how == 2
+        else half * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1])) * (1 if how == 0 else 0.9)
+    )
+    along = NONE
+    if how == 2:
+        along = (np.array([[0, -r]]), np.array([[0, r]]), np.array([[0, 0, r]]))
+    return Pair(
+        "disc inside",
+        body,
+        disc,
+        (x, r - small),
+        math.pi * small**2,
+        -chord(along),
+        NONE,
+        along,
+        (1,),
+        20 * r,
+    )
+
+
+def slid_capsules(rng: np.random.Generator, size: float) -> Pair:
+    length, r = size * rng.uniform(0.2, 2), size * rng.uniform(0.05, 1)
+    body = shapes.capsule(length, r)
+    a = length * rng.uniform(0.05, 0.95)
+    low, high = -length / 2, length / 2 - a  # of B's faces on A's
+    along = line((low, -r), (high, -r), (high, r), (low, r))
+    inside = np.array([0.0, -2 * r])  # B's left end
+    return Pair(
+        "slid capsules",
+        body,
+        body,
+        (a, 0.0),
+        2 * r * (length - a) + math.pi * r * r,
+        inside,
+        NONE,
+        along,
+        (1,),
+        4 * r,
+    )
+
+
+def stacked_boxes(rng: np.random.Generator, size: float) -> Pair:
+    body, w, h, r = rounded(rng, size)
+    half = w - r
+    x = float(rng.choice([0.0, 2 * half * rng.uniform(-1, 1), 2 * half, 2 * w]))
+    low, high = max(-half, -half - x), min(half, half - x)  # of B's lower face on A's upper
+    against = line((low, -h), (high, -h)) if high > low else NONE
+    return Pair("stacked boxes", body, body, (x, 2 * h), 0.0, np.zeros(2), against, NONE, (0,), 4 * r)
+
+
+def disc_in_crescent(rng: np.random.Generator, size: float) -> Pair:
+    moon = crescent(rng, size)
+    p, q, arcs = pieces_of(moon, lambda arcs: arcs[:, 2] < 0)
+    x, y, r = arcs[0]
+    disc = ra.Outline.circle(-r)
+    against = (q - (x, y), p - (x, y), np.array([[0, 0, -r]] * len(p)))
+    return Pair(
+        "disc in crescent", moon, disc, (float(x), float(y)), 0.0, np.zeros(2), against, NONE, (0,), -r
+    )
+
+
+def gear_in_bore(rng: np.random.Generator, size: float) -> Pair:
+    wheel, tip, _ = gear(rng, size, False)
+    tips = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] > 0.97 * tip))
+    return Pair(
+        "gear in bore",
+        plate(ra.Outline.circle(tip)),
+        wheel,
+        (0.0, 0.0),
+        0.0,
+        np.zeros(2),
+        tips,
+        NONE,
+        (0,),
+        tip,
+    )
+
+
+def disc_in_gear(rng: np.random.Generator, size: float) -> Pair:
+    wheel, tip, root = gear(rng, size, False)
+    along = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] < 0.97 * tip))
+    return Pair(
+        "disc in gear",
+        wheel,
+        ra.Outline.circle(root),
+        (0.0, 0.0),
+        math.pi * root**2,
+        -chord(along),
+        NONE,
+        along,
+        (1,),
+        root,
+    )
+
+
+FAMILIES = (
+    pin_in_slot, capsule_over_bore, plug, twins, disc_outside, disc_inside, slid_capsules, stacked_boxes,
+    disc_in_crescent, gear_in_bore, disc_in_gear,
+)  # fmt: skip
+
+
+class Posed(NamedTuple):
+    """Poses (n, 4) of A and of B (x, y, cosine, sine), and how far B really is from its place, in A's frame (n, 2)."""
+
+    a: np.ndarray
+    b: np.ndarray
+    s: np.ndarray
+
+
+def lattice(rng: np.random.Generator, size: float) -> tuple[ra.Outline, ra.Outline, Posed]:
+    """Two outlines of three lengths and their sums, at places of such sums, turned by eighths: whatever can touch,
+    conform or coincide does, somewhere."""
+    u, v, w = size * rng.uniform(0.2, 1, 3)
+    shapes_of: list[Callable[[], ra.Outline]] = [
+        lambda: ra.Outline.circle(u),
+        lambda: ra.Outline.circle(v),
+        lambda: shapes.capsule(2 * u, v),
+        lambda: shapes.capsule(2 * v, u),
+        lambda: shapes.box(2 * (u + v), 2 * v),
+        lambda: shapes.rounded_polygon(
+            [(-u - w, -v - u), (u + w, -v - u), (u + w, v + u), (-u - w, v + u)], u
+        ),
+        lambda: shapes.ring(u, u + v),
+        lambda: plate(ra.Outline.circle(u)),
+        lambda: plate(shapes.capsule(2 * v, u)),
+        lambda: ra.Outline.from_bulges(
+            [
+                (-u - w, -v, 0),
+                (u + w, -v, 0),
+                (u + w, u + v, 0),
+                (u, u + v, -1),
+                (-u, u + v, 0),
+                (-u - w, u + v, 0),
+            ]
+        ),
+    ]
+    a, b = (shapes_of[k]() for k in rng.integers(0, len(shapes_of), 2))
+    sums = [
+        k * p + m * q for k in (-1, 0, 1) for m in (-1, 0, 1) for p, q in ((u, v), (v, w), (u, w), (2 * u, v))
+    ]
+    angle = float(rng.uniform(-7, 7)) if rng.random() < 0.5 else 0.0
+    turn = float(rng.integers(0, 8)) * math.pi / 4 if rng.random() < 0.6 else 0.0
+    x, y = rng.choice(sums, 2) + (
+        0 if rng.random() < 0.5 else size * 10 ** rng.uniform(-17, -9)
+    ) * rng.normal(size=2)
+    home = size * 10 ** rng.uniform(-2, 9) * rng.uniform(-1, 1, 2) * (rng.random() < 0.3)
+    c, s = math.cos(angle), math.sin(angle)
+    there = home + (c * x - s * y, s * x + c * y)
+    pose_a = np.array([[*home, c, s]])
+    pose_b = np.array([[*there, math.cos(angle + turn), math.sin(angle + turn)]])
+    return a, b, Posed(pose_a, pose_b, np.zeros((1, 2)))
+
+
+def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Posed:
+    """At angle 0 and turned, moved by 0 and 1e-17 to 1e-9 of the size, at the origin and up to 1e9 sizes off it."""
+    wide = np.longdouble
+    angle = rng.uniform(-7, 7, count) * (rng.random(count) < 0.6)
+    angle = np.where(rng.random(count) < 0.15, rng.integers(-4, 5, count) * (math.pi / 4), angle)
+    c, s = np.cos(angle), np.sin(angle)
+    off = size * 10 ** rng.uniform(-17, -9, count) * (rng.random(count) < 0.6)
+    toward = rng.uniform(0, 2 * math.pi, count)
+    toward = np.where(rng.random(count) < 0.4, rng.integers(0, 4, count) * (math.pi / 2), toward)
+    x, y = pair.place[0] + off * np.cos(toward), pair.place[1] + off * np.sin(toward)
+    far = size * 10 ** rng.uniform(-2, 9, count) * (rng.random(count) < 0.3)
+    home = far[:, None] * rng.uniform(-1, 1, (count, 2))
+    there = home + np.stack([c * x - s * y, s * x + c * y], 1)
+    d = there.astype(wide) - home
+    real = (
+        np.stack([c * d[:, 0] + s * d[:, 1], c * d[:, 1] - s * d[:, 0]], 1)
+        / (c.astype(wide) ** 2 + s.astype(wide) ** 2)[:, None]
+    )
+    s_real = (real - np.array(pair.place, wide)).astype(float)
+    turn = np.stack([c, s], 1)
+    return Posed(np.hstack([home, turn]), np.hstack([there, turn]), s_real)
