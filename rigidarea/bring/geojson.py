@@ -15,7 +15,7 @@ from .rings import Ring, outlines_of_polygons
 from .texts import parse_json
 from .values import LARGEST, coordinates
 
-#: Lists and objects within each other in a file: what the parser's stack bears. Collections are counted as they are read.
+#: Lists and objects within each other in a file: what a stack bears. Collections are counted as they are read.
 DEEPEST = 400
 GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
 

@@ -109,7 +109,9 @@ def outlines_from_mask(
     del given
     above = padded > threshold
     crossed = np.count_nonzero(above[1:] != above[:-1]) + np.count_nonzero(above[:, 1:] != above[:, :-1])
-    check(crossed, limits.points, "points")  # contours have one where two pixels' centres lie on both sides
+    check(
+        int(crossed), limits.points, "points"
+    )  # contours have one where two pixels' centres lie on both sides
     contours: Any = contour_generator(z=padded, fill_type=FillType.OuterOffset)
     points, offsets = contours.filled(threshold, max(float(padded.max()), threshold) + 1.0)
     check(sum(map(len, offsets)) - len(offsets), limits.parts, "solids and holes")

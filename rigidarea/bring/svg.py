@@ -201,7 +201,7 @@ def _parsed(content: str, reader: _Sheet | _Drawing) -> None:
 
 def _rules(sheet: str) -> dict[str, dict[str, str]]:
     """What a style sheet says of each of its selectors; of those with more than one part nothing is asked."""
-    plain = []
+    plain: list[str] = []
     for part in sheet.split("/*"):  # a comment ends at its first */; what begins in it begins nothing
         plain.append(part if not plain else part.partition("*/")[2])
     rules: dict[str, dict[str, str]] = {}

@@ -36,8 +36,8 @@ _STEPS[list(b"]}")] = -1
 def parse_json(content: str, what: str, depth: int, limits: Limits) -> Any:
     """The value of a JSON text, in which NaN and Infinity are not allowed.
 
-    Raises ValueError for anything else, for more than `limits` allow, and for more than `depth` lists and objects within each
-    other; what: where it comes from, for the message.
+    Raises ValueError for anything else, for more than `limits` allow, and for more than `depth` lists and objects within
+    each other; what: where it comes from, for the message.
     """
     check(len(content), limits.bytes, "characters")
     _bounded(_JSON_STRING.sub("_", content), ":", what, depth, limits)
@@ -74,7 +74,7 @@ def parse_toml(content: str, what: str, limits: Limits) -> dict[str, Any]:
 
 
 def _bounded(plain: str, entry: str, what: str, depth: int, limits: Limits) -> None:
-    """ValueError for too much in a text without strings and comments; entry: what stands between a key and its value."""
+    """ValueError for too much in a text without strings and comments; entry: what stands between key and value."""
     steps = _STEPS[np.frombuffer(plain.encode("utf-8", "replace"), np.uint8)]
     deepest = int(steps.cumsum(dtype=np.int32).max(initial=0))
     if deepest > depth:
