@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pymunk
 import shapely
+from numpy.typing import NDArray
 
 from .arcs import Points, area_and_first_moment
 
@@ -22,16 +23,16 @@ def hull_of(points: Points) -> Points:
     )
 
 
-def farthest(hull: Points, angles: Points) -> Points:
+def farthest(hull: Points, angles: Points) -> NDArray[np.intp]:
     """The corners (3, n) of a convex hull (m, 2) farthest in the directions `angles` (n,), among three each.
 
-    That is where the directions of its edges, which only turn left, pass a quarter turn more (Shamos 1978); rounding may
-    be one corner off.
+    That is where the directions of its edges, which only turn left, pass a quarter turn more (Shamos 1978); rounding
+    may be one corner off.
     """
     along = np.roll(hull, -1, axis=0) - hull
     turned = np.unwrap(np.arctan2(along[:, 1], along[:, 0]))
     passed = turned[0] + (angles + math.pi / 2 - turned[0]) % (2 * math.pi)
-    return (np.searchsorted(turned, passed) + np.arange(-1, 2)[:, None]) % len(hull)
+    return np.asarray((np.searchsorted(turned, passed) + np.arange(-1, 2)[:, None]) % len(hull))
 
 
 def width_of(hull: Points) -> float:
@@ -77,7 +78,7 @@ def _bounding_circle(hull: Points) -> tuple[Points, float]:
 def _bounding_octagon(hull: Points) -> Points:
     """The smallest of a few octagons of 45° corners around a convex hull (m, 2): 8 support lines, met two
     by two."""
-    hull = hull[np.unique(farthest(hull, np.arange(64) * (math.pi / 32)))]
+    hull = hull[np.unique(farthest(hull, np.arange(64.0) * (math.pi / 32)))]
     best, best_area = hull, math.inf
     for turn in np.arange(8) * (math.pi / 32):
         angle = turn + np.arange(9) * (math.pi / 4)

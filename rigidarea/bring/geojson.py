@@ -13,7 +13,7 @@ from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read, shown, text
 from .rings import Ring, outlines_of_polygons
 from .texts import parse_json
-from .values import LARGEST, coordinates
+from .values import LARGEST, coordinates, first_wrong
 
 #: Lists and objects within each other in a file: what a stack bears. Collections are counted as they are read.
 DEEPEST = 400
@@ -88,15 +88,13 @@ def _ring(found: Any, points: list[int], scale: float, limits: Limits) -> Ring:
         raise ValueError(f"expected a ring of at least 4 points, the last one the first, got {len(ring)}")
     placed = coordinates(ring, (2, 3))
     if placed is None:
-        for point in ring:  # the first that is wrong, for the message
-            if not isinstance(point, list) or len(point) < 2 or set(map(type, point[:2])) - {int, float}:
-                raise ValueError(f"expected a point as [x, y], got {shown(point, 80)}")
-            if coordinates([point[:2]], (2,)) is None:
-                raise ValueError(
-                    f"expected finite coordinates of at most {LARGEST:g}, got {shown(point, 80)}"
-                )
-        placed = coordinates([point[:2] for point in ring], (2,))  # of several dimensions
-        assert placed is not None
+        plane = [point[:2] if isinstance(point, list) else point for point in ring]  # of more dimensions
+        placed = coordinates(plane, (2,))
+        if placed is None:
+            bad = plane[first_wrong(plane, (2,))]
+            if not isinstance(bad, list) or len(bad) < 2 or set(map(type, bad)) - {int, float}:
+                raise ValueError(f"expected a point as [x, y], got {shown(bad, 80)}")
+            raise ValueError(f"expected finite coordinates of at most {LARGEST:g}, got {shown(bad, 80)}")
     placed = scale * placed[:, :2]
     if not np.isfinite(placed).all():
         raise ValueError(f"expected finite coordinates, got more than that after scale {scale:g}")

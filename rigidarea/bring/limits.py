@@ -20,10 +20,14 @@ class Limits(NamedTuple):
     """Lists and tables within each other."""
     points: int = 1_000_000
     """Points of all outlines together."""
-    parts: int = 100_000
-    """Bodies, shapes, joints, rings, elements: of each."""
-    pixels: int = 16 * 2**20
-    """Pixels of a picture."""
+    parts: int = 10_000
+    """Bodies, shapes, joints, elements of a drawing: of each."""
+    pixels: int = 8 * 2**20
+    """Pixels of a picture: a screen of 3840 x 2160."""
+    rings: int = 2_500
+    """Rings of all outlines together: each is checked by itself."""
+    arcs: int = 20_000
+    """Points of all outlines with arcs together."""
 
 
 LIMITS = Limits()

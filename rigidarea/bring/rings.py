@@ -8,7 +8,6 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
-from ..gate import size
 from ..kernel.thin import thinned
 from ..outline import Outline
 from .limits import Limits, check
@@ -25,16 +24,39 @@ def outlines_of_polygons(
     Raises ValueError for polygons that are not valid, with the place.
     """
     check(int(shapely.get_num_coordinates(polygons).sum()), limits.points, "points")
-    check(int(shapely.get_num_interior_rings(polygons).sum()) + len(polygons), limits.parts, "rings")
-    made = []
-    for i, polygon in enumerate(polygons):
-        if not shapely.is_valid(polygon):
-            reason = shapely.is_valid_reason(polygon)
-            raise ValueError(
-                f"polygon {i}: {reason}; expected rings that neither cross themselves nor each other"
-            )
-        made.append(Outline.from_shapely(_thin(polygon, tolerance) if tolerance > 0 else polygon))
-    return made
+    check(int(shapely.get_num_interior_rings(polygons).sum()) + len(polygons), limits.rings, "rings")
+    rings = [shapely.get_coordinates(ring) for polygon in polygons for ring in shapely.get_rings(polygon)]
+    check_tangle(rings, limits)
+    valid = shapely.is_valid(polygons)
+    if not valid.all():
+        i = int(np.argmin(valid))
+        raise ValueError(
+            f"polygon {i}: {shapely.is_valid_reason(polygons[i])};"
+            " expected rings that neither cross themselves nor each other"
+        )
+    return [
+        Outline.from_shapely(_thin(polygon, tolerance) if tolerance > 0 else polygon) for polygon in polygons
+    ]
+
+
+def check_tangle(rings: Sequence[Ring], limits: Limits) -> None:
+    """ValueError for rings that wind so that whoever looks for crossings has to look at too many pairs of their edges.
+
+    Stretches of edges that go on in one quadrant do not meet themselves: GEOS looks at pairs of such, whose boxes
+    overlap. Of a million points on a gear there are a few hundred; of ten thousand on a star, ten thousand.
+    """
+    if sum(map(len, rings)) < 2000:
+        return
+    low, high = [], []
+    for ring in rings:
+        steps = np.diff(ring, axis=0, append=ring[:1])
+        quadrant = 2 * (steps[:, 0] < 0) + (steps[:, 1] < 0)
+        starts = np.flatnonzero(np.diff(quadrant, prepend=-1))
+        ends = ring[np.append(starts[1:], 0)]  # the last point of a stretch is the next one's first
+        low.append(np.minimum(np.minimum.reduceat(ring, starts), ends))
+        high.append(np.maximum(np.maximum.reduceat(ring, starts), ends))
+    boxes = shapely.box(*np.concatenate(low).T, *np.concatenate(high).T)
+    overlapping_boxes(boxes, 5 * limits.points, "stretches of rings", keep=False)
 
 
 def _thin(polygon: shapely.Polygon, tolerance: float) -> shapely.Polygon:
@@ -55,7 +77,7 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
 
     Rings of no area are dropped. Raises ValueError for a ring that crosses itself, and for rings that cross.
     """
-    check(len(rings), limits.parts, "rings")
+    check(len(rings), limits.rings, "rings")
     check(sum(map(len, rings)), limits.points, "points")
     kept = []
     for i, ring in enumerate(rings):
@@ -71,14 +93,16 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
     )
     bounds = shapely.bounds(edges)
     extent = (bounds[:, 2:] - bounds[:, :2]).max(axis=1)
+    check_tangle([rings[i] for i in kept], limits)
     solid = shapely.polygons(edges)
     wide = shapely.area(shapely.convex_hull(solid)) > 1e-12 * extent**2
     edges, solid, kept = edges[wide], solid[wide], np.array(kept)[wide].tolist()
-    for i, polygon in zip(kept, solid):
-        if not shapely.is_valid(polygon):
-            raise ValueError(
-                f"ring {i}: {shapely.is_valid_reason(polygon)}; expected a ring that does not cross itself"
-            )
+    valid = shapely.is_valid(solid)
+    if not valid.all():
+        i = int(np.argmin(valid))
+        raise ValueError(
+            f"ring {kept[i]}: {shapely.is_valid_reason(solid[i])}; expected a ring that does not cross itself"
+        )
     if len(solid) == 1:
         return solid.tolist()
     inner, outer = overlapping_boxes(solid, limits.parts, "rings")
@@ -110,27 +134,23 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
     return [shapely.Polygon(edges[i], [edges[j] for j in inner]) for i, inner in holes.items()]
 
 
-def overlapping_boxes(solid: Sequence[shapely.Polygon], most: int, what: str) -> tuple[Indices, Indices]:
-    """Pairs (i, j), i != j, of polygons whose boxes overlap: the i and the j, each (n,).
+def overlapping_boxes(
+    solid: Sequence[shapely.Polygon], most: int, what: str, keep: bool = True
+) -> tuple[Indices, Indices]:
+    """Pairs (i, j), i != j, of polygons whose boxes overlap: the i and the j, each (n,); none without `keep`.
 
     Raises ValueError for more than `most` pairs of `what` (1e5 nested rings have 1e10).
     """
     if not len(solid):
         return np.zeros(0, int), np.zeros(0, int)
-    tree, found, total = shapely.STRtree(solid), [], 0
+    tree, found, total = shapely.STRtree(solid), list[Indices](), 0
     for first in range(0, len(solid), 64):
         pairs = tree.query(solid[first : first + 64])
         pairs[0] += first
         pairs = pairs[:, pairs[0] != pairs[1]]
         total += pairs.shape[1]
         check(total, most, f"pairs of {what} whose boxes overlap")
-        found.append(pairs)
+        if keep or not found:
+            found.append(pairs)
     inner, outer = np.concatenate(found, axis=1)
     return inner, outer
-
-
-def curve_tolerance(tolerance: float | None, bounds: tuple[float, float, float, float]) -> float:
-    """The tolerance given (length, > 0), or a thousandth of the drawing's smaller extent; ValueError as `size`'s."""
-    if tolerance is None:
-        return 1e-3 * (min(bounds[2] - bounds[0], bounds[3] - bounds[1]) or 1.0)
-    return size(tolerance, "tolerance")

@@ -46,6 +46,7 @@ import os
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 import pymunk
 import shapely
 
@@ -53,7 +54,7 @@ from ..contact import AreaContact, attach
 from ..outline import Outline
 from .joints import COMMON, JOINTS, LENGTH, POINT
 from .limits import LIMITS, Limits, allowed, check, file_of, read, shown, text
-from .rings import overlapping_boxes
+from .rings import check_tangle, overlapping_boxes
 from .texts import parse_json, parse_toml
 from .values import Values
 
@@ -132,6 +133,7 @@ class _Reader(Values):
         super().__init__(limits)
         self.outlines: dict[str, Outline] = {}
         self.rings = 0
+        self.arcs = 0
         self.materials: dict[str, dict[str, float]] = {}
         self.densities: dict[pymunk.Shape, float] = {}
         self.made: list[tuple[pymunk.Body, list[pymunk.Shape]]] = []
@@ -324,10 +326,23 @@ class _Reader(Values):
         rings = [self.bulged(given.get("points"), f"{place}.points")]
         holes = self.rows(given.get("holes", []), f"{place}.holes")
         self.rings += 1 + len(holes)
-        check(self.rings, self.limits.parts, "rings")
+        check(self.rings, self.limits.rings, "rings")
         rings += [self.bulged(hole, f"{place}.holes[{i}]") for i, hole in enumerate(holes)]
+        bent = any(ring[:, 2].any() for ring in rings)
+        if bent:
+            self.arcs += sum(map(len, rings))
+            check(self.arcs, self.limits.arcs, "points of outlines with arcs")
+            ends = [np.roll(ring, -1, axis=0) for ring in rings]
+            p, q = np.concatenate(rings)[:, :2], np.concatenate(ends)[:, :2]
+            half = (
+                np.hypot(*(q - p).T)[:, None] / 2
+            )  # an arc reaches no further beyond its chord's box than that
+            boxes = shapely.box(*(np.minimum(p, q) - half).T, *(np.maximum(p, q) + half).T)
+            overlapping_boxes(boxes, 25 * self.limits.arcs, "edges", keep=False)
+        else:
+            check_tangle([ring[:, :2] for ring in rings], self.limits)
         try:
-            if any(ring[:, 2].any() for ring in rings):
+            if bent:
                 return Outline.from_bulges(rings[0], rings[1:])
             return Outline(rings[0][:, :2], [ring[:, :2] for ring in rings[1:]])
         except ValueError as error:

@@ -70,7 +70,7 @@ def outlines_from_svg(
         made: list[Outline] = []
         for rings in drawing.segments.rings(scale, flip, tolerance):
             made += outlines_of_polygons(polygons_of_rings(rings, limits), 0.0, limits)
-            check(len(made), limits.parts, "outlines")
+            check(len(made), limits.rings, "outlines")
         return made
     except expat.ExpatError as error:
         raise ValueError(f"{source}: expected an SVG drawing: {error}") from None

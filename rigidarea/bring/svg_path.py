@@ -29,6 +29,8 @@ _RUN = re.compile(rf"(?:{_GAP}{NUMBER})*+{_GAP}")
 _ARC = re.compile(
     _GAP + _GAP.join([f"({NUMBER})"] * 3 + ["([01])"] * 2 + [f"({NUMBER})"] * 2) + _GAP, re.ASCII
 )
+#: Segments of a drawing: some two microseconds each.
+SEGMENTS = 250_000
 #: Numbers that each command takes at a time.
 _TAKES = {"m": 2, "l": 2, "h": 1, "v": 1, "c": 6, "s": 4, "q": 4, "t": 2, "a": 7, "z": 0}
 
@@ -90,7 +92,8 @@ class Segments:
 
     def rectangle(self, x: float, y: float, width: float, height: float, rx: float, ry: float) -> None:
         if not (rx > 0 and ry > 0):
-            self.polyline([complex(x, y), complex(x + width, y), complex(x + width, y + height), complex(x, y + height)])  # fmt: skip
+            at = complex(x, y)
+            self.polyline([at, at + width, at + complex(width, height), at + height * 1j])
             return
         centers = [complex(x + width - rx, y + ry), complex(x + width - rx, y + height - ry)]
         centers += [complex(x + rx, y + height - ry), complex(x + rx, y + ry)]
@@ -98,7 +101,8 @@ class Segments:
         self.move(centers[3] + away[0])
         for i, center in enumerate(centers):
             self.line(center + away[i])
-            self.arc(center, complex(rx), ry * 1j, (i - 1) * math.pi / 2, math.pi / 2, center + away[(i + 1) % 4])  # fmt: skip
+            end = center + away[(i + 1) % 4]
+            self.arc(center, complex(rx), ry * 1j, (i - 1) * math.pi / 2, math.pi / 2, end)
 
     def elliptic(
         self, at: complex, rx: float, ry: float, turn: float, large: bool, left: bool, to: complex
@@ -132,7 +136,7 @@ class Segments:
         at = start = before = 0j  # before: the last control point of the command before, of its kind
         kind = ""
         closed = broken = False
-        for letter, found in _COMMANDS.findall(data):
+        for letter, found in map(re.Match.groups, _COMMANDS.finditer(data)):
             last, kind = kind, letter.lower()
             takes = _TAKES.get(kind)
             if takes is None or broken:
@@ -147,7 +151,9 @@ class Segments:
                 del given[len(given) // takes * takes :]
                 if not given:
                     return
-            check(len(self.kinds) + len(given) // takes, self.limits.points, "points")
+            told = len(self.kinds) + len(given) // takes
+            check(told, self.limits.points, "points")
+            check(told, SEGMENTS, "segments")
             if closed and kind != "m":
                 self.move(at)
             closed = False
@@ -206,6 +212,7 @@ class Segments:
         if len(self.kinds) > (self.stops[-1] if self.stops else 0):
             check(len(self.stops) + 1, self.limits.parts, "elements")
             check(len(self.kinds), self.limits.points, "points")
+            check(len(self.kinds), SEGMENTS, "segments")
             self.stops.append(len(self.kinds))
             self.matrices.append(matrix)
 
@@ -253,7 +260,7 @@ class Segments:
 
         every = np.arange(len(bends))
         low, high = np.stack((ends.real, ends.imag)), np.stack((ends.real, ends.imag))
-        for t in np.arange(1, 16) / 16:  # their extent, to half a percent
+        for t in np.arange(1, 8) / 8:  # their extent, to two percent
             inner = at(every, np.full(len(bends), t))
             for axis, value in enumerate((inner.real, inner.imag)):
                 low[axis, bends] = np.minimum(low[axis, bends], value)

@@ -14,7 +14,7 @@ from .limits import Limits, check
 #: TOML's parser is Python: a file of the largest size would take it minutes.
 TOML_BYTES = 2**20
 #: Names in a dotted key: what tomllib does goes with their square.
-NAMES = 8
+NAMES = 4
 
 # Strings, a last one that never ends included; no part of a pattern is ever tried twice (possessive: *+).
 _JSON_STRING = re.compile(r'"[^"\\]*+(?:\\.[^"\\]*+)*+(?:"|\Z)', re.DOTALL)
@@ -36,8 +36,8 @@ _STEPS[list(b"]}")] = -1
 def parse_json(content: str, what: str, depth: int, limits: Limits) -> Any:
     """The value of a JSON text, in which NaN and Infinity are not allowed.
 
-    Raises ValueError for anything else, for more than `limits` allow, and for more than `depth` lists and objects within
-    each other; what: where it comes from, for the message.
+    Raises ValueError for anything else, for more than `limits` allow, and for more than `depth` lists and
+    objects within each other; what: where it comes from, for the message.
     """
     check(len(content), limits.bytes, "characters")
     _bounded(_JSON_STRING.sub("_", content), ":", what, depth, limits)

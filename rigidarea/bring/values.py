@@ -27,6 +27,8 @@ def coordinates(rows: list[Any], widths: Collection[int]) -> Ring | None:
 
     None unless all of them are lists, of one of these widths, of finite numbers of at most LARGEST.
     """
+    if not rows:
+        return np.zeros((0, max(widths)))
     if set(map(type, rows)) - {list} or not (found := set(map(len, rows))) <= set(widths):
         return None
     widest = max(widths)
@@ -39,6 +41,15 @@ def coordinates(rows: list[Any], widths: Collection[int]) -> Ring | None:
     except OverflowError:
         return None
     return told if (np.abs(told) <= LARGEST).all() else None
+
+
+def first_wrong(rows: list[Any], widths: Collection[int]) -> int:
+    """Which of the rows is the first of which `coordinates` makes nothing; found by halves."""
+    low, high = 0, len(rows)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if coordinates(rows[low:middle], widths) is None else (middle, high)
+    return low
 
 
 class Values:
@@ -113,15 +124,13 @@ class Values:
         self.points += len(points)
         check(self.points, self.limits.points, "points")
         told = coordinates(points, (2, 3))
-        if told is None:  # the first that is wrong, for the message
-            for i, point in enumerate(points):
-                if coordinates([point], (2, 3)) is not None:
-                    continue
-                if not isinstance(point, list) or len(point) not in (2, 3):
-                    raise ValueError(f"{place}[{i}]: expected [x, y] or [x, y, bulge], got {shown(point)}")
-                for k, value in enumerate(point):
-                    self.number(value, f"{place}[{i}][{k}]")
-            told = np.zeros((0, 3))
+        if told is None:
+            i = first_wrong(points, (2, 3))
+            if not isinstance(points[i], list) or len(points[i]) not in (2, 3):
+                raise ValueError(f"{place}[{i}]: expected [x, y] or [x, y, bulge], got {shown(points[i])}")
+            for k, value in enumerate(points[i]):
+                self.number(value, f"{place}[{i}][{k}]")
+            raise ValueError(f"{place}: expected points, got {shown(points)}")
         size = np.abs(told[:, 2])
         wrong = (size != 0) & ~((size >= FLATTEST) & (size <= 1 / FLATTEST))
         if wrong.any():
