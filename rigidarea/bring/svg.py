@@ -12,7 +12,7 @@ from ..gate import size, truth
 from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read, shown, text
 from .rings import outlines_of_polygons, polygons_of_rings
-from .svg_path import NUMBER, Matrix, Segments, numbers
+from .svg_path import NUMBER, Matrix, Segments, finite_numbers, numbers
 
 #: A drawing is read in Python, some megabyte a second.
 SVG_BYTES = 2 * 2**20
@@ -228,7 +228,7 @@ def _length(found: str | None, whole: float, what: str) -> float | None:
     unit = told[2].lower() if told else "?"
     if told is None or (unit != "%" and unit not in _UNITS):
         raise ValueError(f"{what}: expected a length in {', '.join(_UNITS)[2:]} or %, got {shown(found)}")
-    return float(told[1]) * (whole / 100 if unit == "%" else _UNITS[unit])
+    return finite_numbers([told[1]], what)[0] * (whole / 100 if unit == "%" else _UNITS[unit])
 
 
 def _viewport(
@@ -311,7 +311,7 @@ def _function(name: str, found: str) -> Matrix:
             raise ValueError(
                 f"transform: expected {name} in {', '.join(table)[2:] or 'numbers'}, got {shown(unit)}"
             )
-        given.append(float(value) * table[unit.lower()])
+        given.append(finite_numbers([value], "transform")[0] * table[unit.lower()])
     if _ARGUMENTS.sub("", found).replace(",", " ").strip():
         raise ValueError(f"transform: expected numbers in {name}, got {shown(found)}")
     match kind, given:

@@ -9,7 +9,7 @@ from __future__ import annotations
 import cmath
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,7 +41,15 @@ def numbers(found: str, what: str) -> list[float]:
     """The numbers of a list with commas or space between; ValueError for anything else in it."""
     if rest := _NUMBERS.sub("", found).replace(",", " ").strip():
         raise ValueError(f"{what}: expected numbers, got {shown(rest)}")
-    return list(map(float, _NUMBERS.findall(found)))
+    return finite_numbers(_NUMBERS.findall(found), what)
+
+
+def finite_numbers(found: Iterable[str], what: str) -> list[float]:
+    """The numbers; ValueError for one beyond LARGEST."""
+    given = list(map(float, found))
+    if given and not max(max(given), -min(given)) <= LARGEST:
+        raise ValueError(f"{what}: expected numbers of at most {LARGEST:g}, got {max(given, key=abs):g}")
+    return given
 
 
 class Segments:
@@ -117,11 +125,13 @@ class Segments:
         axis = cmath.rect(1.0, math.radians(turn))
         half = (at - to) / 2 / axis
         p = complex(half.real / rx, half.imag / ry)  # where the ellipse is the unit circle
-        size = abs(p)
+        size = math.hypot(p.real, p.imag)
+        if size == 0:  # the ellipse is larger than its chord by more than a double has digits
+            self.line(to)
+            return
         if size > 1:
-            rx, ry, p = rx * size, ry * size, p / size
-        far = math.sqrt(max(0.0, 1 / abs(p) ** 2 - 1)) if p else 0.0
-        c = p * (1j if large == left else -1j) * far
+            rx, ry, p, size = rx * size, ry * size, p / size, 1.0
+        c = p / size * (1j if large == left else -1j) * math.sqrt((1 - size) * (1 + size))
         start, end = cmath.phase(p - c), cmath.phase(-p - c)
         sweep = (end - start) % (2 * math.pi)
         if not left:
@@ -314,7 +324,7 @@ def _placed(
 def _run(found: str) -> tuple[list[float], bool]:
     """The numbers that a text begins with, and whether something else comes after them."""
     end = _RUN.match(found).end()  # type: ignore[union-attr]  # it matches nothing at all, too
-    return list(map(float, _NUMBERS.findall(found, 0, end))), end < len(found)
+    return finite_numbers(_NUMBERS.findall(found, 0, end), "path"), end < len(found)
 
 
 def _arcs(found: str) -> tuple[list[float], bool]:
@@ -322,6 +332,6 @@ def _arcs(found: str) -> tuple[list[float], bool]:
     given: list[float] = []
     at = 0
     while at < len(found) and (arc := _ARC.match(found, at)):
-        given += map(float, arc.groups())
+        given += finite_numbers(arc.groups(), "path")
         at = arc.end()
     return given, at < len(found)
