@@ -172,7 +172,9 @@ def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
         raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")
     if not np.isfinite(rows).all() or np.abs(rows).max() > LARGEST:
         raise ValueError(f"{name} must be finite and below {LARGEST:g}")
-    if (rows[:, :2] == np.roll(rows[:, :2], -1, axis=0)).all(axis=1).any():
+    # nearer than this two points are one, rounded differently
+    apart = np.abs(rows[:, :2] - np.roll(rows[:, :2], -1, axis=0)) > 2 * _EPS * np.abs(rows[:, :2]).max()
+    if not apart.any(axis=1).all():
         raise ValueError(f"{name} must not repeat a point, nor its first at the end")
     if len(rows) == 2 and rows[:, 2].sum() == 0:
         raise ValueError(f"{name} must enclose an area, got two edges on each other")

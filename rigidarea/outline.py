@@ -40,7 +40,7 @@ from .gate import (
     positive,
 )
 from .simple import check_simple
-from .stand_in import stand_in
+from .stand_in import hull_of, stand_in, width_of
 
 DEFAULT_TOLERANCE = 5e-5
 """Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
@@ -400,10 +400,11 @@ class Outline:
     @cached_property
     def smallest_extent(self) -> float:
         """The least distance of two parallel lines with the outline between them (length): its smallest thickness."""
-        hull = shapely.get_coordinates(shapely.convex_hull(self.polygon))
-        along = np.diff(hull, axis=0)  # one of the two lines lies along an edge of the hull
-        normal = np.column_stack((along[:, 1], -along[:, 0])) / np.hypot(*along.T)[:, None]
-        return float(np.ptp(hull @ normal.T, axis=0).min())
+        return width_of(self._hull)
+
+    @cached_property
+    def _hull(self) -> Points:
+        return hull_of(self.polygon_rings[0])
 
     @cached_property
     def _stand_in(self) -> tuple[Callable[..., pymunk.Shape], tuple[Any, ...]]:
@@ -415,8 +416,7 @@ class Outline:
         if self.arcs and len(self.rings) == 1 and curves.is_circle(self.arcs[0]):
             x, y, radius = self.arcs[0][0].tolist()
             return pymunk.Circle, (radius, (x, y))
-        outer = curves.around(self.rings[0], self.arcs[0]) if self.arcs else self.rings[0]
-        return stand_in(outer)
+        return stand_in(hull_of(curves.around(self.rings[0], self.arcs[0])) if self.arcs else self._hull)
 
     def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
         """A dynamic pymunk body with this outline's mass, moment and centre of gravity (no shape on it yet).

@@ -43,6 +43,14 @@ class _Edges(NamedTuple):
     def chord(self) -> Points:
         return self.q - self.p
 
+    def reach(self) -> tuple[Points, Points]:
+        """Lower left and upper right corners (n, 2) of boxes around the edges.
+
+        An arc of half a turn at the most stays within a square about its chord's middle, a diagonal of two half chords.
+        """
+        bow = np.where(self.r == 0, 0.0, np.hypot(*self.chord.T) / 2)[:, None]
+        return np.minimum(self.p, self.q) - bow, np.maximum(self.p, self.q) + bow
+
     def at(self, k: int, t: float) -> Points:
         """The point of edge k a fraction t along it."""
         if self.r[k] == 0:
@@ -109,9 +117,7 @@ def _room(edges: _Edges, i: Indices) -> Points:
 def _meetings(edges: _Edges) -> tuple[Indices, Indices, Points]:
     """All (edge, edge, point (n, 2)) in which edges meet, but for the corners that neighbours share."""
     length = np.hypot(*edges.chord.T)
-    # an arc of half a turn at the most stays within a square about its chord's middle, a diagonal of two half chords
-    bow = np.where(edges.r == 0, 0.0, length / 2)[:, None]
-    low, high = np.minimum(edges.p, edges.q) - bow, np.maximum(edges.p, edges.q) + bow
+    low, high = edges.reach()
     boxes = shapely.box(low[:, 0], low[:, 1], high[:, 0], high[:, 1])
     i, j = shapely.STRtree(boxes).query(boxes)
     i, j = i[i < j], j[i < j]
@@ -209,8 +215,13 @@ def _check_sides(
 ) -> None:
     """ValueError unless every piece of a hole lies inside the first ring, and outside all other holes."""
     rings = int(edges.ring[-1]) + 1
+    first = np.searchsorted(edges.ring, np.arange(rings))
+    low, high = edges.reach()
+    low, high = np.minimum.reduceat(low, first), np.maximum.reduceat(high, first)
     for mine in range(1, rings):
-        for other in range(rings):
+        # only where boxes overlap; the first ring has to be looked at in any case
+        near = np.flatnonzero(((low <= high[mine]) & (high >= low[mine])).all(axis=1))
+        for other in np.union1d(near, 0).tolist():
             if other == mine:
                 continue
             ours = ((edges.ring[i] == mine) & (edges.ring[j] == other), i)

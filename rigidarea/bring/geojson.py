@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
-import json
-import math
 import os
 from typing import Any
 
+import numpy as np
 import shapely
 
 from ..gate import not_negative, positive
 from ..outline import Outline
-from .limits import LIMITS, Limits, allowed, check, read, text
-from .rings import outlines_of_polygons
+from .limits import LIMITS, Limits, allowed, check, read, shown, text
+from .rings import Ring, outlines_of_polygons
+from .texts import parse_json
+from .values import LARGEST, coordinates, first_wrong
 
+#: Lists and objects within each other in a file: what a stack bears. Collections are counted as they are read.
+DEEPEST = 400
 GROUPS = {"FeatureCollection": "features", "GeometryCollection": "geometries"}
 
 
@@ -38,30 +41,11 @@ def outlines_from_geojson(
     if isinstance(source, dict):
         found = source
     else:
-        found = parse_json(text(read(source, limits), str(source)), str(source))
+        found = parse_json(text(read(source, limits), str(source)), str(source), DEEPEST, limits)
     polygons: list[shapely.Polygon] = []
     points = [0]
     _walk(found, polygons, points, scale, 0, limits)
     return outlines_of_polygons(polygons, tolerance, limits)
-
-
-def parse_json(content: str, what: str) -> Any:
-    """The value of a JSON text, in which NaN and Infinity are not allowed.
-
-    Raises ValueError for anything else, however deep or long; what: where it comes from, for the message.
-    """
-
-    def refuse(name: str) -> None:
-        raise ValueError(f"{what}: expected finite numbers, got {name}")
-
-    try:
-        return json.loads(content, parse_constant=refuse)
-    except ValueError as error:  # JSONDecodeError, a number of too many digits, and our own
-        raise ValueError(
-            str(error) if "expected" in str(error) else f"{what}: expected JSON: {error}"
-        ) from None
-    except RecursionError:
-        raise ValueError(f"{what}: expected less than about a thousand lists within each other") from None
 
 
 def _walk(
@@ -70,7 +54,7 @@ def _walk(
     if depth > limits.depth:
         raise ValueError(f"expected at most {limits.depth} collections within each other")
     if not isinstance(found, dict) or not isinstance(found.get("type"), str):
-        raise ValueError(f"expected a GeoJSON object with a type, got {found!r:.80}")
+        raise ValueError(f"expected a GeoJSON object with a type, got {shown(found, 80)}")
     kind = found["type"]
     if kind in GROUPS:
         for part in _list(found.get(GROUPS[kind]), GROUPS[kind]):
@@ -87,31 +71,31 @@ def _walk(
                 raise ValueError("expected a polygon with at least one ring, got none")
             polygons.append(shapely.Polygon(placed[0], placed[1:]))
     elif kind not in ("Point", "MultiPoint", "LineString", "MultiLineString"):
-        raise ValueError(f"expected a type of GeoJSON, got {kind!r:.80}")
+        raise ValueError(f"expected a type of GeoJSON, got {shown(kind, 80)}")
 
 
 def _list(found: Any, what: str) -> list[Any]:
     if not isinstance(found, list):
-        raise ValueError(f"expected {what} as a list, got {found!r:.80}")
+        raise ValueError(f"expected {what} as a list, got {shown(found, 80)}")
     return found
 
 
-def _ring(found: Any, points: list[int], scale: float, limits: Limits) -> list[tuple[float, float]]:
+def _ring(found: Any, points: list[int], scale: float, limits: Limits) -> Ring:
     ring = _list(found, "a ring")
     points[0] += len(ring)
     check(points[0], limits.points, "points")
     if len(ring) < 4:
         raise ValueError(f"expected a ring of at least 4 points, the last one the first, got {len(ring)}")
-    placed = []
-    for point in ring:
-        ok = isinstance(point, list) and len(point) >= 2
-        if not ok or not all(isinstance(c, int | float) and not isinstance(c, bool) for c in point[:2]):
-            raise ValueError(f"expected a point as [x, y], got {point!r:.80}")
-        try:
-            x, y = scale * point[0], scale * point[1]
-        except OverflowError:
-            raise ValueError("expected finite coordinates, got a whole number beyond them") from None
-        if not (math.isfinite(x) and math.isfinite(y)):
-            raise ValueError(f"expected finite coordinates, got {point!r:.80}")
-        placed.append((x, y))
+    placed = coordinates(ring, (2, 3))
+    if placed is None:
+        plane = [point[:2] if isinstance(point, list) else point for point in ring]  # of more dimensions
+        placed = coordinates(plane, (2,))
+        if placed is None:
+            bad = plane[first_wrong(plane, (2,))]
+            if not isinstance(bad, list) or len(bad) < 2 or set(map(type, bad)) - {int, float}:
+                raise ValueError(f"expected a point as [x, y], got {shown(bad, 80)}")
+            raise ValueError(f"expected finite coordinates of at most {LARGEST:g}, got {shown(bad, 80)}")
+    placed = scale * placed[:, :2]
+    if not np.isfinite(placed).all():
+        raise ValueError(f"expected finite coordinates, got more than that after scale {scale:g}")
     return placed

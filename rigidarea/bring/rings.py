@@ -8,11 +8,11 @@ import numpy as np
 import shapely
 from numpy.typing import NDArray
 
+from ..kernel.thin import thinned
 from ..outline import Outline
 from .limits import Limits, check
-from .values import LARGEST
+from .values import LARGEST, Ring
 
-Ring = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
@@ -23,19 +23,53 @@ def outlines_of_polygons(
 
     Raises ValueError for polygons that are not valid, with the place.
     """
-    check(sum(map(shapely.get_num_coordinates, polygons)), limits.points, "points")
-    made = []
-    for i, polygon in enumerate(polygons):
-        if not shapely.is_valid(polygon):
-            reason = shapely.is_valid_reason(polygon)
-            raise ValueError(
-                f"polygon {i}: {reason}; expected rings that neither cross themselves nor each other"
-            )
-        thin = shapely.simplify(polygon, tolerance, preserve_topology=True) if tolerance > 0 else polygon
-        made.append(
-            Outline.from_shapely(thin if isinstance(thin, shapely.Polygon) and not thin.is_empty else polygon)
+    check(int(shapely.get_num_coordinates(polygons).sum()), limits.points, "points")
+    check(int(shapely.get_num_interior_rings(polygons).sum()) + len(polygons), limits.rings, "rings")
+    rings = [shapely.get_coordinates(ring) for polygon in polygons for ring in shapely.get_rings(polygon)]
+    check_tangle(rings, limits)
+    valid = shapely.is_valid(polygons)
+    if not valid.all():
+        i = int(np.argmin(valid))
+        raise ValueError(
+            f"polygon {i}: {shapely.is_valid_reason(polygons[i])};"
+            " expected rings that neither cross themselves nor each other"
         )
-    return made
+    return [
+        Outline.from_shapely(_thin(polygon, tolerance) if tolerance > 0 else polygon) for polygon in polygons
+    ]
+
+
+def check_tangle(rings: Sequence[Ring], limits: Limits) -> None:
+    """ValueError for rings that wind so that whoever looks for crossings has to look at too many pairs of their edges.
+
+    Stretches of edges that go on in one quadrant do not meet themselves: GEOS looks at pairs of such, whose boxes
+    overlap. Of a million points on a gear there are a few hundred; of ten thousand on a star, ten thousand.
+    """
+    if sum(map(len, rings)) < 2000:
+        return
+    low, high = [], []
+    for ring in rings:
+        steps = np.diff(ring, axis=0, append=ring[:1])
+        quadrant = 2 * (steps[:, 0] < 0) + (steps[:, 1] < 0)
+        starts = np.flatnonzero(np.diff(quadrant, prepend=-1))
+        ends = ring[np.append(starts[1:], 0)]  # the last point of a stretch is the next one's first
+        low.append(np.minimum(np.minimum.reduceat(ring, starts), ends))
+        high.append(np.maximum(np.maximum.reduceat(ring, starts), ends))
+    boxes = shapely.box(*np.concatenate(low).T, *np.concatenate(high).T)
+    overlapping_boxes(boxes, 5 * limits.points, "stretches of rings", keep=False)
+
+
+def _thin(polygon: shapely.Polygon, tolerance: float) -> shapely.Polygon:
+    """The polygon with fewer points: by half the tolerance, and half of that, where its rings would cross."""
+    rings = [shapely.get_coordinates(ring)[:-1] for ring in (polygon.exterior, *polygon.interiors)]
+    for _ in range(8):
+        thin = [ring[thinned(ring, tolerance)] for ring in rings]
+        if all(len(ring) > 2 for ring in thin):
+            found = shapely.Polygon(thin[0], thin[1:])
+            if shapely.is_valid(found):
+                return found
+        tolerance /= 2
+    return polygon
 
 
 def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Polygon]:
@@ -43,76 +77,80 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
 
     Rings of no area are dropped. Raises ValueError for a ring that crosses itself, and for rings that cross.
     """
-    check(len(rings), limits.parts, "rings")
+    check(len(rings), limits.rings, "rings")
     check(sum(map(len, rings)), limits.points, "points")
-    solid = []
+    kept = []
     for i, ring in enumerate(rings):
-        if len(ring) < 3:
-            continue
-        if not (np.abs(ring) <= LARGEST).all():
-            raise ValueError(f"ring {i}: expected finite coordinates of at most {LARGEST:g}")
-        polygon = shapely.Polygon(ring)
-        extent = float(np.max(np.ptp(ring, axis=0)))
-        if shapely.convex_hull(polygon).area <= 1e-12 * extent**2:
-            continue
-        if not shapely.is_valid(polygon):
-            raise ValueError(
-                f"ring {i}: {shapely.is_valid_reason(polygon)}; expected a ring that does not cross itself"
-            )
-        solid.append(polygon)
+        if len(ring) >= 3:
+            if not (np.abs(ring) <= LARGEST).all():
+                raise ValueError(f"ring {i}: expected finite coordinates of at most {LARGEST:g}")
+            kept.append(i)
+    if not kept:
+        return []
+    lengths = [len(rings[i]) for i in kept]
+    edges = shapely.linearrings(
+        np.concatenate([rings[i] for i in kept]), indices=np.repeat(np.arange(len(kept)), lengths)
+    )
+    bounds = shapely.bounds(edges)
+    extent = (bounds[:, 2:] - bounds[:, :2]).max(axis=1)
+    check_tangle([rings[i] for i in kept], limits)
+    solid = shapely.polygons(edges)
+    wide = shapely.area(shapely.convex_hull(solid)) > 1e-12 * extent**2
+    edges, solid, kept = edges[wide], solid[wide], np.array(kept)[wide].tolist()
+    valid = shapely.is_valid(solid)
+    if not valid.all():
+        i = int(np.argmin(valid))
+        raise ValueError(
+            f"ring {kept[i]}: {shapely.is_valid_reason(solid[i])}; expected a ring that does not cross itself"
+        )
+    if len(solid) == 1:
+        return solid.tolist()
     inner, outer = overlapping_boxes(solid, limits.parts, "rings")
-    edges = np.array([polygon.exterior for polygon in solid], object)
-    areas = np.array(solid, object)
-    for i, j in zip(inner, outer):
-        if shapely.crosses(edges[i], areas[j]) and not shapely.touches(edges[i], edges[j]):
-            raise ValueError(
-                f"rings {min(i, j)} and {max(i, j)} cross; expected rings apart or within each other"
-            )
+    areas = shapely.area(solid)
+    inside = (areas[inner] < areas[outer]) | ((areas[inner] == areas[outer]) & (inner < outer))
+    inner, outer = inner[inside], outer[inside]  # the larger one lies in no smaller one
+    told = shapely.get_num_coordinates(edges)[inner].sum()
+    check(int(told), 10 * limits.points, "points in pairs of rings whose boxes overlap")
+    shapely.prepare(solid)
+    within = shapely.covers(solid[outer], edges[inner])
+    meet = ~within & shapely.intersects(solid[outer], edges[inner])
+    for i, j in zip(inner[meet], outer[meet]):
+        if shapely.crosses(edges[i], solid[j]):
+            first, second = sorted((kept[i], kept[j]))
+            raise ValueError(f"rings {first} and {second} cross; expected rings apart or within each other")
     parents: list[list[int]] = [[] for _ in solid]
-    for i, j in zip(inner, outer):
-        if shapely.covered_by(areas[i], areas[j]):
-            parents[i].append(int(j))
+    for i, j in zip(inner[within].tolist(), outer[within].tolist()):
+        parents[i].append(j)
     # a ring within an even number of others is an outer one; its holes are the rings one deeper that it holds
     holes: dict[int, list[int]] = {i: [] for i, over in enumerate(parents) if len(over) % 2 == 0}
     for i, over in enumerate(parents):
         if len(over) % 2:
-            owner = min(over, key=lambda j: solid[j].area)
+            owner = min(over, key=lambda j: areas[j])
             if owner not in holes:
-                raise ValueError(f"ring {i} lies in ring {owner} and is neither its hole nor apart from it")
+                raise ValueError(
+                    f"ring {kept[i]} lies in ring {kept[owner]} and is neither its hole nor apart from it"
+                )
             holes[owner].append(i)
-    return [
-        shapely.Polygon(solid[i].exterior, [solid[j].exterior for j in inner]) for i, inner in holes.items()
-    ]
+    return [shapely.Polygon(edges[i], [edges[j] for j in inner]) for i, inner in holes.items()]
 
 
-def overlapping_boxes(solid: Sequence[shapely.Polygon], most: int, what: str) -> tuple[Indices, Indices]:
-    """Pairs (i, j), i != j, of polygons whose boxes overlap: the i and the j, each (n,).
+def overlapping_boxes(
+    solid: Sequence[shapely.Polygon], most: int, what: str, keep: bool = True
+) -> tuple[Indices, Indices]:
+    """Pairs (i, j), i != j, of polygons whose boxes overlap: the i and the j, each (n,); none without `keep`.
 
     Raises ValueError for more than `most` pairs of `what` (1e5 nested rings have 1e10).
     """
-    if not solid:
+    if not len(solid):
         return np.zeros(0, int), np.zeros(0, int)
-    tree, found, total = shapely.STRtree(solid), [], 0
+    tree, found, total = shapely.STRtree(solid), list[Indices](), 0
     for first in range(0, len(solid), 64):
         pairs = tree.query(solid[first : first + 64])
         pairs[0] += first
         pairs = pairs[:, pairs[0] != pairs[1]]
         total += pairs.shape[1]
         check(total, most, f"pairs of {what} whose boxes overlap")
-        found.append(pairs)
+        if keep or not found:
+            found.append(pairs)
     inner, outer = np.concatenate(found, axis=1)
     return inner, outer
-
-
-def curve_tolerance(tolerance: float | None, bounds: tuple[float, float, float, float]) -> float:
-    """The tolerance given (length, > 0), or a thousandth of the drawing's smaller extent.
-
-    Raises ValueError for one that is not positive and finite.
-    """
-    if tolerance is None:
-        return 1e-3 * (min(bounds[2] - bounds[0], bounds[3] - bounds[1]) or 1.0)
-    if isinstance(tolerance, bool) or not (
-        isinstance(tolerance, int | float) and 0 < tolerance < float("inf")
-    ):
-        raise ValueError(f"tolerance must be a finite number > 0, got {tolerance!r}")
-    return float(tolerance)

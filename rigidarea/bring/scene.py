@@ -43,19 +43,19 @@ from its shapes' densities unless it has `mass` and `moment`. Nothing in a file 
 from __future__ import annotations
 
 import os
-import tomllib
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
 import pymunk
 import shapely
 
 from ..contact import AreaContact, attach
 from ..outline import Outline
-from .geojson import parse_json
 from .joints import COMMON, JOINTS, LENGTH, POINT
-from .limits import LIMITS, Limits, allowed, check, file_of, read, text
-from .rings import overlapping_boxes
+from .limits import LIMITS, Limits, allowed, check, file_of, read, shown, text
+from .rings import check_tangle, overlapping_boxes
+from .texts import parse_json, parse_toml
 from .values import Values
 
 FORMAT = 1
@@ -68,8 +68,6 @@ SHAPES = ("outline", "circle", "box", "poly", "segment")
 SPACE = ("gravity", "damping", "iterations", "collision_slop", "sleep_time_threshold", "idle_speed_threshold")
 CONTACT = ("stiffness", "penetration", "law", "length", "direction", "exponent", "rest_speed", "integration")
 SURFACE = ("density", "friction", "elasticity")
-#: TOML's parser is Python: a file of the largest size would take it minutes.
-TOML_BYTES = 2**20
 
 
 @dataclass
@@ -109,24 +107,16 @@ def scene_from_text(content: str, kind: str = "json", limits: Limits = LIMITS) -
         raise ValueError(f"content must be a str, got {type(content).__name__}")
     allowed(limits)
     if kind == "json":
-        check(len(content), limits.bytes, "characters")
-        found = parse_json(content, "scene")
-    elif kind == "toml":
-        check(len(content), min(limits.bytes, TOML_BYTES), "characters of TOML")
-        try:
-            found = tomllib.loads(content)
-        except tomllib.TOMLDecodeError as error:
-            raise ValueError(f"scene: expected TOML: {error}") from None
-        except RecursionError:
-            raise ValueError(f"scene: expected at most {limits.depth} tables within each other") from None
-    else:
-        raise ValueError(f"kind must be 'json' or 'toml', got {kind!r}")
+        return _Reader(limits).scene(parse_json(content, "scene", limits.depth, limits))
+    if kind != "toml":
+        raise ValueError(f"kind must be 'json' or 'toml', got {kind!r:.80}")
+    found = parse_toml(content, "scene", limits)
     _check_depth(found, limits)
     return _Reader(limits).scene(found)
 
 
 def _check_depth(found: Any, limits: Limits) -> None:
-    """Without recursion: what is too deep is what would break it."""
+    """Dotted keys make tables too. Without recursion: what is too deep is what would break it."""
     todo = [(found, 1)]
     while todo:
         part, depth = todo.pop()
@@ -142,6 +132,8 @@ class _Reader(Values):
     def __init__(self, limits: Limits) -> None:
         super().__init__(limits)
         self.outlines: dict[str, Outline] = {}
+        self.rings = 0
+        self.arcs = 0
         self.materials: dict[str, dict[str, float]] = {}
         self.densities: dict[pymunk.Shape, float] = {}
         self.made: list[tuple[pymunk.Body, list[pymunk.Shape]]] = []
@@ -151,7 +143,7 @@ class _Reader(Values):
         top = self.table(found, "scene", known)
         if top.get("rigidarea") != FORMAT:
             raise ValueError(
-                f"rigidarea: expected the format's number {FORMAT}, got {top.get('rigidarea')!r:.40}"
+                f"rigidarea: expected the format's number {FORMAT}, got {shown(top.get('rigidarea'))}"
             )
         space = pymunk.Space()
         if "gravity" in top:
@@ -164,13 +156,13 @@ class _Reader(Values):
                 setattr(space, name, int(value) if name == "iterations" else value)
         contact = dict(self.table(top.get("contact", {}), "contact", CONTACT))
         for name, given in self.table(top.get("materials", {}), "materials").items():
-            place = f"materials.{name}"
+            place = f"materials.{name[:40]}"
             surface = self.table(given, place, SURFACE)
             self.materials[name] = {
                 key: self.number(v, f"{place}.{key}", low=0.0) for key, v in surface.items()
             }
         for name, given in self.table(top.get("outlines", {}), "outlines").items():
-            self.outlines[name] = self.outline(given, f"outlines.{name}")
+            self.outlines[name] = self.outline(given, f"outlines.{name[:40]}")
         bodies: dict[str, pymunk.Body] = {}
         given_bodies = self.rows(top.get("bodies", []), "bodies")
         check(len(given_bodies), self.limits.parts, "bodies")
@@ -206,7 +198,7 @@ class _Reader(Values):
         )
         kind = given.get("type", "dynamic")
         if not isinstance(kind, str) or kind not in TYPES:
-            raise ValueError(f"{place}.type: expected one of {', '.join(TYPES)}, got {kind!r:.40}")
+            raise ValueError(f"{place}.type: expected one of {', '.join(TYPES)}, got {shown(kind)}")
         body = pymunk.Body(body_type=TYPES[kind])
         shapes = [
             self.shape(shape, f"{place}.shapes[{i}]", body)
@@ -241,7 +233,7 @@ class _Reader(Values):
         name = given.get("name")
         if name is not None:
             if not isinstance(name, str) or not name or name in bodies:
-                raise ValueError(f"{place}.name: expected a name that no other body has, got {name!r:.40}")
+                raise ValueError(f"{place}.name: expected a name that no other body has, got {shown(name)}")
             bodies[name] = body
 
     def _mass(self, body: pymunk.Body, shapes: list[pymunk.Shape], place: str) -> None:
@@ -287,7 +279,7 @@ class _Reader(Values):
         if kind == "outline":
             if isinstance(value, str):
                 if value not in self.outlines:
-                    raise ValueError(f"{at}: expected the name of an outline, got {value!r:.40}")
+                    raise ValueError(f"{at}: expected the name of an outline, got {shown(value)}")
                 shape = self.outlines[value].add_to(body)
             else:
                 shape = self.outline(value, at).add_to(body)
@@ -297,7 +289,7 @@ class _Reader(Values):
         elif kind == "box":
             width, height = self.point(value, at)
             if not (width > 0 and height > 0):
-                raise ValueError(f"{at}: expected width and height > 0, got {value!r:.40}")
+                raise ValueError(f"{at}: expected width and height > 0, got {shown(value)}")
             shape = pymunk.Poly.create_box(body, (width, height), radius)
         elif kind == "segment":
             ends = self.ring(value, at, least=2)
@@ -309,7 +301,7 @@ class _Reader(Values):
             shape = pymunk.Poly(body, [tuple(point) for point in hull.rings[0].tolist()], None, radius)
         material = given.get("material")
         if material is not None and (not isinstance(material, str) or material not in self.materials):
-            raise ValueError(f"{place}.material: expected the name of a material, got {material!r:.40}")
+            raise ValueError(f"{place}.material: expected the name of a material, got {shown(material)}")
         surface = dict(self.materials.get(material or "", {}))
         surface |= {key: self.number(given[key], f"{place}.{key}", low=0.0) for key in plain if key in given}
         self.densities[shape] = surface.get("density", 0.0)
@@ -333,12 +325,26 @@ class _Reader(Values):
         given = self.table(found, place, ("points", "holes"))
         rings = [self.bulged(given.get("points"), f"{place}.points")]
         holes = self.rows(given.get("holes", []), f"{place}.holes")
+        self.rings += 1 + len(holes)
+        check(self.rings, self.limits.rings, "rings")
         rings += [self.bulged(hole, f"{place}.holes[{i}]") for i, hole in enumerate(holes)]
+        bent = any(ring[:, 2].any() for ring in rings)
+        if bent:
+            self.arcs += sum(map(len, rings))
+            check(self.arcs, self.limits.arcs, "points of outlines with arcs")
+            ends = [np.roll(ring, -1, axis=0) for ring in rings]
+            p, q = np.concatenate(rings)[:, :2], np.concatenate(ends)[:, :2]
+            half = (
+                np.hypot(*(q - p).T)[:, None] / 2
+            )  # an arc reaches no further beyond its chord's box than that
+            boxes = shapely.box(*(np.minimum(p, q) - half).T, *(np.maximum(p, q) + half).T)
+            overlapping_boxes(boxes, 25 * self.limits.arcs, "edges", keep=False)
+        else:
+            check_tangle([ring[:, :2] for ring in rings], self.limits)
         try:
-            if any(bulge for ring in rings for _, _, bulge in ring):
+            if bent:
                 return Outline.from_bulges(rings[0], rings[1:])
-            flat = [[(x, y) for x, y, _ in ring] for ring in rings]
-            return Outline(flat[0], flat[1:])
+            return Outline(rings[0][:, :2], [ring[:, :2] for ring in rings[1:]])
         except ValueError as error:
             raise ValueError(f"{place}: {error}") from None
 
@@ -351,10 +357,10 @@ class _Reader(Values):
         joints: dict[str, pymunk.Constraint],
     ) -> None:
         if not isinstance(found, dict):
-            raise ValueError(f"{place}: expected a table, got {found!r:.40}")
+            raise ValueError(f"{place}: expected a table, got {shown(found)}")
         kind = found.get("type")
         if not isinstance(kind, str) or kind not in JOINTS:
-            raise ValueError(f"{place}.type: expected one of {', '.join(JOINTS)}, got {kind!r:.40}")
+            raise ValueError(f"{place}.type: expected one of {', '.join(JOINTS)}, got {shown(kind)}")
         make, fields = JOINTS[kind]
         extra = ("distance",) if kind == "pin" else ()
         given = self.table(found, place, ("type", "name", "a", "b", *fields, *extra, *COMMON))
@@ -362,7 +368,7 @@ class _Reader(Values):
         for end in ("a", "b"):
             name = given.get(end)  # none: the world
             if name is not None and (not isinstance(name, str) or name not in bodies):
-                raise ValueError(f"{place}.{end}: expected the name of a body, got {name!r:.40}")
+                raise ValueError(f"{place}.{end}: expected the name of a body, got {shown(name)}")
             ends.append(space.static_body if name is None else bodies[name])
         if ends[0] is ends[1]:
             raise ValueError(f"{place}: expected two bodies, got one twice")
@@ -392,5 +398,5 @@ class _Reader(Values):
         name = given.get("name")
         if name is not None:
             if not isinstance(name, str) or not name or name in joints:
-                raise ValueError(f"{place}.name: expected a name that no other joint has, got {name!r:.40}")
+                raise ValueError(f"{place}.name: expected a name that no other joint has, got {shown(name)}")
             joints[name] = joint
