@@ -314,9 +314,9 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         lo, hi = sy.first[b], sy.first[b + 1]
         if _flexible(bd):
             _own(bd, w, s, buf, b, state.q[lo:hi], buf.modal_residual[lo:hi], n)
-        if sy.fixed[b] == 1:
+        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1 or sy.damper[b] > 0.0)
+        if sy.fixed[b] == 1 and not held:
             continue
-        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1)
         for k in range(6 if held else 3):
             buf.active[columns + k] = 3 * b + k if k < 3 else 3 * count + 3 * b + k - 3
         for i in range(n):

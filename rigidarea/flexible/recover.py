@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.element import Material, lumped_mass, stress, von_mises
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.flexible.modes import Flexibility, Reduced, elastic, hub_rows
+from rigidarea.flexible.modes import Flexibility, Reduced, carriers, elastic, hub_rows
 from rigidarea.flexible.tension import matrix
 
 Array = NDArray[np.float64]
@@ -30,7 +30,7 @@ Array = NDArray[np.float64]
 class Shape:
     """What a body's reduction was made of; ``displacement`` and ``stress`` undo it.
 
-    contact_rings, hub, clamped: ring numbers as in ``modes.reduce``; reduced: its result.
+    contact_rings, hub, clamped: ring numbers as in ``modes.reduce``, and sides; reduced: its result.
     """
 
     mesh: Mesh
@@ -39,6 +39,7 @@ class Shape:
     hub: int | None
     clamped: int | None
     reduced: Reduced
+    sides: int = 1
 
     @cached_property
     def _response(self) -> Flexibility:
@@ -59,9 +60,15 @@ class Shape:
         phi, omega = self._response.modes(r)
         return phi / omega
 
-    @cached_property
-    def _nodes(self) -> NDArray[np.int64]:
-        return np.concatenate([self.mesh.rings[i] for i in self.contact_rings])
+    @property
+    def loaded(self) -> list[NDArray[np.int64]]:
+        """The nodes that contacts load, ring after ring: FE boundary node i of the stepper is the i-th of all."""
+        return [self.mesh.rings[i][:: self.sides] for i in self.contact_rings]
+
+    def sag(self, gravity: tuple[float, float]) -> Array:
+        """Displacements (n, 2) by the body's own weight, ``gravity`` in the body frame, of a clamped body."""
+        mass = lumped_mass(self.mesh, self.material)
+        return self._response((mass[:, None] * np.array(gravity)).reshape(-1, 1))[:, 0].reshape(-1, 2)
 
     def displacement(
         self,
@@ -79,11 +86,11 @@ class Shape:
         modal, loads = np.asarray(modal, float), np.asarray(loads, float).reshape(-1, 3)
         if modal.shape != (m,):
             raise ValueError(f"modal must have shape ({m},), got {modal.shape}")
-        if len(loads) and not (0 <= loads[:, 0].min() and loads[:, 0].max() < len(self._nodes)):
-            raise ValueError(f"loads must name nodes 0 … {len(self._nodes) - 1}, got {loads[:, 0].max():g}")
-        f = np.zeros((len(points), 2))
-        np.add.at(f, self._nodes[loads[:, 0].astype(int)], loads[:, 1:])
-        full = f.reshape(-1)
+        f = np.zeros((sum(map(len, self.loaded)), 2))
+        if len(loads) and not (0 <= loads[:, 0].min() and loads[:, 0].max() < len(f)):
+            raise ValueError(f"loads must name nodes 0 … {len(f) - 1}, got {loads[:, 0].max():g}")
+        np.add.at(f, loads[:, 0].astype(int), loads[:, 1:])
+        full = carriers(self.mesh, self.contact_rings, self.sides) @ f.reshape(-1)
         if self.hub is not None:
             full = full + hub_rows(points, self.mesh.rings[self.hub]) @ np.asarray(hub, float)
         if spin and self.clamped is None:
@@ -140,4 +147,6 @@ def recover(sim: Any, record: Any, row: int, body: int) -> State:
     modal = kept.modal[row, first[body] : first[body + 1]]
     spin = float(record.v[row, body, 2])
     u = shape.displacement(modal, mine, kept.hub[row, body], spin)
+    if sim.sag[body] is not None:
+        u = u + sim.sag[body]
     return State(shape, record.x[row, body], u, shape.stress(u))
