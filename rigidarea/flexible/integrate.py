@@ -219,7 +219,7 @@ class Simulation:
         self.state, self._saved = self._new_state(bodies, m), self._new_state(bodies, m)
         self.time = 0.0
         self._searches = searches(len(self.pairs))
-        self._make_room(ROOM if spread and contact == "area" else 0)
+        self._make_room(ROOM if spread else 0)
         for n, u in enumerate(self.sag):
             self._buffers.most[n] = 0.0 if u is None else np.hypot(*u.T).max()
 

@@ -35,7 +35,7 @@ class Loads(NamedTuple):
     made: Ints  # (2,) unknowns so far, serial number of the region
     region: Ints  # (c,) that number
     side: Ints  # (c,) 0: on A, 1: on B; then the body
-    node: Ints  # (c,) FE boundary node, -1: one of the two of a rigid body's side
+    node: Ints  # (c,) FE boundary node, -1: on a rigid body's side; -2: a moment there, its sign ``local[i, 0]``
     at: Array  # (c, 2) where, world
     world: Array  # (c, 2) direction of the load, world
     local: Array  # (c, 2) and in the body frame

@@ -20,6 +20,8 @@ from rigidarea.kernel.pool import boxes_of
 
 Array = NDArray[np.float64]
 
+SMALL = 1e-3  # strain energy over kinetic energy
+
 
 def moving(b: Any, number: int) -> Any:
     """An ``integrate.Body`` whose velocity leaves its pivot at rest, and is that of a drive without a ramp.
@@ -64,6 +66,18 @@ def weighed(b: Any, gravity: tuple[float, float]) -> tuple[Any, Array | None]:
     boxes, _ = boxes_of(points, bd.following, np.zeros((len(points), 4)))
     bent = bd._replace(points=points, nodes=bd.nodes + u, boxes=boxes)
     return replace(b, boundary=bent, hub=(float(hub[0]), float(hub[1]))), sag
+
+
+def _damped(b: Any) -> float:
+    """The moment of a body's damper at t = 0, where a drive does not say how the hub turns.
+
+    None where the hub yields so much to it that the strain would have more than SMALL of the body's energy: it starts
+    without that strain.
+    """
+    if b.drive is not None or b.damper == 0.0:
+        return 0.0
+    yields = b.boundary.flexibility[-1, -1] if len(b.boundary.flexibility) else 0.0
+    return b.damper * b.velocity[2] if yields * b.damper**2 <= SMALL * b.inertia else 0.0
 
 
 def settle(b: Any, x: Array, mu: Array, turn: Array) -> Array:
@@ -170,7 +184,7 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
         c, s = np.cos(b.angle), np.sin(b.angle)
         arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
         mass[at] = b.mass, b.mass, b.inertia
-        load[at] = [b.mass * gravity[0], b.mass * gravity[1], b.torque - b.damper * omega]
+        load[at] = [b.mass * gravity[0], b.mass * gravity[1], b.torque - _damped(b)]
         if b.anchor is not None:
             rows.add((i, 0), ((i, [1.0, 0.0, -arm[1]]),), float(omega**2 * arm[0]))
             rows.add((i, 1), ((i, [0.0, 1.0, arm[0]]),), float(omega**2 * arm[1]))
@@ -197,6 +211,6 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
     for (i, k), value in zip(rows.place, solution[3 * n :], strict=True):
         mu[i, k] = value
     for i, b in enumerate(bodies):
-        if b.drive is None and not b.fixed:
-            mu[i, 2] = -b.damper * b.velocity[2]
+        if not b.fixed:
+            mu[i, 2] -= _damped(b)
     return solution[: 3 * n].reshape(n, 3), mu

@@ -243,7 +243,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 for i in range(3):
                     buf.rate[b, i] = state.v[b, i]
         code = evaluate(bodies, sy, buf, state.q, pairs, st, s, found)
-        if code == 0 and st.spread and not st.sts:
+        if code == 0 and st.spread:
             code = _touch_again(bodies, sy, buf, state.q, pairs, st, s, found)
         if code < 0:
             return code
@@ -300,9 +300,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             first = worst
             rate = pace(buf, worst)
         rounded = change < ROUNDING and off <= SETTLED * reference
-        done = (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE
-        # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
-        if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
+        if (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE:
             return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
         left = (
@@ -323,7 +321,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         eliminate(buf.matrix, total, 1)
         for i in range(total):
             buf.rhs[i] = buf.matrix[i, total]
-        if st.spread and not st.sts:
+        if st.spread:
             renew_loads(bodies, sy, buf, s.load, scheme.scale, part)
         change = 0.0
         for b in range(count):
