@@ -40,7 +40,7 @@ from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
 
-MARGIN = 0.01  # of the smallest body's radius: how far bodies move before contact is searched anew
+MARGIN = 0.01  # of the smallest contact ring's radius: how far bodies move before contact is searched anew
 
 
 class Mechanism:
@@ -92,7 +92,7 @@ class Mechanism:
         clamp: int | Callable[[Array], NDArray[np.bool_]] | None = None,
         modes: int = 40,
         refine: int = 4,
-        growth: float = 0.3,
+        growth: float = 0.15,
         sides: int = 2,
         damping: float = 0.0,
     ) -> int:
@@ -237,8 +237,10 @@ class Mechanism:
                 raise ValueError(
                     f"body {n} has a drive, but nothing holds it: expected a pivot or a joint as well"
                 )
-        size = [float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in self._bodies if not b.fixed]
-        margin = MARGIN * min(size, default=1.0)
+        rings = [
+            b.boundary.points[b.boundary.ring_of == k] for b in self._bodies for k in set(b.boundary.ring_of)
+        ]
+        margin = MARGIN * min((0.5 * float(np.hypot(*np.ptp(ring, axis=0))) for ring in rings), default=1.0)
         friction, restitution = ([h[i] for h in self._held] for i in range(2))
         self.simulation = Simulation(
             self._bodies,

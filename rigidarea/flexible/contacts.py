@@ -138,8 +138,9 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         )
         sp = of_pair(s, found, p)
         if not st.sts:  # near now: within twice the last deformation, as it grows from one to the next
-            reach = NEAR * st.margin + 2.0 * bend
-            n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, sp.pairs, n_pairs, sp.close)
+            yields = len(a.modes[0]) + len(b.modes[0]) + len(a.flexibility) + len(b.flexibility) > 0
+            reach = NEAR * st.margin + 2.0 * bend if yields else 0.0
+            n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, found, p, n_pairs, sp.close)
             if n_pairs == 0:
                 continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]

@@ -2,8 +2,10 @@
 
 Its angle is θ + Φ_h q + φ: the frame's, the modes', and that by static flexibility. Of all three the rate is the
 scheme's, so the hub's rate is B times the rates of the unknowns with the same B that takes the hub's moment to them: a
-damper takes the power that it should, whatever the step. (With φ left out of the rate a damper drives a hub that
-is not at the centre of mass; with its difference over the step for a rate it still does, where ρ∞ > 0.)
+damper takes the power that it should, whatever the step. (With φ left out of the rate a damper drives a hub that is
+not at the centre of mass; with its difference over the step for a rate it still does, where ρ∞ > 0.) So is its place: a
+force on the hub stiffens the body by S_x and S_y (``frame``, ``tension``), so the hub moves by −½ qᵀ S q more than
+linearly: a beam that bends is shorter.
 """
 
 from __future__ import annotations
@@ -77,13 +79,28 @@ class Hub(NamedTuple):
 
 
 @kernel
-def hub_of(body, w, sy, buf, state, scheme, b):  # type: ignore[no-untyped-def]
-    """The hub of body b in the present state."""
+def _shorter(stiff: Array, q: Array) -> float:
+    """½ qᵀ S q."""
+    out = 0.0
+    for i in range(len(q)):
+        out += 0.5 * q[i] * dot(stiff[i], q)
+    return out
+
+
+@kernel
+def hub_of(body, w, sy, buf, state, scheme, stiff, b):  # type: ignore[no-untyped-def]
+    """The hub of body b in the present state; stiff (3, m, m): of its modes, (0, m, m) where that is left out."""
+    x = y = 0.0
     if w.tight[0]:
         draw(body, w)
+        for k in range(len(w.drawn[0])):  # coordinates of the basis, with tension
+            w.drawn[2, k] += w.drawn[0, k]
+        x, y = -_shorter(body.tension[1], w.drawn[2]), -_shorter(body.tension[2], w.drawn[2])
     n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
-    x = sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
-    y = sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
+    if len(stiff) > 0:
+        x, y = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
+    x += sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
+    y += sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
     keep_turn(state, scheme, b, static_displacement(body, w, 2))
     turn = state.turn[b, 0] + dot(body.modes[n - 1], q)
     return Hub(c * x - s * y, s * x + c * y, turn, state.mu[b, 2] + sy.torque[b])

@@ -253,7 +253,7 @@ class Simulation:
         v[[b.fixed for b in bodies]] = 0.0
         acc, mu = start(bodies, self.joints, self.system.gravity)
         z, turn = np.zeros(modes), np.zeros((len(x), 4))
-        for b, w, *own in zip(bodies, self.works, x, mu, turn, strict=True):
+        for b, w, *own in zip(bodies, self.works, x, mu[: len(bodies)], turn, strict=True):
             w.hub_load[:] = settle(b, *own)
         return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu, turn)
 

@@ -256,10 +256,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)
             lo, hi = sy.first[b], sy.first[b + 1]
-            hub = hub_of(body, w, sy, buf, state, scheme, b)
             stiff = geometric_at(bodies, b)
             if not w.tight[1]:
                 stiff = stiff[:0]
+            hub = hub_of(body, w, sy, buf, state, scheme, stiff, b)
             moment = inertia_forces(
                 sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), stiff, w.hub_load[0],
                 w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
