@@ -254,7 +254,7 @@ class Simulation:
         acc, mu = start(bodies, self.joints, self.system.gravity)
         z, turn = np.zeros(modes), np.zeros((len(x), 4))
         for b, w, *own in zip(bodies, self.works, x, mu[: len(bodies)], turn, strict=True):
-            w.hub_load[:] = settle(b, *own)
+            w.hub_load[:] = settle(b, self.system.gravity, *own)
         return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu, turn)
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:

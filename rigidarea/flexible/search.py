@@ -14,7 +14,7 @@ from rigidarea.kernel.work import Relative, placed, relative
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-TURN = 3.0  # turn between two searches, in margins over the body's size
+TURN = 1.0  # turn between two searches, in margins over the body's size
 NEAR = 0.5  # of the search's margin: how much farther than the deformation leaves are looked at, and how far bodies
 # move before they are searched anew. The rest is for what deforms them more from one evaluation to the next.
 

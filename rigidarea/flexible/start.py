@@ -20,7 +20,7 @@ from rigidarea.kernel.pool import boxes_of
 
 Array = NDArray[np.float64]
 
-SMALL = 1e-3  # strain energy over kinetic energy
+SMALL = 1e-3  # of the energy that will go round: what a body may be given as strain before it starts
 
 
 def moving(b: Any, number: int) -> Any:
@@ -69,31 +69,45 @@ def weighed(b: Any, gravity: tuple[float, float]) -> tuple[Any, Array | None]:
 
 
 def _damped(b: Any) -> float:
-    """The moment of a body's damper at t = 0, where a drive does not say how the hub turns.
-
-    None where the hub yields so much to it that the strain would have more than SMALL of the body's energy: it starts
-    without that strain.
-    """
+    """The moment of a body's damper at t = 0, where a drive does not say how the hub turns; none, where the strain by
+    it would have more than SMALL of the body's energy."""
     if b.drive is not None or b.damper == 0.0:
         return 0.0
     yields = b.boundary.flexibility[-1, -1] if len(b.boundary.flexibility) else 0.0
     return b.damper * b.velocity[2] if yields * b.damper**2 <= SMALL * b.inertia else 0.0
 
 
-def settle(b: Any, x: Array, mu: Array, turn: Array) -> Array:
+def settle(b: Any, gravity: Array, x: Array, mu: Array, turn: Array) -> Array:
     """The load (3,) on a body's hub at t = 0, in its frame. Moves frame ``x`` (3,) and ``turn`` (4,) to where static
-    flexibility under it, and under the spin, leaves the pivot and the drive's angle where they are."""
+    flexibility under it, and under the spin, leaves the pivot and the drive's angle where they are.
+
+    Of all such frames the one that is nearest in the metric of the mass: that about which the body, let go as it was
+    said to be, would swing. Where first forces strain the body by more than SMALL of its energy (a sudden drive) it
+    starts without that strain, and swings.
+    """
     c, s = np.cos(b.angle), np.sin(b.angle)
     load = np.array([c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1], mu[2] + b.torque])
     u, bd = np.zeros(3), b.boundary
     if len(bd.flexibility):
         u += bd.flexibility[-3:, -3:] @ load
+    size = float(np.linalg.norm(bd.points, axis=1).max())
+    speed = b.velocity[2] if b.drive is None else b.drive[1]
+    inertia = b.inertia + b.mass * float(np.dot(b.hub, b.hub))
+    energy = 0.5 * inertia * speed**2 + b.mass * size * float(np.hypot(*gravity)) + abs(b.torque)
+    if 0.5 * float(load @ u) > SMALL * energy:
+        u[:] = load[:] = 0.0
     if len(bd.swell):
         u += b.velocity[2] ** 2 * bd.swell[-3:]
     turn[0] = u[2]
+    if b.fixed or (b.drive is None and b.anchor is None):
+        return load
+    frame = np.array([[c, -s], [s, c]])
+    arm, moved = frame @ np.array(b.hub), frame @ u[:2]
     if b.drive is not None:
         x[2] -= u[2]
-    if b.anchor is not None and not b.fixed:
+    else:
+        x[2] -= b.mass * _cross(arm, moved) / (b.inertia + b.mass * float(arm @ arm))
+    if b.anchor is not None:
         c, s = np.cos(x[2]), np.sin(x[2])
         x[:2] = np.array(b.anchor) - np.array([[c, -s], [s, c]]) @ (np.array(b.hub) + u[:2])
     return load
@@ -184,7 +198,11 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
         c, s = np.cos(b.angle), np.sin(b.angle)
         arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
         mass[at] = b.mass, b.mass, b.inertia
-        load[at] = [b.mass * gravity[0], b.mass * gravity[1], b.torque - _damped(b)]
+        load[at] = [
+            b.mass * gravity[0],
+            b.mass * gravity[1],
+            b.torque - (b.damper * omega if b.drive is None else 0.0),
+        ]
         if b.anchor is not None:
             rows.add((i, 0), ((i, [1.0, 0.0, -arm[1]]),), float(omega**2 * arm[0]))
             rows.add((i, 1), ((i, [0.0, 1.0, arm[0]]),), float(omega**2 * arm[1]))
