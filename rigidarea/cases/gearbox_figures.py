@@ -14,7 +14,7 @@ from rigidarea.cases import gearbox as gb
 from rigidarea.flexible.element import stiffness
 from rigidarea.flexible.integrate import Record, Simulation
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.flexible.modes import hub_rows
+from rigidarea.flexible.modes import carriers, hub_rows
 
 Array = NDArray[np.float64]
 
@@ -208,9 +208,9 @@ def _displacements(out: Path, sim: Simulation, meshes: tuple[Mesh, Mesh], region
     ax.grid(False)
     sides = (("viridis", "left"), ("plasma", "right"))
     for i, ((colours, side), mesh) in enumerate(zip(sides, meshes, strict=True)):
-        loads = np.zeros((len(mesh.rings[0]), 2))
-        loads[mesh.rings[2]] = sim.works[i].node_load  # of the ring's nodes, those that contacts load
-        u = displacement(mesh, loads)
+        shape = sim.bodies[i].shape
+        spread = carriers(mesh, shape.contact_rings, shape.sides)[: 2 * len(mesh.rings[0])]
+        u = displacement(mesh, (spread @ sim.works[i].node_load.ravel()).reshape(-1, 2))
         centre = mesh.points[0] - sim.boundaries[i].points[0]
         p = figures.placed(mesh.points - centre, sim.state.x[i])
         size = 1e6 * np.hypot(*u.T)

@@ -161,7 +161,7 @@ class Assembly:
         modal = sim.state.q[first[part] : first[part + 1]]
         u = shape.displacement(modal, loads, work.hub_load, float(np.sqrt(work.spin[0])))
         frame = sim.state.x[part].copy()
-        return State(shape, frame, u, shape.stress(u))
+        return State(shape, frame, shape.turned(u), shape.stress(u))
 
     def _running(self) -> Simulation:
         if self.simulation is None or self._space is None:

@@ -11,13 +11,13 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import build
 from rigidarea.flexible.cache import arrays
-from rigidarea.flexible.check import check_elastic
+from rigidarea.flexible.check import check_elastic, held_nodes
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
-from rigidarea.gate import finite, not_negative, numbers, positive
+from rigidarea.gate import finite, listed, not_negative, numbers, positive
 from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
@@ -29,7 +29,7 @@ BOUNDARY_NODES = 40_000  # a mesh from so many has some hundred thousand nodes
 
 def elastic_body(
     rings: Sequence[Array],
-    size: float,
+    size: float | Sequence[float],
     material: Material,
     level: str = "compliant",
     *,
@@ -38,17 +38,18 @@ def elastic_body(
     clamped: int | Callable[[Array], NDArray[np.bool_]] | None = None,
     modes: int = 40,
     refine: int = 1,
-    growth: float = 0.3,
+    growth: float = 0.15,
     sides: int = 2,
     cache: Path | str | None = None,
     **keys: Any,
 ) -> tuple[Body, Mesh]:
     """A body from finely sampled ``rings`` ([0] outer, counter-clockwise; then holes, clockwise), and its mesh.
 
-    size: spacing of the boundary nodes (length). level: "rigid", "compliant" (static flexibility) or "modal" (``modes``
-    free-free modes and residual flexibility). contact_rings, hub, clamped: ring numbers; clamped may be a function that
-    says which of the boundary nodes (n, 2) are held. refine: contact points a mesh edge, finer than
-    the mesh: their polygon has the rings' area (with 1 they are the mesh's nodes).
+    size: spacing of the boundary nodes (length), one for all rings or one each. level: "rigid", "compliant" (static
+    flexibility) or "modal" (``modes`` free-free modes and residual flexibility). contact_rings, hub, clamped: ring
+    numbers; clamped may be a function that says, True or False, which of the boundary nodes (n, 2) are held: two at
+    least. refine: contact points a mesh edge, finer than the mesh: their polygon has the rings' area (with 1 they are
+    the mesh's nodes).
     growth: of the size inside the body. sides: of triangles between two of the boundary nodes: the mesh is finer than
     what contacts load, which costs set-up and nothing in a run (with 1 a tooth of five nodes' width is 4 % too stiff,
     with 2 1 %). keys: passed to ``Body``; ``position`` is where the origin of the rings'
@@ -60,9 +61,10 @@ def elastic_body(
     counts = {"modes": modes, "refine": refine, "sides": sides}
     # the mesh below has more rings than the outline
     check_elastic(rings, material, contact_rings, {"hub": hub, "clamped": clamped}, counts)
-    positive(size, "size"), not_negative(growth, "growth")
-    _check_size(rings, size, contact_rings if level != "rigid" else (), sides)
-    nodes = [resample(r, size, sides) for r in rings]
+    not_negative(growth, "growth")
+    sizes = _sizes(size, len(rings))
+    _check_size(rings, sizes, contact_rings if level != "rigid" else (), sides)
+    nodes = [resample(r, h, sides) for r, h in zip(rings, sizes, strict=True)]
 
     def build_mesh() -> dict[str, NDArray]:
         made = triangulate(nodes, growth)
@@ -74,22 +76,14 @@ def elastic_body(
     ends = np.cumsum([0] + [len(r) for r in nodes])
     mesh = Mesh(found["points"], found["triangles"], tuple(map(np.arange, ends[:-1], ends[1:])))
     if callable(clamped):
-        ends_at = int(ends[-1])
-        held = np.flatnonzero(np.asarray(clamped(mesh.points[:ends_at]), bool))
+        held = held_nodes(clamped, mesh.points[: int(ends[-1])], [mesh.rings[k] for k in contact_rings])
         mesh = Mesh(mesh.points, mesh.triangles, (*mesh.rings, held))
         clamped = len(mesh.rings) - 1
-    loaded = tuple(contact_rings)
-    if sides > 1:  # contacts load every so many of a ring's nodes: rings of their own
-        loaded = tuple(range(len(mesh.rings), len(mesh.rings) + len(contact_rings)))
-        mesh = Mesh(
-            mesh.points, mesh.triangles, (*mesh.rings, *(mesh.rings[k][::sides] for k in contact_rings))
-        )
-    body = reduce(
-        mesh, material, loaded, hub, clamped, modes if level == "modal" else 0, level != "rigid", cache
-    )
+    kept, loaded = modes if level == "modal" else 0, tuple(contact_rings)
+    body = reduce(mesh, material, loaded, hub, clamped, kept, level != "rigid", cache, sides=sides)
     profile, low, high, share, first = [], [], [], [], 0
     for k in contact_rings:
-        fine = resample(rings[k], size, refine)
+        fine = resample(rings[k], sizes[k], refine)
         fine = fine if refine == 1 else keep_area(fine)
         node = np.arange(len(fine)) // refine
         profile.append(fine - body.centre)
@@ -109,7 +103,7 @@ def elastic_body(
         boundary, body.mass, body.inertia, position, angle, body.frequency, body.coupling, body.stretch,
         fixed=clamped is not None, hub=(float(middle[0]), float(middle[1])),
         young=material.young if level != "rigid" else 0.0, geometric=body.geometric, slowest=body.slowest,
-        shape=Shape(mesh, material, loaded, hub, clamped, body) if level != "rigid" else None, **keys,
+        shape=Shape(mesh, material, loaded, hub, clamped, body, sides) if level != "rigid" else None, **keys,
     ), mesh  # fmt: skip
 
 
@@ -117,13 +111,15 @@ def outline_body(
     outline: Outline,
     material: Material,
     level: str,
-    mesh: float | None,
+    mesh: float | Sequence[float] | None,
     *,
     contact: Sequence[int] = (0,),
     hub: int | None = None,
     clamp: int | Callable[[Array], NDArray[np.bool_]] | None = None,
     modes: int = 40,
     refine: int = 4,
+    growth: float = 0.15,
+    sides: int = 2,
     damping: float = 0.0,
     at: tuple[float, float] = (0.0, 0.0),
     angle: float = 0.0,
@@ -147,7 +143,7 @@ def outline_body(
             )
         made, _ = elastic_body(
             outline.polygon_rings, mesh, material, level, contact_rings=contact, hub=hub, clamped=clamp, modes=modes,
-            refine=refine, cache=cache, position=at, angle=angle, damping=damping,
+            refine=refine, growth=growth, sides=sides, cache=cache, position=at, angle=angle, damping=damping,
         )  # fmt: skip
         return made
     if clamp is not None or hub is not None:
@@ -163,17 +159,27 @@ def outline_body(
     return Body(boundary, mass, inertia, (float(x), float(y)), angle)
 
 
-def _check_size(rings: Sequence[Array], size: float, contact: Sequence[int], sides: int) -> None:
-    """Refuses a mesh size before it is meshed that would ask for gigabytes."""
-    if not 0 < size < np.inf:
-        raise ValueError(f"size must be positive and finite, got {size}")
+def _sizes(size: float | Sequence[float], rings: int) -> list[float]:
+    """The mesh size of each ring."""
+    if isinstance(size, int | float | np.number):
+        return [positive(size, "size")] * rings
+    sizes = [positive(h, f"size[{k}]") for k, h in enumerate(listed(size, "size"))]
+    if len(sizes) != rings:
+        raise ValueError(f"size must be one for all rings or one each, {rings}, got {len(sizes)}")
+    return sizes
+
+
+def _check_size(rings: Sequence[Array], sizes: Sequence[float], contact: Sequence[int], sides: int) -> None:
+    """Refuses mesh sizes before it is meshed that would ask for gigabytes."""
     length = [float(np.hypot(*(np.roll(r, -1, 0) - r).T).sum()) for r in rings]
-    for what, total, most in (
-        ("in contact", sum(length[k] for k in contact if 0 <= k < len(length)), CONTACT_NODES),
-        ("on the boundary", sum(length) * sides, BOUNDARY_NODES),
+    count = [a / h for a, h in zip(length, sizes, strict=True)]
+    for what, asked, most in (
+        ("in contact", sum(count[k] for k in contact), CONTACT_NODES),
+        ("on the boundary", sum(count) * sides, BOUNDARY_NODES),
     ):
-        if total / size > most:
+        if asked > most:
+            finest = min(sizes)
             raise ValueError(
-                f"size must be at least {total / most:.4g} here, for {most} nodes {what}, got {size:.4g}:"
-                f" {total / size:.4g} nodes"
+                f"size must be at least {finest * asked / most:.4g} here, for {most} nodes {what}, got {finest:.4g}:"
+                f" {asked:.4g} nodes"
             )

@@ -40,7 +40,7 @@ from rigidarea.outline import Outline
 
 Array = NDArray[np.float64]
 
-MARGIN = 0.01  # of the smallest body's radius: how far bodies move before contact is searched anew
+MARGIN = 0.01  # of the smallest contact ring's radius: how far bodies move before contact is searched anew
 
 
 class Mechanism:
@@ -82,7 +82,7 @@ class Mechanism:
         outline: Outline,
         material: Material,
         *,
-        mesh: float | None = None,
+        mesh: float | Sequence[float] | None = None,
         level: str = "compliant",
         at: tuple[float, float] = (0.0, 0.0),
         angle: float = 0.0,
@@ -92,11 +92,14 @@ class Mechanism:
         clamp: int | Callable[[Array], NDArray[np.bool_]] | None = None,
         modes: int = 40,
         refine: int = 4,
+        growth: float = 0.15,
+        sides: int = 2,
         damping: float = 0.0,
     ) -> int:
         """Adds a body; returns its number.
 
-        at, angle: of the outline's coordinates. mesh: spacing of the boundary nodes (length); level: "rigid" (then no
+        at, angle: of the outline's coordinates. mesh: spacing of the boundary nodes (length), one for all rings or one
+        each; growth, sides: how it goes on inside, see ``body.elastic_body``. level: "rigid" (then no
         mesh), "compliant" or "modal" with ``modes``. hub: the ring (0 outer, 1 … the holes) whose mean is pivoted,
         driven and loaded; for a rigid body that is the pivot itself. contact: the rings that touch others; refine:
         contact points a mesh edge. clamp: a ring that is held, or a function that says which of the boundary nodes
@@ -104,7 +107,7 @@ class Mechanism:
         """
         made = outline_body(
             outline, material, level, mesh, contact=contact, hub=hub, clamp=clamp, modes=modes, refine=refine,
-            damping=damping, at=at, angle=angle, cache=self._cache,
+            growth=growth, sides=sides, damping=damping, at=at, angle=angle, cache=self._cache,
         )  # fmt: skip
         made.velocity = numbers(velocity, "velocity", 3)  # type: ignore[assignment]
         self._bodies.append(made)
@@ -207,11 +210,12 @@ class Mechanism:
         )  # fmt: skip
 
     def drive(self, body: int, speed: float, ramp: float = 0.0) -> None:
-        """Prescribes the hub's angular velocity: from 0, linearly over ``ramp``, to ``speed``."""
+        """Prescribes the hub's angular velocity: from 0, linearly over ``ramp``, to ``speed``.
+
+        Something must hold the body: a pivot, or a revolute joint to what is held.
+        """
         b = self._own(body)
         b.drive = (b.angle, finite(speed, "speed"), not_negative(ramp, "ramp"))
-        if ramp == 0.0:
-            b.velocity = (b.velocity[0], b.velocity[1], speed)
 
     def load(self, body: int, torque: float = 0.0, damper: float = 0.0) -> None:
         """A constant torque on the hub, and a damper (moment over angular velocity) between hub and ground."""
@@ -227,8 +231,16 @@ class Mechanism:
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
         """Runs the mechanism from its start; see ``Simulation.run``. Raises ValueError where parts do not fit."""
-        size = [float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in self._bodies if not b.fixed]
-        margin = MARGIN * min(size, default=1.0)
+        joined = {n for j in self._joints if j.kind != "spring" for n in (j.a, j.b)}
+        for n, b in enumerate(self._bodies):
+            if b.drive is not None and b.anchor is None and n not in joined:
+                raise ValueError(
+                    f"body {n} has a drive, but nothing holds it: expected a pivot or a joint as well"
+                )
+        rings = [
+            b.boundary.points[b.boundary.ring_of == k] for b in self._bodies for k in set(b.boundary.ring_of)
+        ]
+        margin = MARGIN * min((0.5 * float(np.hypot(*np.ptp(ring, axis=0))) for ring in rings), default=1.0)
         friction, restitution = ([h[i] for h in self._held] for i in range(2))
         self.simulation = Simulation(
             self._bodies,

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+import shapely
 from numpy.typing import NDArray
 
 from rigidarea.flexible.element import Material
@@ -14,6 +15,7 @@ from rigidarea.gate import finite, listed, not_negative, numbers, positive, whol
 
 #: Modes of a body, contact points a mesh edge: beyond so many a body would ask for gigabytes.
 MOST = 10_000
+PIVOT = 1e-2  # of a body's size, how far from its hub a pivot may be given: a ring's mean is near its middle, not in it
 
 
 def check_settings(
@@ -91,6 +93,76 @@ def check_joints(joints: Sequence[Joint], bodies: int) -> list[Joint]:
     return list(joints)
 
 
+def held_nodes(
+    clamp: Callable[[NDArray[np.float64]], Any],
+    points: NDArray[np.float64],
+    loaded: Sequence[NDArray[np.int64]],
+) -> NDArray[np.int64]:
+    """Which of the boundary nodes ``points`` (n, 2) a clamp holds: enough to hold the body, and not all that contacts
+    load (``loaded``, ring by ring)."""
+    given = np.asarray(clamp(points))
+    if given.shape != (len(points),) or given.dtype != bool:
+        raise ValueError(
+            f"clamp must return True or False for each of {len(points)} boundary nodes, got an array of"
+            f" {given.dtype} of shape {given.shape}"
+        )
+    held = np.flatnonzero(given)
+    if len(held) < 2:
+        low, high = points.min(0), points.max(0)
+        raise ValueError(
+            f"clamp must hold 2 boundary nodes at least, which keep the body from turning, got {len(held)} of"
+            f" {len(points)}; their x are {low[0]:.4g} … {high[0]:.4g}, their y {low[1]:.4g} … {high[1]:.4g}"
+        )
+    if all(given[ring].all() for ring in loaded):
+        raise ValueError(
+            f"clamp must leave some of what touches others free, got {len(held)} of {len(points)} boundary nodes held:"
+            " a body that cannot yield is a rigid one (Mechanism.ground)"
+        )
+    return held
+
+
+def check_start(bodies: Sequence[Any], pairs: NDArray[np.int64], limit: float) -> None:
+    """No pair may overlap at t = 0 by a mean depth of more than ``limit``, or than half of a body's half thickness.
+
+    Area over perimeter is half of the half thickness, of a bar as of a disc; from the other side of the middle a
+    contact would push the wrong way. The depth of an overlap is twice its area over its perimeter.
+    """
+    solids = [_solid(b) for b in bodies]
+    for i, j in pairs.tolist():
+        reach = sum(float(np.linalg.norm(bodies[k].boundary.points, axis=1).max()) for k in (i, j))
+        if np.hypot(*np.subtract(bodies[i].position, bodies[j].position)) > reach:
+            continue
+        most = min(limit, solids[i][1], solids[j][1])
+        shared = shapely.intersection(solids[i][0], solids[j][0])
+        for part in getattr(shared, "geoms", [shared]):
+            depth = 2.0 * part.area / part.length if part.length > 0 else 0.0
+            if depth > most:
+                x, y = part.centroid.coords[0]
+                raise ValueError(
+                    f"bodies {i} and {j} overlap at t = 0: expected a mean depth of at most {most:.4g}, got {depth:.4g}"
+                    f" about ({x:.4g}, {y:.4g})"
+                )
+
+
+def _solid(body: Any) -> tuple[Any, float]:
+    """A body where it is at t = 0, as far as its contact rings bound it (shapely), and its area over its perimeter.
+
+    Where only holes touch others, the body goes on around them farther than any depth that is looked for.
+    """
+    b = body.boundary
+    c, s = np.cos(body.angle), np.sin(body.angle)
+    at = b.points @ np.array([[c, s], [-s, c]]) + np.asarray(body.position)
+    rings = [shapely.Polygon(at[b.ring_of == k]) for k in range(int(b.ring_of[-1]) + 1)]
+    rings = [ring if ring.is_valid else shapely.make_valid(ring) for ring in rings]
+    outer = [r for r in rings if r.geom_type != "Polygon" or r.exterior.is_ccw]
+    holes = shapely.unary_union([r for r in rings if r not in outer])
+    if outer:
+        solid = shapely.union_all(outer).difference(holes)
+        return solid, solid.area / solid.length
+    around = holes.area / holes.length
+    return holes.buffer(4.0 * around).difference(holes), around
+
+
 def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -> None:
     """Each ``integrate.Body``; ``rho`` of the scheme, which constraints (joints: ``constrained``) keep below 1."""
     if len(bodies) == 0:
@@ -107,6 +179,15 @@ def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -
             finite(getattr(b, name), f"body {i}: {name}")
         if b.drive is not None and b.drive[2] < 0:
             raise ValueError(f"body {i}: drive's ramp time must not be negative, got {b.drive[2]}")
+        if b.anchor is not None and not b.fixed:
+            c, s = np.cos(b.angle), np.sin(b.angle)
+            at = np.array(b.position) + np.array([[c, -s], [s, c]]) @ np.array(b.hub)
+            near = PIVOT * float(np.linalg.norm(b.boundary.points, axis=1).max())
+            if not np.hypot(*(at - b.anchor)) <= near:
+                raise ValueError(
+                    f"body {i}: its pivot must be where its hub is, ({at[0]:.6g}, {at[1]:.6g}), within"
+                    f" {near:.3g}, got ({b.anchor[0]:.6g}, {b.anchor[1]:.6g})"
+                )
         if b.fixed and (b.anchor is not None or b.drive is not None):
             raise ValueError(f"body {i} is fixed: expected neither anchor nor drive")
         modes = b.boundary.modes.shape[1]
@@ -146,7 +227,8 @@ def check_elastic(
             whole(number, f"{name}: a ring", 0, len(points) - 1)
         if number is not None and name == "clamped" and number in list(contact):
             raise ValueError(
-                f"clamped: expected a ring that touches nobody, got {number}, one of those in contact"
+                f"clamped: expected a ring that touches nobody, got {number}, one of those in contact; a function of"
+                " the boundary nodes holds a part of it, like lambda p: p[:, 0] < 0.01"
             )
     for name, count in counts.items():
         whole(count, name, 0 if name == "modes" else 1, MOST)  # no modes: static flexibility alone

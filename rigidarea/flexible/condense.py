@@ -103,7 +103,56 @@ def _enter(
 
 
 @kernel
-def _gather(s: Loads, count: int, force: float, stiff: float) -> None:
+def enter_vector(
+    b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, t: float, rigid: int, x: float, y: float,
+    nx: float, ny: float, count: int,
+) -> int:  # fmt: skip
+    """Appends what a unit force along (nx, ny) at (x, y), parameter t of an edge, is to the unknowns of STS.
+
+    Its forces have many directions: an FE node has two unknowns, along x and y; a rigid side (``rigid`` >= 0, the first
+    of its three) has force and moment about its origin.
+    """
+    if rigid >= 0:
+        for k in range(3):
+            s.entry[count + k] = rigid + k
+        s.share[count], s.share[count + 1] = nx, ny
+        s.share[count + 2] = (x - pose[0]) * ny - (y - pose[1]) * nx
+        return count + 3
+    j = b.following[edge]
+    low = b.share[edge]
+    high = b.share[j] if b.share[j] > 0.0 else 1.0
+    part = low + t * (high - low)
+    for k in range(2):
+        node = b.low[edge] if k == 0 else (b.high[j] if b.share[j] > 0.0 else b.low[j])
+        v = 1.0 - part if k == 0 else part
+        if w.slot_region[node] != s.made[1]:
+            i = _at_node(b, w, pose, s, side, node, 1.0, 0.0)
+            _new(s, side, node, s.at[i, 0], s.at[i, 1], 0.0, 1.0, pose)
+        i = w.slot[node]
+        s.entry[count], s.entry[count + 1] = i, i + 1
+        s.share[count], s.share[count + 1] = v * nx, v * ny
+        count += 2
+    return count
+
+
+@kernel
+def begin_vectors(a: Boundary, pa: Array, b: Boundary, pb: Array, s: Loads) -> tuple[int, int]:
+    """Starts a region of STS: the first of the three unknowns of each rigid side, -1 for sides that yield."""
+    s.made[1] += 1
+    first = (-1, -1)
+    for side in range(2):
+        body, pose = (a, pa) if side == 0 else (b, pb)
+        if not _flexible(body):
+            i = _new(s, side, -1, pose[0], pose[1], 1.0, 0.0, pose)
+            _new(s, side, -1, pose[0], pose[1], 0.0, 1.0, pose)
+            _new(s, side, -2, pose[0], pose[1], 0.0, 0.0, pose)
+            s.local[i + 2, 0] = -1.0 if side == 0 else 1.0
+            first = (i, first[1]) if side == 0 else (first[0], i)
+    return first
+
+
+@kernel
+def gather(s: Loads, count: int, force: float, stiff: float) -> None:
     """One Gauss point: adds its force, and its stiffness, to the unknowns entered."""
     for p in range(count):
         i, v = s.entry[p], s.share[p]
@@ -161,7 +210,7 @@ def couple(
                 n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, z / chord, nx, ny, 0)
                 n = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, z / chord, nx, ny, n)
                 w = 0.5 * (hi - lo)
-                _gather(s, n, w * k * d, w * k)
+                gather(s, n, w * k * d, w * k)
             lo = hi
         if x[0, i + 1] <= lo:
             i += 1
@@ -208,7 +257,7 @@ def couple_slabs(
                         body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count
                     )
             w = net * GAUSS_W[g] * (hi - lo)
-            _gather(s, count, w * (alpha + beta * (z - xc)) * d**q, w * k)
+            gather(s, count, w * (alpha + beta * (z - xc)) * d**q, w * k)
 
 
 @kernel
@@ -314,9 +363,9 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         lo, hi = sy.first[b], sy.first[b + 1]
         if _flexible(bd):
             _own(bd, w, s, buf, b, state.q[lo:hi], buf.modal_residual[lo:hi], n)
-        if sy.fixed[b] == 1:
+        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1 or sy.damper[b] > 0.0)
+        if sy.fixed[b] == 1 and not held:
             continue
-        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1)
         for k in range(6 if held else 3):
             buf.active[columns + k] = 3 * b + k if k < 3 else 3 * count + 3 * b + k - 3
         for i in range(n):
@@ -327,6 +376,8 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
             ex, ey = s.world[i, 0], s.world[i, 1]
             moves[0], moves[1] = ex, ey
             moves[2] = (s.at[i, 0] - buf.pose[b, 0]) * ey - (s.at[i, 1] - buf.pose[b, 1]) * ex
+            if s.node[i] == -2:
+                moves[2] = s.local[i, 0]
             if held:
                 ex, ey = s.local[i, 0], s.local[i, 1]
                 hub_moves(

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.bodies import boundary_at, work_at
+from rigidarea.flexible.nodal import contact as area_contact
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
 from rigidarea.flexible.search import NEAR, holds, narrow, renew, seen
+from rigidarea.flexible.segment import contact as segment_contact
 from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import entry, kernel
 
@@ -39,7 +40,7 @@ def _assemble(sy, buf, st, r, ia, ib):  # type: ignore[no-untyped-def]
         buf.load[j, 2] += sign * ((r["x"] - x) * fy - (r["y"] - y) * fx)
         row[3 * j], row[3 * j + 1] = sign * nx, sign * ny
         row[3 * j + 2] = sign * ((r["x_chord"] - x) * ny - (r["y_chord"] - y) * nx)
-    if st.spread and not st.sts:
+    if st.spread:
         return
     stiff = st.k * r["chord"]
     for m in range(6):
@@ -137,16 +138,17 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         )
         sp = of_pair(s, found, p)
         if not st.sts:  # near now: within twice the last deformation, as it grows from one to the next
-            reach = NEAR * st.margin + 2.0 * bend
-            n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, sp.pairs, n_pairs, sp.close)
+            yields = len(a.modes[0]) + len(b.modes[0]) + len(a.flexibility) + len(b.flexibility) > 0
+            reach = NEAR * st.margin + 2.0 * bend if yields else 0.0
+            n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, found, p, n_pairs, sp.close)
             if n_pairs == 0:
                 continue
         qa, qb = q[sy.first[ia] : sy.first[ia + 1]], q[sy.first[ib] : sy.first[ib + 1]]
         first = s.load.made[0]
         if st.sts:
-            n = segment.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = segment_contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         else:
-            n = nodal.contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
+            n = area_contact(a, wa, pa, qa, b, wb, pb, qb, n_pairs, stamp, st.k, st.q, st.spread, sp)
         if n < 0:
             return n
         if n > 0:
@@ -168,7 +170,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             if sy.friction[p] > 0.0 or sy.ratio[p] > 0.0:
                 resist(sy, buf, st.k, r, p, ia, ib)
             total += 1
-    if st.spread and (st.sts or total > 0):
+    if st.spread and total > 0:
         for b in range(len(sy.mass)):
             to_nodes(boundary_at(bodies, b), work_at(bodies, b), buf.pose[b])
     buf.counts[0] = total
@@ -180,7 +182,7 @@ def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
     """The forces kept, after Newton's last correction, whose change of the frames is in ``buf.rhs``.
 
     A region's force is that of its loads on the second body, or changes by its stiffness; as the tangent has it. It
-    stays on its line.
+    stays on its line. Under STS all regions of a pair share its loads.
     """
     for i in range(buf.counts[0]):
         r = buf.regions[i]
@@ -188,10 +190,17 @@ def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
         if sy.ratio[p] > 0.0:  # its dashpot has answered to the force as it was
             continue
         change = 0.0
-        if st.spread and not st.sts:
+        if st.spread:
+            fx = fy = 0.0
             for n in range(s.load.made[0]):
                 if s.load.region[n] == int(r[9]) and s.load.side[n] == pairs[p, 1]:
-                    change += buf.answer[n]
+                    fx += buf.answer[n] * s.load.world[n, 0]
+                    fy += buf.answer[n] * s.load.world[n, 1]
+            if st.sts:
+                x, y = buf.force[p, 0], buf.force[p, 1]
+                change = r[1] * (x * fx + y * fy) / (x * x + y * y)
+            else:
+                change = r[2] * fx + r[3] * fy
         else:
             for side in range(2):
                 j = 3 * pairs[p, side]

@@ -1,4 +1,12 @@
-"""A body's hub: where it is, how it turns, and how it is driven."""
+"""A body's hub: where it is, how it turns, and how it is driven.
+
+Its angle is θ + Φ_h q + φ: the frame's, the modes', and that by static flexibility. Of all three the rate is the
+scheme's, so the hub's rate is B times the rates of the unknowns with the same B that takes the hub's moment to them: a
+damper takes the power that it should, whatever the step. (With φ left out of the rate a damper drives a hub that is
+not at the centre of mass; with its difference over the step for a rate it still does, where ρ∞ > 0.) So is its place: a
+force on the hub stiffens the body by S_x and S_y (``frame``, ``tension``), so the hub moves by −½ qᵀ S q more than
+linearly: a beam that bends is shorter.
+"""
 
 from __future__ import annotations
 
@@ -24,10 +32,10 @@ def prescribed(drive: Array, t: float) -> float:
 
 
 @kernel
-def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
-    """Hub displacement (row 0, 1: body frame; 2: rotation) by modes, static flexibility and spin (drawn)."""
+def static_displacement(b: Boundary, w: Work, row: int) -> float:
+    """Hub displacement (row 0, 1: body frame; 2: rotation) by static flexibility and spin (drawn)."""
     n = b.modes.shape[0] - 3 + row
-    u = dot(b.modes[n], modal)
+    u = 0.0
     if b.flexibility.shape[0] > 0:
         c = b.flexibility[n]
         for k in range(w.loaded[-1]):
@@ -43,13 +51,26 @@ def hub_displacement(b: Boundary, w: Work, modal: Array, row: int) -> float:
 
 
 @kernel
-def hub_rate(b: Boundary, dq: Array) -> float:
-    """Angular velocity of the hub in the body frame."""
-    return float(dot(b.modes[len(b.modes) - 1], dq))
+def keep_turn(state, scheme, b, turn):  # type: ignore[no-untyped-def]
+    """The static rotation of body b's hub in this step, and its rates by the scheme."""
+    own = state.turn[b]
+    d = turn - own[0]
+    own[0] += d
+    own[1] += scheme.vel * d
+    own[2] += scheme.acc * d
+    own[3] += scheme.correction * scheme.acc * d
+
+
+@kernel
+def hub_angle(body, sy, state, b):  # type: ignore[no-untyped-def]
+    """World angle of body b's hub, and its rate."""
+    turn, lo, hi = body.modes[len(body.modes) - 1], sy.first[b], sy.first[b + 1]
+    angle = state.x[b, 2] + state.turn[b, 0] + dot(turn, state.q[lo:hi])
+    return angle, state.v[b, 2] + state.turn[b, 1] + dot(turn, state.dq[lo:hi])
 
 
 class Hub(NamedTuple):
-    """A body's hub: arm from the frame's origin (world), rotation of its own, moment of motor, torque and damper."""
+    """A body's hub: arm from the frame's origin (world), rotation of its own, moment of motor, damper and torque."""
 
     x: float
     y: float
@@ -58,16 +79,31 @@ class Hub(NamedTuple):
 
 
 @kernel
-def hub_of(body, w, sy, buf, state, b):  # type: ignore[no-untyped-def]
-    """The hub of body b in the present state."""
+def _shorter(stiff: Array, q: Array) -> float:
+    """½ qᵀ S q."""
+    out = 0.0
+    for i in range(len(q)):
+        out += 0.5 * q[i] * dot(stiff[i], q)
+    return out
+
+
+@kernel
+def hub_of(body, w, sy, buf, state, scheme, stiff, b):  # type: ignore[no-untyped-def]
+    """The hub of body b in the present state; stiff (3, m, m): of its modes, (0, m, m) where that is left out."""
+    x = y = 0.0
     if w.tight[0]:
         draw(body, w)
-    lo, hi = sy.first[b], sy.first[b + 1]
-    c, s, q = buf.pose[b, 2], buf.pose[b, 3], state.q[lo:hi]
-    x, y = sy.hub[b, 0] + hub_displacement(body, w, q, 0), sy.hub[b, 1] + hub_displacement(body, w, q, 1)
-    rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
-    moment = state.mu[b, 2] + sy.torque[b] - sy.damper[b] * rate
-    return Hub(c * x - s * y, s * x + c * y, hub_displacement(body, w, q, 2), moment)
+        for k in range(len(w.drawn[0])):  # coordinates of the basis, with tension
+            w.drawn[2, k] += w.drawn[0, k]
+        x, y = -_shorter(body.tension[1], w.drawn[2]), -_shorter(body.tension[2], w.drawn[2])
+    n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
+    if len(stiff) > 0:
+        x, y = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
+    x += sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
+    y += sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
+    keep_turn(state, scheme, b, static_displacement(body, w, 2))
+    turn = state.turn[b, 0] + dot(body.modes[n - 1], q)
+    return Hub(c * x - s * y, s * x + c * y, turn, state.mu[b, 2] + sy.torque[b])
 
 
 @kernel

@@ -16,12 +16,19 @@ from numpy.typing import NDArray
 from rigidarea.flexible import nodal
 from rigidarea.flexible.bodies import table
 from rigidarea.flexible.boundary import Boundary, workspace
-from rigidarea.flexible.check import check_bodies, check_joints, check_pairs, check_settings, of_pairs
+from rigidarea.flexible.check import (
+    check_bodies,
+    check_joints,
+    check_pairs,
+    check_settings,
+    check_start,
+    of_pairs,
+)
 from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.joints import JOINT, Joint
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
-from rigidarea.flexible.start import start
+from rigidarea.flexible.start import moving, settle, start, weighed
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 from rigidarea.flexible.tension import tense
 from rigidarea.flexible.watch import watch
@@ -42,13 +49,14 @@ class Body:
 
     boundary: from ``boundary.build``, about the centre of mass. mass, inertia; position (2,) and angle of the
     frame at t = 0. frequency, coupling, stretch: of the modes in ``boundary.modes`` (see ``modes.Reduced``).
-    damping: modal damping ratio. fixed: the frame is held: a ground, or a clamped body, whose modes move. (Gravity
-    acts on frames: it does not bend a clamped body, and free-free modes do not feel it.) hub (2,): hub centre in the
-    body frame; anchor (2,): the world point it is pinned to by a revolute joint, None for a free body. drive: (angle
-    at t = 0, final angular velocity, ramp time) of a prescribed hub rotation, None if free. damper: torsional,
-    moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0. young: Young's modulus,
-    named in errors (0: rigid). geometric (3, m, m): of ``modes.Reduced``, None: none. slowest: the first elastic
-    angular frequency, for the watch on spin (0: not known). shape: a ``recover.Shape``, None where there is no mesh.
+    damping: modal damping ratio. fixed: the frame is held: a ground, or a clamped body, whose modes move, and which
+    has stood under its weight before t = 0. (Gravity acts on frames: free-free modes do not feel it.) hub (2,): hub
+    centre in the body frame; anchor (2,): the world point it is pinned to by a revolute joint, None for a free body.
+    drive: (angle at t = 0, final angular velocity, ramp time) of a prescribed hub rotation, None if free. damper:
+    torsional, moment/(rad/time). torque: constant, on the hub. velocity (3,): of the frame at t = 0. young:
+    Young's modulus, named in errors (0: rigid). geometric (3, m, m): of ``modes.Reduced``, None: none. slowest:
+    the first elastic angular frequency, for the watch on spin (0: not known). shape: a ``recover.Shape``, None
+    where there is no mesh.
     """
 
     boundary: Boundary
@@ -80,9 +88,9 @@ class Record:
     t (n,); x, v (n, b, 3) frames; hub, hub_rate (n, b) hub rotation; forces (n, p, 2) contact force on the second body
     of each pair; regions (n, r, 5): force on the second body of its pair, direction, point, zeros beyond the regions
     of the instant, r the most at one; pair (n, r) which pair, -1 beyond; iterations (n,) of Newton; halved (n,) times
-    the step was halved; elastic, kinetic (n,) strain energy of the modes, kinetic energy; q (m,), dq (m,) at the end.
-    joints (n, j, 3): force and moment of each joint on its second body. evaluations: of the contact, in all.
-    shapes: what ``recover`` makes stresses of, None unless the run kept it.
+    the step was halved; elastic, kinetic (n,) strain energy of modes and static flexibility, kinetic energy; q (m,),
+    dq (m,) at the end. joints (n, j, 3): force and moment of each joint on its second body. evaluations: of the
+    contact, in all. shapes: what ``recover`` makes stresses of, None unless the run kept it.
     """
 
     t: Array
@@ -133,8 +141,9 @@ class Simulation:
     exponent of Alg. 3. contact: "area" or "sts". reach: STS only, the deepest penetration looked at (length). margin:
     length a leaf pair may move before the search is renewed. rho: spectral radius at infinity ρ∞, in [0, 1]; below 1
     where there are constraints (index 3). friction, restitution: of all pairs, or one a pair (``resist``). joints:
-    see ``joints``. Raises ValueError for bodies, pairs, joints or settings out of range, or an overlap at t = 0
-    deeper than ``depth_limit``.
+    see ``joints``. Bodies start where they are said to be, but for what their static flexibility moves a pivot or a
+    drive by under the first forces, and what the weight of a clamped body does. Raises ValueError for bodies, pairs,
+    joints or settings out of range, or an overlap at t = 0 deeper than ``depth_limit`` or than ``check_start`` says.
     """
 
     def __init__(
@@ -161,7 +170,10 @@ class Simulation:
             of_pairs("restitution", restitution, len(self.pairs)),
         )
         self.joints = check_joints(joints, len(bodies))
+        check_start(bodies, self.pairs, depth_limit)
         self.bodies = list(bodies)
+        placed = [weighed(moving(b, i), gravity) for i, b in enumerate(bodies)]
+        bodies, self.sag = [b for b, _ in placed], [u for _, u in placed]
         count = [len(b.frequency) for b in bodies]
         first = np.concatenate([[0], np.cumsum(count)])
         omega = np.concatenate([np.asarray(b.frequency, float) for b in bodies])
@@ -204,12 +216,12 @@ class Simulation:
         self.settings = Settings(float(k), float(reach if contact == "sts" else q), contact == "sts", spread,
                                  float(margin), float(rho), loose)  # fmt: skip
         m = int(first[-1])
-        self.state, self._saved = self._new_state(m), self._new_state(m)
+        self.state, self._saved = self._new_state(bodies, m), self._new_state(bodies, m)
         self.time = 0.0
         self._searches = searches(len(self.pairs))
-        self._make_room(ROOM if spread and contact == "area" else 0)
-        if np.isfinite(depth_limit):
-            self._check_start(depth_limit)
+        self._make_room(ROOM if spread else 0)
+        for n, u in enumerate(self.sag):
+            self._buffers.most[n] = 0.0 if u is None else np.hypot(*u.T).max()
 
     def _make_room(self, loads: int, old: Buffers | None = None) -> None:
         """Scratch arrays with room for so many loads as unknowns."""
@@ -235,31 +247,15 @@ class Simulation:
         """Contact evaluations so far, and contact regions in the last one."""
         return int(self._buffers.counts[1]), int(self._buffers.counts[0])
 
-    def _check_start(self, limit: float) -> None:
-        for i, j in self.pairs:
-            pose = [np.array([x, y, np.cos(t), np.sin(t)]) for x, y, t in self.state.x[[i, j]]]
-            a, b = self.boundaries[i], self.boundaries[j]
-            s = self.scratch
-            n_pairs = nodal.search(a, pose[0], b, pose[1], 0.0, s)
-            works = workspace(a), workspace(b)
-            flat = [np.zeros(x.modes.shape[1]) for x in (a, b)]
-            n = nodal.contact(
-                a, works[0], pose[0], flat[0], b, works[1], pose[1], flat[1], n_pairs, 1, 1.0, 1.0, False, s
-            )
-            depth = max((float(r["area"] / r["chord"]) for r in s.regions[: max(n, 0)]), default=0.0)
-            if n < 0 or depth > limit:
-                raise ValueError(
-                    f"bodies {i} and {j} overlap at t = 0: expected a mean depth of at most {limit:.4g}, got "
-                    + (f"{depth:.4g}" if n >= 0 else "boundaries that pass through each other")
-                )
-
-    def _new_state(self, modes: int) -> State:
-        x = np.array([[*b.position, b.angle] for b in self.bodies], float)
-        v = np.array([b.velocity for b in self.bodies], float)
-        v[[b.fixed for b in self.bodies]] = 0.0
-        acc, mu = start(self.bodies, self.joints, self.system.gravity)
-        z = np.zeros(modes)
-        return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu)
+    def _new_state(self, bodies: Sequence[Body], modes: int) -> State:
+        x = np.array([[*b.position, b.angle] for b in bodies], float)
+        v = np.array([b.velocity for b in bodies], float)
+        v[[b.fixed for b in bodies]] = 0.0
+        acc, mu = start(bodies, self.joints, self.system.gravity)
+        z, turn = np.zeros(modes), np.zeros((len(x), 4))
+        for b, w, *own in zip(bodies, self.works, x, mu[: len(bodies)], turn, strict=True):
+            w.hub_load[:] = settle(b, self.system.gravity, *own)
+        return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu, turn)
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
         """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps; ``shapes`` too if asked for.
@@ -271,6 +267,8 @@ class Simulation:
         """
         positive(duration, "duration"), positive(h, "h")
         every = whole(every, "every", 1)
+        if h > duration * (1 + 1e-9):
+            raise ValueError(f"h must be at most the duration, {duration:g}, got {h:g}")
         if duration / h > MOST_STEPS:
             raise ValueError(
                 f"h must be at least {duration / MOST_STEPS:.4g} for a duration of {duration:g}, got {h:g}"

@@ -84,10 +84,12 @@ def reduce(
     flexible: bool = True,
     cache: Path | str | None = None,
     smooth: bool = True,
+    sides: int = 1,
 ) -> Reduced:
     """Reduce a body. Rings are numbered as in ``mesh.rings``; ``hub`` and ``clamped`` name a ring.
 
-    modes: free-free modes kept (0: compliant). flexible: with False only the rigid-body data. cache: a directory; a
+    sides: contacts load every so many of a ring's nodes, and those between them with them (``carriers``). modes:
+    free-free modes kept (0: compliant). flexible: with False only the rigid-body data. cache: a directory; a
     file there that cannot be read is built again, with a warning. smooth: see ``element.stiffness``. Raises ValueError
     for a hub or a clamped ring that does not exist, or more modes than the mesh has.
     """
@@ -99,10 +101,10 @@ def reduce(
     names = [f.name for f in fields(Reduced) if f.name != "pieces"]
 
     def build() -> dict[str, NDArray]:
-        body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible, smooth)
+        body = _reduce(mesh, material, contact_rings, hub, clamped, modes, flexible, smooth, sides)
         return {name: np.asarray(getattr(body, name)) for name in names} | body.pieces._asdict()
 
-    settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible, smooth)
+    settings = ("reduce", material, tuple(contact_rings), hub, clamped, modes, flexible, smooth, sides)
     found = arrays(
         cache, settings, (mesh.points, mesh.triangles, *mesh.rings), [*names, *Pieces._fields], build
     )
@@ -132,6 +134,27 @@ def hub_rows(points: Array, nodes: Ints) -> Array:
     spread = (x**2).sum()
     w[nodes, 0, 2], w[nodes, 1, 2] = -x[:, 1] / spread, x[:, 0] / spread
     return w.reshape(-1, 3)
+
+
+def carriers(mesh: Mesh, contact_rings: Sequence[int], sides: int) -> sp.csc_array:
+    """Forces (2 n) on all nodes of unit loads on every ``sides``-th of the rings' nodes: (2 n, 2 f).
+
+    A load is spread as linear shape functions of the loaded nodes' spacing would have it, over all of the mesh's nodes
+    there, and they are moved by the same mean. A load on single nodes, with others between them, would be one
+    that the mesh's stresses see node by node.
+    """
+    rows, columns, values, first = [], [], [], 0
+    share = 1.0 - np.abs(np.arange(1 - sides, sides)) / sides
+    for k in contact_rings:
+        ring = mesh.rings[k]
+        at = np.arange(0, len(ring), sides)
+        rows.append(ring[(at[:, None] + np.arange(1 - sides, sides)) % len(ring)].ravel())
+        columns.append(np.repeat(first + np.arange(len(at)), len(share)))
+        values.append(np.tile(share / sides, len(at)))
+        first += len(at)
+    i, j, v = (np.concatenate(x) for x in (rows, columns, values))
+    one = sp.csc_array((v, (i, j)), shape=(len(mesh.points), first))
+    return sp.kron(one, sp.eye_array(2), format="csc")
 
 
 class Flexibility:
@@ -239,20 +262,18 @@ def elastic(mesh: Mesh, material: Material, clamped: int | None = None, smooth: 
 
 def _reduce(
     mesh: Mesh, material: Material, contact_rings: Sequence[int], hub: int | None, clamped: int | None, modes: int,
-    flexible: bool, smooth: bool,
+    flexible: bool, smooth: bool, sides: int,
 ) -> Reduced:  # fmt: skip
     mass = lumped_mass(mesh, material)
     _, centre, inertia = rigid_modes(mesh.points, mass)
-    nodes = np.concatenate([mesh.rings[i] for i in contact_rings])
-    n, f = 2 * len(mass), 2 * len(nodes)
+    boundary = carriers(mesh, contact_rings, sides)
+    n, f = boundary.shape
     if not flexible:
         return Reduced(float(mass.sum()), inertia, centre, np.zeros(0), np.zeros((f + 3, 0)), np.zeros((0, 0)),
                        np.zeros((0, 0)), np.zeros(0), np.zeros(0), np.zeros((0, 0, 0)), 0.0, np.zeros((f + 3, 0)),
                        np.zeros(0), np.zeros((0, 0, 0)), no_pieces())  # fmt: skip
     # interface displacements = rowsᵀ u, loads on the nodes = rows f
-    pick = (2 * nodes[:, None] + np.arange(2)).ravel()
     hubs = hub_rows(mesh.points, mesh.rings[hub]) if hub is not None else np.zeros((n, 3))
-    boundary = sp.csc_array((np.ones(f), (pick, np.arange(f))), shape=(n, f))
     rows = sp.hstack([boundary, sp.csc_array(hubs)]).tocsc()
     response = elastic(mesh, material, clamped, smooth)
     first_modes, first_omega = response.modes(modes or min(SOFT if clamped is None else 1, n - 3))

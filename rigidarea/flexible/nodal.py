@@ -27,7 +27,6 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.flexible import slabs
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import couple, couple_slabs, room
 from rigidarea.flexible.literal import literal as literal
@@ -38,6 +37,8 @@ from rigidarea.flexible.region import arcs, find_regions
 from rigidarea.flexible.scratch import FULL, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
 from rigidarea.flexible.search import search as search
+from rigidarea.flexible.slabs import distribute as distribute_slabs
+from rigidarea.flexible.slabs import lean as lean_slabs
 from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
@@ -213,7 +214,7 @@ def contact(
         if graphs:
             lean = _lean(x[0], y[0], x[1], y[1], n_a, n_b) / area
         else:
-            lean = slabs.lean(x, y, s.t, n_a, n_b, q, s.cut)
+            lean = lean_slabs(x, y, s.t, n_a, n_b, q, s.cut)
         c, sn = _turn(x, y, n_a, n_b, lean)
         r["nx"], r["ny"] = c * uy + sn * ux, sn * uy - c * ux
         if not spread:
@@ -246,7 +247,7 @@ def contact(
             if answers:
                 couple(a, wa, pose_a, b, wb, pose_b, r, s, n_a, n_b, k)
         else:
-            alpha, beta, power = slabs.distribute(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
+            alpha, beta, power = distribute_slabs(a, wa, b, wb, nx, ny, s, n_a, n_b, r["force"], xc, q)
             if answers:
                 couple_slabs(a, wa, pose_a, b, wb, pose_b, r, s, n_a, n_b, k, alpha, beta, xc, power)
         r["serial"] = s.load.made[1]

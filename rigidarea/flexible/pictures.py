@@ -59,12 +59,12 @@ def pressure(shape: Shape, loads: Array) -> tuple[Array, Array]:
     thickness.
     """
     mesh = shape.mesh
-    nodes = np.concatenate([mesh.rings[i] for i in shape.contact_rings])
+    nodes = np.concatenate(shape.loaded)
     force = np.zeros((len(nodes), 2))
     np.add.at(force, loads[:, 0].astype(int), loads[:, 1:])
     out, start = np.zeros(len(nodes)), 0
-    for i in shape.contact_rings:
-        ring = mesh.points[mesh.rings[i]]
+    for on in shape.loaded:
+        ring = mesh.points[on]
         step = np.roll(ring, -1, 0) - np.roll(ring, 1, 0)
         span = np.hypot(*step.T)
         inwards = np.column_stack([-step[:, 1], step[:, 0]]) / span[:, None]
@@ -85,8 +85,7 @@ def draw_pressure(
     if not len(loads) or p.max() <= 0.0:
         return
     most, start = int(np.argmax(p)), 0
-    for i in shape.contact_rings:  # the ring of the largest
-        n = len(shape.mesh.rings[i])
+    for n in map(len, shape.loaded):  # the ring of the largest
         if most < start + n:
             break
         start += n

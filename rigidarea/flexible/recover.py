@@ -16,11 +16,13 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
-from rigidarea.flexible.element import Material, lumped_mass, stress, von_mises
+from rigidarea.flexible.element import Material, lumped_mass, strain_displacement, stress, von_mises
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.flexible.modes import Flexibility, Reduced, elastic, hub_rows
+from rigidarea.flexible.modes import Flexibility, Reduced, carriers, elastic, hub_rows, rigid_modes
 from rigidarea.flexible.tension import matrix
 
 Array = NDArray[np.float64]
@@ -30,7 +32,7 @@ Array = NDArray[np.float64]
 class Shape:
     """What a body's reduction was made of; ``displacement`` and ``stress`` undo it.
 
-    contact_rings, hub, clamped: ring numbers as in ``modes.reduce``; reduced: its result.
+    contact_rings, hub, clamped: ring numbers as in ``modes.reduce``, and sides; reduced: its result.
     """
 
     mesh: Mesh
@@ -39,6 +41,7 @@ class Shape:
     hub: int | None
     clamped: int | None
     reduced: Reduced
+    sides: int = 1
 
     @cached_property
     def _response(self) -> Flexibility:
@@ -59,9 +62,15 @@ class Shape:
         phi, omega = self._response.modes(r)
         return phi / omega
 
-    @cached_property
-    def _nodes(self) -> NDArray[np.int64]:
-        return np.concatenate([self.mesh.rings[i] for i in self.contact_rings])
+    @property
+    def loaded(self) -> list[NDArray[np.int64]]:
+        """The nodes that contacts load, ring after ring: FE boundary node i of the stepper is the i-th of all."""
+        return [self.mesh.rings[i][:: self.sides] for i in self.contact_rings]
+
+    def sag(self, gravity: tuple[float, float]) -> Array:
+        """Displacements (n, 2) by the body's own weight, ``gravity`` in the body frame, of a clamped body."""
+        mass = lumped_mass(self.mesh, self.material)
+        return self._response((mass[:, None] * np.array(gravity)).reshape(-1, 1))[:, 0].reshape(-1, 2)
 
     def displacement(
         self,
@@ -79,11 +88,11 @@ class Shape:
         modal, loads = np.asarray(modal, float), np.asarray(loads, float).reshape(-1, 3)
         if modal.shape != (m,):
             raise ValueError(f"modal must have shape ({m},), got {modal.shape}")
-        if len(loads) and not (0 <= loads[:, 0].min() and loads[:, 0].max() < len(self._nodes)):
-            raise ValueError(f"loads must name nodes 0 … {len(self._nodes) - 1}, got {loads[:, 0].max():g}")
-        f = np.zeros((len(points), 2))
-        np.add.at(f, self._nodes[loads[:, 0].astype(int)], loads[:, 1:])
-        full = f.reshape(-1)
+        f = np.zeros((sum(map(len, self.loaded)), 2))
+        if len(loads) and not (0 <= loads[:, 0].min() and loads[:, 0].max() < len(f)):
+            raise ValueError(f"loads must name nodes 0 … {len(f) - 1}, got {loads[:, 0].max():g}")
+        np.add.at(f, loads[:, 0].astype(int), loads[:, 1:])
+        full = carriers(self.mesh, self.contact_rings, self.sides) @ f.reshape(-1)
         if self.hub is not None:
             full = full + hub_rows(points, self.mesh.rings[self.hub]) @ np.asarray(hub, float)
         if spin and self.clamped is None:
@@ -98,6 +107,48 @@ class Shape:
             u = u + self._soft @ (out[:, r:] @ (self._soft.T @ full))
         return u.reshape(-1, 2)
 
+    @cached_property
+    def _laplacian(self) -> tuple[Array, Any, Any]:
+        """Gradients (m, 3, 2) of the nodes' shape functions, factors of the Laplacian, and the node held there."""
+        b, area = strain_displacement(self.mesh)
+        gradient = np.stack([b[:, 0, 0::2], b[:, 1, 1::2]], 2)
+        tri, n = self.mesh.triangles, len(self.mesh.points)
+        part = np.einsum("eia,eja,e->eij", gradient, gradient, area)
+        k = sp.coo_array(
+            (part.ravel(), (np.repeat(tri, 3, 1).ravel(), np.tile(tri, (1, 3)).ravel())), (n, n)
+        ).tocsc()
+        held = np.zeros(1, np.int64) if self.clamped is None else self.mesh.rings[self.clamped]
+        free = np.setdiff1d(np.arange(n), held)
+        return gradient, free, spl.splu(k[free][:, free].tocsc())
+
+    def turned(self, u: Array) -> Array:
+        """Displacements (n, 2) with what parts that turn bring nearer to each other, of linear ones ``u`` (n, 2).
+
+        A beam that bends is shorter; linear displacements leave its length along the axis. With ω and ε the turn and
+        the strain of u, the gradient of the shape is R(ω) (I + ε) as nearly as a shape can have it (J. Huang et al.,
+        Interactive shape interpolation through controllable dynamic deformation, IEEE TVCG 17, 2011,
+        doi:10.1109/TVCG.2010.109). Of second order in u; without momentum and moment of momentum, as the modes.
+        """
+        gradient, free, factors = self._laplacian
+        tri, points = self.mesh.triangles, self.mesh.points
+        slope = np.einsum("eic,eia->eca", u[tri], gradient)
+        turn = 0.5 * (slope[:, 1, 0] - slope[:, 0, 1])
+        c, s = np.cos(turn), np.sin(turn)
+        strained = np.eye(2) + 0.5 * (slope + slope.transpose(0, 2, 1))
+        rotation = np.stack([np.stack([c, -s], 1), np.stack([s, c], 1)], 1)
+        more = rotation @ strained - np.eye(2) - slope
+        load = np.einsum("eia,eca,e->eic", gradient, more, self.mesh.areas())
+        right = np.column_stack(
+            [np.bincount(tri.ravel(), load[:, :, k].ravel(), len(points)) for k in range(2)]
+        )
+        second = np.zeros(u.shape)
+        second[free] = factors.solve(right[free])
+        if self.clamped is None:
+            mass = lumped_mass(self.mesh, self.material)
+            rigid = rigid_modes(points, mass)[0]
+            second -= (rigid @ (rigid.T @ (np.repeat(mass, 2) * second.reshape(-1)))).reshape(-1, 2)
+        return u + second
+
     def stress(self, u: Array) -> Array:
         """Stress (m, 3) = (σ_xx, σ_yy, τ_xy) of each triangle, body frame, under displacements ``u`` (n, 2)."""
         return stress(self.mesh, self.material, u)
@@ -109,8 +160,8 @@ class Shape:
 
 @dataclass(frozen=True)
 class State:
-    """One body at one recorded time: nodes' displacement (n, 2) and triangles' stress (m, 3) in the body frame, and the
-    frame (x, y, angle)."""
+    """One body at one recorded time: nodes' displacement (n, 2, ``Shape.turned``) and triangles' stress (m, 3) in the
+    body frame, and the frame (x, y, angle)."""
 
     shape: Shape
     frame: Array
@@ -140,4 +191,6 @@ def recover(sim: Any, record: Any, row: int, body: int) -> State:
     modal = kept.modal[row, first[body] : first[body + 1]]
     spin = float(record.v[row, body, 2])
     u = shape.displacement(modal, mine, kept.hub[row, body], spin)
-    return State(shape, record.x[row, body], u, shape.stress(u))
+    if sim.sag[body] is not None:
+        u = u + sim.sag[body]
+    return State(shape, record.x[row, body], shape.turned(u), shape.stress(u))

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.hub import direction, prescribed
+from rigidarea.flexible.hub import direction, hub_angle, prescribed
 from rigidarea.flexible.tension import between
 from rigidarea.kernel.jit import kernel
 
@@ -51,7 +51,7 @@ def frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyp
     worst = max(abs(rhs[k]), abs(rhs[k + 1]), abs(rhs[k + 2]) / size)
     # dynamic rows times scale, multipliers over scale
     m[k, k] = m[k + 1, k + 1] = mass * scheme.acc * scheme.scale
-    m[k + 2, k + 2] = (sy.inertia[b] * scheme.acc + sy.damper[b] * scheme.vel) * scheme.scale
+    m[k + 2, k + 2] = sy.inertia[b] * scheme.acc * scheme.scale
     for i in range(k, k + 3):
         for j in range(3 * len(sy.mass)):
             m[i, j] += buf.tangent[i, j] * scheme.scale
@@ -94,11 +94,17 @@ def _less(residual: Array, modes: Array, row: int, fx: float, fy: float) -> None
 
 @kernel
 def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):  # type: ignore[no-untyped-def]
-    """Rows of one body's pin and drive, its compliance at the hub among them; returns the largest violation."""
+    """Rows of one body's pin and drive, or damper, its compliance at the hub among them: (largest violation, force).
+
+    A damper's moment is an unknown as a drive's is: moment + c · rate = 0, over what makes the rate's part and the
+    moment's of one size. Its row has a ``share`` of what moves the hub, kept in ``buf.hubs``; the force is what the
+    row is off by.
+    """
     m, rhs, k = buf.matrix, buf.rhs, 3 * b
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s, n = buf.pose[b, 2], buf.pose[b, 3], len(body.modes)
-    worst = 0.0
+    worst = off = 0.0
+    share = buf.hubs[b, 5] = 1.0
     for kind in range(3):
         row = buf.column[k + kind]
         if row < 0:
@@ -109,13 +115,25 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
         elif kind == 1:
             g = state.x[b, 1] + hub.y - sy.anchor[b, 1]
             m[row, k + 1], m[row, k + 2] = 1.0, hub.x
-        else:
+        elif sy.driven[b] == 1:
             g = state.x[b, 2] + hub.turn - prescribed(sy.drive[b], t)
             m[row, k + 2] = 1.0
-        worst = max(worst, abs(g) / (sy.size[b] if kind < 2 else 1.0))
+        else:
+            _angle, rate = hub_angle(body, sy, state, b)
+            left = state.mu[b, 2] + sy.damper[b] * rate
+            off = abs(left) / sy.size[b]
+            whole = sy.damper[b] * scheme.vel + sy.inertia[b] * scheme.acc
+            g = left / whole
+            share = buf.hubs[b, 5] = sy.damper[b] * scheme.vel / whole
+            m[row, k + 2], m[row, row] = 1.0, 1.0 / (whole * scheme.scale)
+        if kind < 2 or sy.driven[b] == 1:
+            worst = max(worst, abs(g) / (sy.size[b] if kind < 2 else 1.0))
         for i in range(k, k + 3):
+            if sy.fixed[b] == 1:
+                m[row, i] = 0.0
             m[i, row] = -m[row, i]
-        rhs[row] = -g - buf.push[3 * len(sy.mass) + k + kind]
+            m[row, i] *= share
+        rhs[row] = -g - share * buf.push[3 * len(sy.mass) + k + kind]
         e = direction(kind, c, s)
         for other in range(3):
             column = buf.column[k + other]
@@ -134,12 +152,12 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
                 pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
                 pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]
                 value += pe * pd * w.mobility[j]
-            m[row, column] += value / scheme.scale
+            m[row, column] += share * value / scheme.scale
         # modes move the hub by their own residual in this iteration
         for j in range(hi - lo):
             pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-            rhs[row] += pe * buf.modal_residual[lo + j] * w.mobility[j]
-    return worst
+            rhs[row] += share * pe * buf.modal_residual[lo + j] * w.mobility[j]
+    return worst, off
 
 
 @kernel
@@ -150,9 +168,10 @@ def held_contacts(sy, buf, scheme):  # type: ignore[no-untyped-def]
         row = buf.column[i]
         if row < 0:
             continue
+        share = buf.hubs[i // 3, 5] if i % 3 == 2 else 1.0
         for j in range(n3):
             if sy.fixed[j // 3] == 0:
                 m[j, row] += buf.tangent[j, n3 + i]
-            m[row, j] -= buf.tangent[n3 + i, j]
+                m[row, j] -= share * buf.tangent[n3 + i, j]
             if buf.column[j] >= 0:
-                m[row, buf.column[j]] -= buf.tangent[n3 + i, n3 + j] / scheme.scale
+                m[row, buf.column[j]] -= share * buf.tangent[n3 + i, n3 + j] / scheme.scale

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
+from rigidarea.flexible.boundary import make_ready
 from rigidarea.flexible.dense import dot
-from rigidarea.flexible.hub import hub_displacement, hub_rate
+from rigidarea.flexible.hub import hub_angle
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
-from rigidarea.flexible.tension import draw
+from rigidarea.flexible.tension import between
 from rigidarea.kernel.jit import entry, kernel
 
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
@@ -24,6 +25,8 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
             target.v[b, i] = source.v[b, i]
             target.acc[b, i] = source.acc[b, i]
             target.aux[b, i] = source.aux[b, i]
+        for i in range(4):
+            target.turn[b, i] = source.turn[b, i]
     for b in range(len(source.mu)):
         for i in range(3):
             target.mu[b, i] = source.mu[b, i]
@@ -32,6 +35,36 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
         target.dq[i] = source.dq[i]
         target.ddq[i] = source.ddq[i]
         target.auxq[i] = source.auxq[i]
+
+
+@kernel
+def _given(b, w, i):  # type: ignore[no-untyped-def]
+    """The i-th static load on a body, hub's first: its row of the interface, and the force."""
+    if i < 3:
+        return len(b.modes) - 3 + i, w.hub_load[i]
+    node = w.loaded[(i - 3) // 2]
+    return 2 * node + (i - 3) % 2, w.node_load[node, (i - 3) % 2]
+
+
+@kernel
+def _static_energy(b, w):  # type: ignore[no-untyped-def]
+    """½ fᵀ C f of what loads on nodes and hub bend statically."""
+    if b.flexibility.shape[0] == 0:
+        return 0.0
+    energy, count = 0.0, 3 + 2 * w.loaded[-1]
+    for i in range(count):
+        row, f = _given(b, w, i)
+        if f == 0.0:
+            continue
+        for j in range(i + 1):
+            column, g = _given(b, w, j)
+            if len(b.ready) > 0 and j >= 3:
+                make_ready(b, row // 2, column // 2, column // 2 + 1)
+            part = b.flexibility[row, column]
+            if w.tight[0]:
+                part += between(b, w, row, column)
+            energy += (0.5 if i == j else 1.0) * f * part * g
+    return energy
 
 
 @kernel
@@ -57,11 +90,9 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
         for i in range(3):
             row[at + i] = state.x[b, i]
             row[at + 3 + i] = state.v[b, i]
-        body, w = boundary_at(bodies, b), work_at(bodies, b)
-        if w.tight[0]:
-            draw(body, w)
-        row[at + 6] = state.x[b, 2] + hub_displacement(body, w, state.q[lo:hi], 2)
-        row[at + 7] = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
+        body = boundary_at(bodies, b)
+        row[at + 6], row[at + 7] = hub_angle(body, sy, state, b)
+        strain += _static_energy(body, work_at(bodies, b))
         at += BODY
     row[3], row[4] = strain, kinetic
     for p in range(len(buf.force)):

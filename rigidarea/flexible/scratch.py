@@ -35,7 +35,7 @@ class Loads(NamedTuple):
     made: Ints  # (2,) unknowns so far, serial number of the region
     region: Ints  # (c,) that number
     side: Ints  # (c,) 0: on A, 1: on B; then the body
-    node: Ints  # (c,) FE boundary node, -1: one of the two of a rigid body's side
+    node: Ints  # (c,) FE boundary node, -1: on a rigid body's side; -2: a moment there, its sign ``local[i, 0]``
     at: Array  # (c, 2) where, world
     world: Array  # (c, 2) direction of the load, world
     local: Array  # (c, 2) and in the body frame
@@ -49,6 +49,8 @@ class Scratch(NamedTuple):
     """See the module."""
 
     pairs: Ints  # (p, 2) candidate leaves
+    gap: Array  # (p,) how far apart they are at least, undeformed, and
+    far: Array  # (p,) how far the second is at most from the point about which the search lets it turn
     close: Ints  # (p, 2) those of them that are near now
     work: Work
     on: Ints  # (v,) the contact edge that each edge of ``work.polygon`` lies on
@@ -78,7 +80,8 @@ def scratch(points: int, room: int = 0) -> Scratch:
     work = new_work(points, CROSSINGS)
     v = len(work.polygon)
     return Scratch(
-        np.zeros((CANDIDATES, 2), np.int64), np.zeros((CANDIDATES, 2), np.int64), work,
+        np.zeros((CANDIDATES, 2), np.int64), np.zeros(CANDIDATES), np.zeros(CANDIDATES),
+        np.zeros((CANDIDATES, 2), np.int64), work,
         np.zeros(v, np.int64), np.zeros((v, 2)), np.zeros(CROSSINGS, REGION),
         np.zeros((2, v)), np.zeros((2, v)), np.zeros((2, v), np.int64), np.zeros((2, v, 2)), np.zeros(2 * v),
         loads(room, points),
@@ -89,6 +92,8 @@ class Searches(NamedTuple):
     """What the search left for each of p pairs, kept while b has moved little in the frame of a; see ``search``."""
 
     pairs: Ints  # (p, c, 2)
+    gap: Array  # (p, c) see ``Scratch``, where b was then
+    far: Array  # (p, c)
     found: Ints  # (p,) candidate leaves, -1 before the first search
     posed: Array  # (p, 4) pose of b in the frame of a then
     bend: Array  # (p,) the deformation allowed for
@@ -102,7 +107,8 @@ def searches(pairs: int) -> Searches:
     """Room for one search each of so many pairs."""
     p = pairs
     return Searches(
-        np.zeros((p, CANDIDATES, 2), np.int64), np.full(p, -1), np.zeros((p, 4)), np.zeros(p), np.zeros(p),
+        np.zeros((p, CANDIDATES, 2), np.int64), np.zeros((p, CANDIDATES)), np.zeros((p, CANDIDATES)),
+        np.full(p, -1), np.zeros((p, 4)), np.zeros(p), np.zeros(p),
         np.zeros(p), np.zeros((p, 2)), np.zeros((p, 2)),
     )  # fmt: skip
 
@@ -111,5 +117,6 @@ def searches(pairs: int) -> Searches:
 def of_pair(s: Scratch, all_pairs: Searches, p: int) -> Scratch:
     """The work arrays with what the search left for pair p."""
     return Scratch(
-        all_pairs.pairs[p], s.close, s.work, s.on, s.between, s.regions, s.x, s.y, s.edge, s.t, s.cut, s.load
+        all_pairs.pairs[p], all_pairs.gap[p], all_pairs.far[p], s.close, s.work, s.on, s.between, s.regions, s.x, s.y,
+        s.edge, s.t, s.cut, s.load,
     )  # fmt: skip

@@ -5,7 +5,8 @@ each part, two Gauss points carry p = ε ⟨−g⟩ (exact for the linear gap ti
 the gap changes sign within a part), and shape functions hand the force to the nodes of both bodies. Cf. P. Wriggers,
 Computational Contact Mechanics, 2nd ed., section 10.3, doi:10.1007/978-3-540-32609-0. ε is a force per area in 2-D,
 as k is for the area method; on flat faces both give the same resultant. The signature is that of
-``nodal.contact``: search, stepping and constraints are shared, only the evaluation differs.
+``nodal.contact``: search, stepping and constraints are shared, only the evaluation differs. As there the loads are
+unknowns of Newton's iteration where ``s`` has room for them (``condense``).
 """
 
 from __future__ import annotations
@@ -14,8 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import Boundary, Work, edges_of, span, strip
+from rigidarea.flexible.condense import begin_vectors, enter_vector, gather
 from rigidarea.flexible.place import add_load, place_leaves
-from rigidarea.flexible.scratch import MANY, Scratch
+from rigidarea.flexible.scratch import FULL, MANY, Scratch
 from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
@@ -50,7 +52,7 @@ def contact(
     """STS for one pair: each slave leaf in contact leaves one resultant in ``s.regions`` (force, point, direction).
 
     k: the penalty ε. reach: length, the deepest penetration looked at (the other side of a thin body is no contact).
-    Returns the number of resultants, or MANY.
+    Returns the number of resultants, or an error code of ``scratch``.
     """
     place_leaves(a, wa, pose_a, qa, s.pairs, n_pairs, 0, stamp)
     place_leaves(b, wb, pose_b, qb, s.pairs, n_pairs, 1, stamp)
@@ -59,6 +61,11 @@ def contact(
     load_b, flag_b, touched_b = wb.point_load, wb.point_flag, wb.touched
     pairs, regions, leaves = s.pairs, s.regions, s.edge[0]
     count = end = 0
+    answers, rigid_a, rigid_b, before = spread and len(s.load.force) > 0, -1, -1, s.load.made[0]
+    if answers:
+        if s.load.made[0] + 6 > len(s.load.force):
+            return FULL
+        rigid_a, rigid_b = begin_vectors(a, pose_a, b, pose_b, s.load)
     while end < n_pairs:
         # a group of pairs with one leaf of the slave
         start, leaf_a = end, pairs[end, 0]
@@ -107,6 +114,29 @@ def contact(
                                 total += f
                                 first += x * f
                                 stiff += w
+                                if answers:
+                                    if s.load.made[0] + 8 > len(s.load.force):
+                                        return FULL
+                                    at_x, at_y = px + x * tx, py + x * ty
+                                    n = enter_vector(
+                                        a,
+                                        wa,
+                                        pose_a,
+                                        s.load,
+                                        0,
+                                        i,
+                                        x / length,
+                                        rigid_a,
+                                        at_x,
+                                        at_y,
+                                        nx,
+                                        ny,
+                                        0,
+                                    )
+                                    n = enter_vector(
+                                        b, wb, pose_b, s.load, 1, j, eta, rigid_b, at_x, at_y, nx, ny, n
+                                    )
+                                    gather(s.load, n, f, w)
                     if spread and at_low != 0.0:
                         add_load(load_b, flag_b, touched_b, j, at_low * nx, at_low * ny)
                     carry = at_high
@@ -138,5 +168,8 @@ def contact(
             # the point of the line of action nearest to A's origin: the moment about that origin is kept
             r["x"], r["y"] = pose_a[0] + r["ny"] * moment / f, pose_a[1] - r["nx"] * moment / f
             r["x_chord"], r["y_chord"], r["chord"], r["area"] = r["x"], r["y"], stiff / k, f / k
+            r["serial"] = s.load.made[1]
             count += 1
+    if count == 0:
+        s.load.made[0] = before
     return count

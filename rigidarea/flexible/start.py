@@ -1,19 +1,116 @@
-"""Accelerations and multipliers that satisfy motion and constraints at t = 0, with contacts and modes at rest.
+"""What satisfies motion and constraints at t = 0, with contacts and modes at rest: velocities, accelerations,
+multipliers, and what static flexibility does under them.
 
-Without them the scheme starts with an error of first order.
+Without them the scheme starts with an error of first order, and with swinging that is not the bodies'.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.flexible.check import PIVOT
 from rigidarea.flexible.joints import ROWS, Joint
+from rigidarea.flexible.modes import carriers, hub_rows
+from rigidarea.kernel.pool import boxes_of
 
 Array = NDArray[np.float64]
+
+SMALL = 1e-3  # of the energy that will go round: what a body may be given as strain before it starts
+
+
+def moving(b: Any, number: int) -> Any:
+    """An ``integrate.Body`` whose velocity leaves its pivot at rest, and is that of a drive without a ramp.
+
+    Raises ValueError for a velocity that says otherwise; zeros say nothing.
+    """
+    if b.fixed or (b.anchor is None and b.drive is None):
+        return b
+    vx, vy, omega = b.velocity
+    if b.drive is not None and b.drive[2] == 0.0 and omega == 0.0:
+        omega = b.drive[1]
+    if b.anchor is not None:
+        c, s = np.cos(b.angle), np.sin(b.angle)
+        arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
+        v = omega * np.array([arm[1], -arm[0]])
+        given = np.array([vx, vy])
+        size = float(np.linalg.norm(b.boundary.points, axis=1).max())
+        if given.any() and np.hypot(*(given - v)) > PIVOT * abs(omega) * size:
+            raise ValueError(
+                f"body {number}: its velocity must leave its pivot at rest, ({v[0]:.6g}, {v[1]:.6g}) at {omega:.6g}"
+                f" rad/time, got ({vx:.6g}, {vy:.6g})"
+            )
+        vx, vy = float(v[0]), float(v[1])
+    return replace(b, velocity=(vx, vy, omega))
+
+
+def weighed(b: Any, gravity: tuple[float, float]) -> tuple[Any, Array | None]:
+    """An ``integrate.Body``; a clamped one as its own weight bends it, which loads and modes move from there, and the
+    displacements (n, 2) of its mesh's nodes by that."""
+    if b.shape is None or b.shape.clamped is None or not np.any(gravity):
+        return b, None
+    c, s = np.cos(b.angle), np.sin(b.angle)
+    sag = b.shape.sag((c * gravity[0] + s * gravity[1], -s * gravity[0] + c * gravity[1]))
+    shape, bd = b.shape, b.boundary
+    spread = carriers(shape.mesh, shape.contact_rings, shape.sides)
+    u = (spread.T @ sag.reshape(-1)).reshape(-1, 2)
+    share = bd.share[:, None]
+    points = bd.points + (1.0 - share) * u[bd.low] + share * u[bd.high]
+    hub = np.array(b.hub)
+    if shape.hub is not None:
+        hub = hub + (hub_rows(shape.mesh.points, shape.mesh.rings[shape.hub]).T @ sag.reshape(-1))[:2]
+    boxes, _ = boxes_of(points, bd.following, np.zeros((len(points), 4)))
+    bent = bd._replace(points=points, nodes=bd.nodes + u, boxes=boxes)
+    return replace(b, boundary=bent, hub=(float(hub[0]), float(hub[1]))), sag
+
+
+def _damped(b: Any) -> float:
+    """The moment of a body's damper at t = 0, where a drive does not say how the hub turns; none, where the strain by
+    it would have more than SMALL of the body's energy."""
+    if b.drive is not None or b.damper == 0.0:
+        return 0.0
+    yields = b.boundary.flexibility[-1, -1] if len(b.boundary.flexibility) else 0.0
+    return b.damper * b.velocity[2] if yields * b.damper**2 <= SMALL * b.inertia else 0.0
+
+
+def settle(b: Any, gravity: Array, x: Array, mu: Array, turn: Array) -> Array:
+    """The load (3,) on a body's hub at t = 0, in its frame. Moves frame ``x`` (3,) and ``turn`` (4,) to where static
+    flexibility under it, and under the spin, leaves the pivot and the drive's angle where they are.
+
+    Of all such frames the one that is nearest in the metric of the mass: that about which the body, let go as it was
+    said to be, would swing. Where first forces strain the body by more than SMALL of its energy (a sudden drive) it
+    starts without that strain, and swings.
+    """
+    c, s = np.cos(b.angle), np.sin(b.angle)
+    load = np.array([c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1], mu[2] + b.torque])
+    u, bd = np.zeros(3), b.boundary
+    if len(bd.flexibility):
+        u += bd.flexibility[-3:, -3:] @ load
+    size = float(np.linalg.norm(bd.points, axis=1).max())
+    speed = b.velocity[2] if b.drive is None else b.drive[1]
+    inertia = b.inertia + b.mass * float(np.dot(b.hub, b.hub))
+    energy = 0.5 * inertia * speed**2 + b.mass * size * float(np.hypot(*gravity)) + abs(b.torque)
+    if 0.5 * float(load @ u) > SMALL * energy:
+        u[:] = load[:] = 0.0
+    if len(bd.swell):
+        u += b.velocity[2] ** 2 * bd.swell[-3:]
+    turn[0] = u[2]
+    if b.fixed or (b.drive is None and b.anchor is None):
+        return load
+    frame = np.array([[c, -s], [s, c]])
+    arm, moved = frame @ np.array(b.hub), frame @ u[:2]
+    if b.drive is not None:
+        x[2] -= u[2]
+    else:
+        x[2] -= b.mass * _cross(arm, moved) / (b.inertia + b.mass * float(arm @ arm))
+    if b.anchor is not None:
+        c, s = np.cos(x[2]), np.sin(x[2])
+        x[:2] = np.array(b.anchor) - np.array([[c, -s], [s, c]]) @ (np.array(b.hub) + u[:2])
+    return load
 
 
 class _Rows:
@@ -101,7 +198,11 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
         c, s = np.cos(b.angle), np.sin(b.angle)
         arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
         mass[at] = b.mass, b.mass, b.inertia
-        load[at] = [b.mass * gravity[0], b.mass * gravity[1], b.torque - b.damper * omega]
+        load[at] = [
+            b.mass * gravity[0],
+            b.mass * gravity[1],
+            b.torque - (b.damper * omega if b.drive is None else 0.0),
+        ]
         if b.anchor is not None:
             rows.add((i, 0), ((i, [1.0, 0.0, -arm[1]]),), float(omega**2 * arm[0]))
             rows.add((i, 1), ((i, [0.0, 1.0, arm[0]]),), float(omega**2 * arm[1]))
@@ -127,4 +228,7 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
     mu = np.zeros((n + len(joints), ROWS))
     for (i, k), value in zip(rows.place, solution[3 * n :], strict=True):
         mu[i, k] = value
+    for i, b in enumerate(bodies):
+        if not b.fixed:
+            mu[i, 2] -= _damped(b)
     return solution[: 3 * n].reshape(n, 3), mu

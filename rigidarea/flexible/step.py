@@ -21,7 +21,7 @@ from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
 from rigidarea.flexible.frame import inertia_forces
-from rigidarea.flexible.hub import Hub, hub_of, hub_rate
+from rigidarea.flexible.hub import Hub, hub_of, keep_turn, static_displacement
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_loads, clear_nodes
@@ -58,6 +58,11 @@ def _predict(state, c):  # type: ignore[no-untyped-def]
             state.x[b, i] += h * state.v[b, i] + h * h * ((0.5 - beta) * a_old + beta * a_new)
             state.v[b, i] += h * ((1.0 - gamma) * a_old + gamma * a_new)
             state.aux[b, i] = a_new
+        turn = state.turn[b]
+        a_old = turn[3]
+        turn[3] = (turn[2] - am * a_old) / (1.0 - am)
+        turn[0] += h * turn[1] + h * h * ((0.5 - beta) * a_old + beta * turn[3])
+        turn[1] += h * ((1.0 - gamma) * a_old + gamma * turn[3])
     for i in range(len(state.q)):
         a_old = state.auxq[i]
         a_new = (state.ddq[i] - am * a_old) / (1.0 - am)
@@ -72,7 +77,7 @@ def _number(sy, buf):  # type: ignore[no-untyped-def]
     end = 3 * len(sy.mass)
     for b in range(len(sy.mass)):
         for kind in range(3):
-            if (sy.pinned[b] if kind < 2 else sy.driven[b]) == 1:
+            if sy.pinned[b] == 1 if kind < 2 else sy.driven[b] == 1 or sy.damper[b] > 0.0:
                 buf.column[3 * b + kind] = end
                 end += 1
             else:
@@ -120,14 +125,8 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
                 d[j] += along[j] * more
     for j in range(hi - lo):
         d[j] *= w.mobility[j]
-    # what these do to each other as the frame turns (G is antisymmetric), and by the damper on the hub
+    # what these do to each other as the frame turns (G is antisymmetric)
     turning = state.acc[b, 2] + 2.0 * state.v[b, 2] * scheme.vel
-    if sy.damper[b] > 0.0:
-        turned = 0.0 if sy.fixed[b] == 1 else rhs[k + 2]
-        for j in range(hi - lo):
-            turned += body.modes[-1, j] * d[j]
-        for j in range(hi - lo):
-            moved[j] -= body.modes[-1, j] * sy.damper[b] * scheme.vel * turned
     for m in range(hi - lo):
         row, x = g[m], turning * d[m]
         for j in range(hi - lo):
@@ -136,9 +135,18 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         _move_mode(state, scheme, lo + j, part * (d[j] + moved[j] * w.mobility[j]))
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
     w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
-    rate = state.v[b, 2] + hub_rate(body, state.dq[lo:hi])
-    w.hub_load[2] = mu[2] + sy.torque[b] - sy.damper[b] * rate
+    w.hub_load[2] = mu[2] + sy.torque[b]
     return change
+
+
+@kernel
+def _turn_hubs(bodies, sy, state, scheme):  # type: ignore[no-untyped-def]
+    """Hubs' static rotations under the loads of the last correction."""
+    for b in range(len(sy.mass)):
+        body, w = boundary_at(bodies, b), work_at(bodies, b)
+        if w.tight[0]:
+            draw(body, w)
+        keep_turn(state, scheme, b, static_displacement(body, w, 2))
 
 
 @kernel
@@ -171,7 +179,7 @@ def _touch_again(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-un
 
 
 @kernel
-def _flies(bodies, sy, state, pairs, st, s, found, buf):  # type: ignore[no-untyped-def]
+def _flies(bodies, sy, state, scheme, pairs, st, s, found, buf):  # type: ignore[no-untyped-def]
     """Whether the predicted state is the step's: nothing is near, and accelerations are those of gravity.
 
     For systems that nothing but contacts holds (``Settings.loose``). What is decided here Newton's iteration would find
@@ -201,6 +209,7 @@ def _flies(bodies, sy, state, pairs, st, s, found, buf):  # type: ignore[no-unty
         if w.tight[0]:
             draw(boundary_at(bodies, b), w)
         clear_loads(w)
+    _turn_hubs(bodies, sy, state, scheme)
     return True
 
 
@@ -218,7 +227,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         for i in range(sy.first[b], sy.first[b + 1]):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - sy.first[b]] = 1.0 / stiffness
-    if st.loose and _flies(bodies, sy, state, pairs, st, s, found, buf):
+    if st.loose and _flies(bodies, sy, state, scheme, pairs, st, s, found, buf):
         return 1
     end = _number(sy, buf)
     buf.clock[0], buf.clock[1] = h, scheme.vel
@@ -234,7 +243,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 for i in range(3):
                     buf.rate[b, i] = state.v[b, i]
         code = evaluate(bodies, sy, buf, state.q, pairs, st, s, found)
-        if code == 0 and st.spread and not st.sts:
+        if code == 0 and st.spread:
             code = _touch_again(bodies, sy, buf, state.q, pairs, st, s, found)
         if code < 0:
             return code
@@ -247,10 +256,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)
             lo, hi = sy.first[b], sy.first[b + 1]
-            hub = hub_of(body, w, sy, buf, state, b)
             stiff = geometric_at(bodies, b)
             if not w.tight[1]:
                 stiff = stiff[:0]
+            hub = hub_of(body, w, sy, buf, state, scheme, stiff, b)
             moment = inertia_forces(
                 sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), stiff, w.hub_load[0],
                 w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],
@@ -269,15 +278,16 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         off = eliminate_loads(bodies, sy, buf, state, s.load)
         worst = max(worst, off)
         for b in range(count):
+            body, w = boundary_at(bodies, b), work_at(bodies, b)
+            hub = Hub(buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3])
             if sy.fixed[b] == 1:
                 for i in range(3 * b, 3 * b + 3):
                     buf.matrix[i, i] = 1.0
-                continue
-            body, w = boundary_at(bodies, b), work_at(bodies, b)
-            hub = Hub(buf.hubs[b, 0], buf.hubs[b, 1], buf.hubs[b, 2], buf.hubs[b, 3])
-            force, left = frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
-            reference, worst = max(reference, force), max(worst, left)
-            open_most = max(open_most, constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h))
+            else:
+                force, left = frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
+                reference, worst = max(reference, force), max(worst, left)
+            gap, left = constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h)
+            open_most, worst = max(open_most, gap), max(worst, left)
         total, gap = joint_rows(sy, buf, state, end)
         open_most = max(open_most, gap)
         if st.spread:
@@ -290,9 +300,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             first = worst
             rate = pace(buf, worst)
         rounded = change < ROUNDING and off <= SETTLED * reference
-        done = (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE
-        # under STS static flexibility answers to the loads of the evaluation before: look twice while there are any
-        if done and (iteration > 1 or not (st.spread and st.sts) or buf.counts[0] == 0):
+        if (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE:
             return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
         left = (
@@ -313,7 +321,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         eliminate(buf.matrix, total, 1)
         for i in range(total):
             buf.rhs[i] = buf.matrix[i, total]
-        if st.spread and not st.sts:
+        if st.spread:
             renew_loads(bodies, sy, buf, s.load, scheme.scale, part)
         change = 0.0
         for b in range(count):
@@ -335,6 +343,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         correct_joints(sy, buf, state, end, scheme.scale / part)
         if sure:
             correct_forces(sy, buf, st, s, pairs)
+            _turn_hubs(bodies, sy, state, scheme)
             return iteration
         buf.rhs[-2], buf.rhs[-1] = worst, reference
         regions = buf.counts[0]
