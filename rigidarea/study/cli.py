@@ -15,12 +15,13 @@ from ..report import lines, output_arguments, write_json
 BENCHES = {
     "everyday": "game scenes at the defaults, beside pymunk at 1 and 4 steps a frame and Box2D",
     "frames": "crowds of up to 10,000 bodies",
+    "growth": "levels, terrains, sleepers, comings and goings, beside pymunk and Box2D",
     "islands": "a pile, gears and balls in one level, each in its own substeps",
     "kernels": "one overlap, beside shapely",
     "memory": "of a crowd, a body",
     "sleep": "a sleeping pyramid of 5,050 boxes",
     "start": "from import to the first step",
-    "step": "one area step beside one native step",
+    "step": "one area step beside one native step; where a frame's time goes",
 }
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
@@ -149,7 +150,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, islands, page, start
+    from . import bench, draw, draw_bench, everyday, growth, islands, page, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -179,14 +180,26 @@ def _bench(arguments: argparse.Namespace) -> int:
         draw.kernel_times(report, arguments.out)
     elif arguments.what == "islands":
         report = islands.islands()
+    elif arguments.what == "growth":
+        report = growth.growth(arguments.scene, arguments.bodies or (), arguments.peer)
+        pictures = draw_bench.growth(report, arguments.out)
+        if arguments.docs and pictures:
+            page.renew(arguments.docs, {}, {"growth.png": pictures[0]})
     elif arguments.what == "step":
         report = start.step()
+        pictures = draw_bench.phases(report, arguments.out)
+        if arguments.docs:
+            page.renew(arguments.docs, {}, {"phases.png": pictures[0]})
     elif arguments.what == "start":
         report = start.start()
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
     _write(arguments, f"bench-{arguments.what}", report)
-    return _tell(arguments, report, report["results"])
+    _tell(arguments, report, report["results"])
+    more = report.get("phases") or report.get("exponents")
+    if more and arguments.json != "-":
+        print("\n".join(lines(more)))
+    return 0
 
 
 def _setting(text: str) -> tuple[str, Any]:

@@ -82,3 +82,72 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     ax.annotate("* shown, not in the summary", (0, 0), (-8, -30), fontsize=8, **note)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return save(figure, out, "bench-everyday")
+
+
+GROWN = (
+    "tiles",
+    "sleepers",
+    "come",
+    "flight",
+    "lift",
+    "rolling discs 0",
+    "rolling boxes 0",
+    "rolling discs 3",
+)
+"""Families of `bench growth` that the picture shows."""
+
+
+def growth(report: Row, out: Path) -> list[Path]:
+    """Mean frame time of the three engines over the size of what there is, a panel a family (to the slowest tenth)."""
+    plt = pyplot()
+    rows = report["results"]
+    grown = [name for name in GROWN if sum(row["scene"] == name and row["size"] > 0 for row in rows) > 1]
+    if not grown:
+        return []
+    wide = min(3, len(grown))
+    tall = -(-len(grown) // wide)
+    figure, axes = plt.subplots(
+        tall, wide, figsize=(10, 0.8 + 2.6 * tall), squeeze=False, layout="constrained"
+    )
+    engines = (
+        ("frame_us_mean", "frame_us_worst_tenth", "rigidarea-default", "rigidarea, the default"),
+        ("native_1_us", "native_1_us_worst_tenth", "pymunk", "pymunk, one step a frame"),
+        ("box2d_us", "box2d_us_worst_tenth", "box2d", "Box2D v3, four substeps"),
+    )
+    for ax, name in zip(axes.flat, grown):
+        own = [row for row in rows if row["scene"] == name and row["size"] > 0]
+        for mean, worst, peer, label in engines:
+            found = [row for row in own if row[mean]]
+            x, y = [row["size"] for row in found], [row[mean] for row in found]
+            ax.plot(x, y, color=colour(peer), marker=marker(peer), ms=6, lw=1.6, label=label)
+            ax.vlines(x, y, [row[worst] for row in found], color=colour(peer), lw=1)
+        ax.set(xscale="log", yscale="log", title=name)
+    for ax in axes.flat[len(grown) :]:
+        ax.set_visible(False)
+    for ax in axes[:, 0]:
+        ax.set_ylabel("frame (µs), bar: worst tenth")
+    figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+    return save(figure, out, "bench-growth")
+
+
+def phases(report: Row, out: Path) -> list[Path]:
+    """Where a frame's time goes: a stacked bar a scene."""
+    plt = pyplot()
+    rows = list(reversed(report["phases"]))
+    names = [key for key in rows[0] if key.endswith("_us") and key != "frame_us"]
+    figure, ax = plt.subplots(figsize=(10, 1.4 + 0.55 * len(rows)), layout="constrained")
+    left = [0.0] * len(rows)
+    shades = [
+        colour("pymunk"),
+        *plt.get_cmap("viridis")([i / (len(names) - 2) for i in range(len(names) - 1)]),
+    ]
+    for name, shade in zip(names, shades):
+        values = [max(0.0, row[name]) for row in rows]
+        ax.barh(
+            range(len(rows)), values, left=left, color=shade, label=name.removesuffix("_us").replace("_", " ")
+        )
+        left = [a + b for a, b in zip(left, values)]
+    ax.set_yticks(range(len(rows)), [row["scene"] for row in rows])
+    ax.set_xlabel("processor time of a frame (µs)")
+    figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
+    return save(figure, out, "bench-phases")

@@ -338,6 +338,41 @@ def small_spaces(count: int = 30, bodies: int = 20) -> Row:
     return row
 
 
+PHASED = {"settled": ("tiles", 0), "rolling": ("rolling discs 3", 200), "collapsing": ("pit boxes 5", 100)}
+"""Scenes whose frames are taken apart (`phases`)."""
+
+
+def phases(chosen: dict[str, tuple[str, int]] | None = None) -> list[Row]:
+    """Where the time of a frame goes (µs, processor time, means): what Chipmunk itself does, and our own phases.
+
+    Rows: scene, frame_us, chipmunk_us (all that is not ours, pymunk's Python too), then each of
+    `rigidarea.contact.phases.PHASES`. Reading the clock takes 0.3 µs a phase and substep of it.
+    """
+    from ..contact.phases import PHASES
+
+    rows = []
+    for title, (name, size) in (chosen or PHASED).items():
+        growing = GROWING[name]
+        run = _Space(growing, _scene(growing, name, size), True)
+        contact = rigidarea.attached(run.space)
+        assert contact is not None
+        times = np.zeros(len(PHASES) + 1)
+        with one_core():
+            for _ in range(growing.settle):
+                run.frame()
+            contact._state["phases_at"] = times.ctypes.data
+            before = time.thread_time()
+            for _ in range(growing.frames):
+                run.frame()
+            whole = time.thread_time() - before
+            contact._state["phases_at"] = 0
+        own = 1e6 * times[:-1] / growing.frames
+        frame = 1e6 * whole / growing.frames
+        row: Row = {"scene": title, "frame_us": frame, "chipmunk_us": frame - float(own.sum())}
+        rows.append(row | {f"{phase.replace(' ', '_')}_us": float(us) for phase, us in zip(PHASES, own)})
+    return rows
+
+
 def growth(names: Sequence[str] = (), sizes: Sequence[int] = (), peer_names: Sequence[str] = ()) -> Row:
     """Frame times (µs, processor time) of families of scenes that grow, beside pymunk's one step and Box2D.
 

@@ -17,6 +17,7 @@ import pymunk
 import rigidarea as ra
 
 from ..report import envelope
+from . import growth
 from .timing import one_core
 
 Row = dict[str, Any]
@@ -65,6 +66,7 @@ def step(repeats: int = 15) -> Row:
     """Whole `space.step` (ms) with area contact and with Chipmunk's response (10 iterations), in turn, settled.
 
     Rows: scene, bodies, contacts, area_ms, native_ms, ratio (median of the pairwise ratios), area_us_per_contact.
+    `phases`: where a frame's time goes in scenes that are settled, roll and collapse (`growth.phases`).
     """
     scenes = [("pyramid", pyramid(ROWS), pyramid(ROWS))]
     scenes += [("columns", columns(n), columns(n)) for n in COLUMNS]
@@ -92,7 +94,8 @@ def step(repeats: int = 15) -> Row:
                 "area_us_per_contact": 1e6 * area / contacts,
             }
         )
-    return envelope("bench step", {"step_s": STEP, "repeats": repeats, "iterations": 10}, rows)
+    settings = {"step_s": STEP, "repeats": repeats, "iterations": 10}
+    return envelope("bench step", settings, rows, phases=growth.phases())
 
 
 def _per_step(space: pymunk.Space, count: int) -> float:
