@@ -99,6 +99,7 @@ class Store:
         self.tables.counters[[FREE_REGION, FREE_PAIR]] = -1
         self.shapes: dict[int, Any] = {}  # the caller's shapes, by Chipmunk's id
         self.forms: dict[int, Any] = {}  # and how they looked when they were entered
+        self.owners: dict[int, Any] = {}  # the bodies at the addresses in the tables: they live as long
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
         self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(64, np.int32)
@@ -108,6 +109,7 @@ class Store:
         self._free: list[int] = []  # rows of shapes that are gone
         self._bodies: dict[int, int] = {}  # Chipmunk's body -> row
         self._free_bodies: list[int] = []
+        self._left: list[int] = []  # rows of bodies that have left, until no shape's row has their number
         self._most = (0, 0)  # points and rings of the largest outline
         self.grow_pairs(64)
         self.grow_regions(64)
@@ -126,7 +128,17 @@ class Store:
         new = copy.copy(self)
         new.tables = Tables(*(array.copy() for array in self.tables))
         new.slots = self.slots.copy()
-        for name in ("shapes", "forms", "_fill", "_outlines", "_free", "_bodies", "_free_bodies"):
+        for name in (
+            "shapes",
+            "forms",
+            "_fill",
+            "_outlines",
+            "_free",
+            "owners",
+            "_bodies",
+            "_free_bodies",
+            "_left",
+        ):
             setattr(new, name, getattr(self, name).copy())
         return new
 
@@ -312,6 +324,8 @@ class Store:
     def settle(self) -> None:
         """After shapes or bodies have come or gone: everything that machine code finds them by."""
         counters = self.tables.counters
+        self._free_bodies += self._left
+        self._left = []
         counters[SHAPES], counters[ANEW] = self._fill["shapes"], 1
         order = self.tables.sorted  # as it is, the new rows behind it: hardly anything to sort
         order = np.concatenate((order, np.arange(len(order), self._fill["shapes"], dtype=np.int32)))
@@ -382,6 +396,16 @@ class Store:
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
         return 0 <= ident < len(self.slots) and bool(self.slots[ident] >= 0)
+
+    def leave(self, address: int) -> None:
+        """Chipmunk's body at `address` is gone: its row is cleared. `settle` comes before the next frame."""
+        row = self._bodies.get(address)
+        if row is not None:
+            self.tables.bodies[row] = np.zeros((), BODY)
+            self.tables.bodies[row]["stamp"] = -1
+            self._left.append(row)
+            del self._bodies[address]
+            self.owners.pop(address, None)
 
     def row_of(self, address: int) -> int:
         """The row of Chipmunk's body at `address`; -1: not known."""

@@ -24,6 +24,7 @@ class Register:
         self._state = store.state[0]
         self._hook = hook
         self._added: dict[int, tuple[Outline, Any]] = {}
+        self.stale = False  # something has come or gone since the last `update`
 
     @property
     def shapes(self) -> dict[int, pymunk.Shape]:
@@ -33,20 +34,23 @@ class Register:
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         store = self._store.draft()
-        present = {shape._hashid: shape for shape in space.shapes}
+        present: dict[int, Any] = {shape._hashid: shape for shape in space.shapes if shape.body is not None}
         # not space.static_body, which makes one where there is none
         still = [] if space._static_body is None else [space._static_body]
         bodies = {address_of(body._body): body for body in (*space.bodies, *still)}
-        for shape in space.shapes:
-            if shape.body is not None:
-                bodies.setdefault(address_of(shape.body._body), shape.body)
+        for shape in present.values():
+            bodies.setdefault(address_of(shape.body._body), shape.body)
         for constraint in space.constraints:
             for body in (constraint.a, constraint.b):
                 bodies.setdefault(address_of(body._body), body)
-        gone = store.shapes.keys() - present.keys()
+        gone = {
+            *(store.shapes.keys() - present.keys()),
+            *(i for i, shape in present.items() if i in store.shapes and not self._same(store, i, shape)),
+        }
         store.forget(gone, store.known_bodies() - bodies.keys())
         for ident in gone:
             del store.shapes[ident], store.forms[ident]
+        store.owners = bodies
         for address in bodies:
             store.body(address)
         for ident, shape in present.items():
@@ -57,12 +61,27 @@ class Register:
         counter = lib.cpSpaceGetShapeIDCounter(space._space)
         self._store.publish(store, shape_counter=counter, shape_count=len(present), **facts)
         self._added.clear()
-        if not space._locked and not self._state["explicit"]:
-            for body in bodies.values():
-                self._hook.hold(body)
+        if not self._state["explicit"]:
+            for body in space.bodies:
+                self._hook.hold(body, not space._locked)
+        self.stale = space._locked  # within a step no body's function is changed
+
+    @staticmethod
+    def _same(store: Store, ident: int, shape: Any) -> bool:
+        """Whether a shape is the one that the tables have by its number, on the same body."""
+        row = store.tables.shapes[store.slots[ident]]
+        return store.shapes[ident] is shape and row["body"] == store.row_of(address_of(shape.body._body))
+
+    def leaves(self, body: pymunk.Body) -> None:
+        """A body is removed: nothing of it is read or written from now on."""
+        self.stale = True
+        self._state["shape_count"] = -1  # also for a step that has gone past the attached space's own
+        self._hook.release(body)
+        self._store.leave(address_of(body._body))
 
     def came(self, shape: pymunk.Shape) -> None:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
+        self.stale = True
         if shape.body is not None and shape.body.body_type == pymunk.Body.STATIC:
             try:
                 self._added[shape._hashid] = Outline.from_pymunk(shape), _form(shape)
@@ -72,9 +91,11 @@ class Register:
     def reread(self, space: pymunk.Space, shapes: Iterable[pymunk.Shape]) -> None:
         """Of these shapes, those whose geometry has been changed."""
         for shape in shapes:
+            if shape.space is not space:  # a removed shape's number is another's
+                continue
             self._added.pop(shape._hashid, None)
-            known = self._store.forms
-            if shape._hashid in known and known[shape._hashid] != _form(shape):
+            known = self._store.shapes.get(shape._hashid) is shape
+            if known and self._store.forms[shape._hashid] != _form(shape):
                 self.refresh(space, shape)
 
     def refresh(self, space: pymunk.Space, shape: pymunk.Shape) -> None:

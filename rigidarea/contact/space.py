@@ -32,7 +32,8 @@ def attached_class(plain: Any) -> type:
 
         def reindex_static(self: Any) -> None:
             plain.reindex_static(self)
-            still = [s for s in self.shapes if s.body.body_type == pymunk.Body.STATIC]
+            bodies = ((shape, shape.body) for shape in self.shapes)
+            still = [shape for shape, body in bodies if body and body.body_type == pymunk.Body.STATIC]
             self.__dict__[KEY]._register.reread(self, still)
 
         def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
@@ -47,7 +48,25 @@ def attached_class(plain: Any) -> type:
             plain._add_shape(self, shape)
             self.__dict__[KEY]._register.came(shape)
 
-        own: dict[str, Any] = {"_add_shape": _add_shape, "__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        def _add_body(self: Any, body: pymunk.Body) -> None:
+            plain._add_body(self, body)
+            self.__dict__[KEY]._register.stale = True
+
+        def _remove_shape(self: Any, shape: pymunk.Shape) -> None:
+            plain._remove_shape(self, shape)
+            self.__dict__[KEY]._register.stale = True
+
+        def _remove_body(self: Any, body: pymunk.Body) -> None:
+            plain._remove_body(self, body)
+            self.__dict__[KEY]._register.leaves(body)
+
+        def _remove_constraint(self: Any, constraint: pymunk.Constraint) -> None:
+            plain._remove_constraint(self, constraint)
+            self.__dict__[KEY]._register.stale = True
+
+        own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        inner: list[Any] = [_add_shape, _add_body, _remove_shape, _remove_body, _remove_constraint]
+        own |= {method.__name__: method for method in inner}
         for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
             method.__doc__ = getattr(plain, method.__name__).__doc__
             own[method.__name__] = method
@@ -60,6 +79,11 @@ def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
     build, arguments, state = made[:3]
     space = build(*arguments)
     space.__setstate__(state)
+    made_anew = attached(space)
+    if (
+        made_anew is not None
+    ):  # a class that attaches when it is made, or restored: the copy goes on as its original
+        made_anew.detach()
     contact._install(space)
     return space
 

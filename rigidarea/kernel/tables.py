@@ -265,12 +265,13 @@ REGION = record(
 #: substep of this frame; 1: search anew. Of turns (`islands`): bodies that are live; where the live pairs begin in
 #: `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by turns; 1: two turns have met.
 #: Shapes with teeth or slots; rows of this substep that bounce; shapes that are not convex. How many pairs, regions
-#: and joints more than there is room for a frame wants at least, and 1 where the scratch is too small.
+#: and joints more than there is room for a frame wants at least, and 1 where the scratch is too small; looks left
+#: (`motion.afford`).
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES, CONCAVE = range(12, 21)
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK = range(21, 25)
-COUNTERS = 25
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, LOOKS_LEFT = range(21, 26)
+COUNTERS = 26
 
 
 class Law(NamedTuple):
