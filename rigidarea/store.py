@@ -33,7 +33,7 @@ from .kernel.tables import (
     rehash,
 )
 
-BODY_SIZE, PAIR_SIZE, REGION_SIZE = BODY.itemsize, PAIR.itemsize, REGION.itemsize
+BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
 #: Arrays by the named tuple that they belong to.
@@ -137,9 +137,9 @@ STATE = record(
 
 @kernel
 def _copy(to: int, source: int, size: int) -> None:
-    """Copy so many bytes."""
-    there = array_at(to, (size,), np.uint8)
-    here = array_at(source, (size,), np.uint8)
+    """Copy so many words: the compiler makes nothing of bytes."""
+    there = array_at(to, (size,), np.uint64)
+    here = array_at(source, (size,), np.uint64)
     for i in range(size):
         there[i] = here[i]
 
@@ -148,10 +148,10 @@ def _copy(to: int, source: int, size: int) -> None:
 def keep_tables(s: Any) -> None:
     """Take down what a frame that may have to be run again starts from."""
     s.kept = 1
-    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_SIZE)
-    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_SIZE)
-    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_SIZE)
-    _copy(s.kept_counters_at, s.counters_at, s.counters_n * 8)
+    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.kept_counters_at, s.counters_at, s.counters_n)
 
 
 @kernel
@@ -161,10 +161,10 @@ def put_tables_back(s: Any, tables: Tables) -> None:
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
     for i in range(len(wanted)):
         kept[MORE_PAIRS + i] = wanted[i]
-    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_SIZE)
-    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_SIZE)
-    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_SIZE)
-    _copy(s.counters_at, s.kept_counters_at, s.counters_n * 8)
+    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
+    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
+    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
+    _copy(s.counters_at, s.kept_counters_at, s.counters_n)
     tables.counters[ANEW] = 1
     tables.counters[NEAR] = 0
     rehash(tables)

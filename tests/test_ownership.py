@@ -246,7 +246,30 @@ PROGRAMS = {
 }
 
 
-@pytest.mark.parametrize("name", PROGRAMS)
+SELDOM = ("a thread steps, then ends", "sys.exit in a step")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SELDOM else []) for n in PROGRAMS]
+)
 def test_programs_end_as_natively(name):
     done = run(PROGRAMS[name])
     assert (done.returncode, done.stderr) == (0, ""), done.stderr[-800:]
+
+
+@pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])
+def test_random_programs(programs):
+    """Lifetimes, copies, callbacks, signals, growth, threads, forks: no crash, no hang, whole tables."""
+    command = [
+        sys.executable,
+        "-m",
+        "rigidarea",
+        "compat",
+        "lives",
+        "--programs",
+        str(programs),
+        "--json",
+        "-",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100 * programs)
+    assert done.returncode == 0, done.stderr[-3000:]

@@ -19,8 +19,8 @@ from .work import Work
 
 #: Looks (one overlap each) of a frame: so many, and so many a body; after that FEWEST_LOOKS each time. A frame then
 #: ends in known time, but what moves by many times its size may pass another that moves unseen. What wants MOST_LOOKS
-#: is looked for twenty times.
-LOOKS, LOOKS_A_BODY, FEWEST_LOOKS = 200_000, 1000, 2
+#: is looked for ten times.
+LOOKS, LOOKS_A_BODY, FEWEST_LOOKS = 100_000, 1000, 2
 
 
 @kernel(forceinline=True)
