@@ -11,8 +11,9 @@ from typing import Any
 
 import pymunk
 
+from .. import attach
 from ..report import envelope, output_arguments, write_json
-from . import suite
+from . import lives, suite
 from .examples import EXAMPLES, FRAMES, GAMES, compare
 from .hostile import fuzz
 from .meddling import meddle
@@ -23,8 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of `rigidarea compat`."""
     parser.add_argument(
         "what",
-        choices=("examples", "tests", "fuzz", "soak"),
-        help="pymunk's examples, its tests, calls with hostile values and changes from within callbacks, a fountain",
+        choices=("examples", "tests", "fuzz", "soak", "lives"),
+        help="pymunk's examples, its tests, calls with hostile values and changes from within callbacks, a fountain, "
+        "random programs (lifetimes, copies, signals, threads), each a process",
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="some of the examples (default: all)")
     parser.add_argument(
@@ -44,7 +46,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of soak: frames between two bodies, each of which lives for 150 (default: %(default)s)",
     )
     parser.add_argument(
-        "--seed", type=int, default=0, metavar="N", help="of fuzz and soak (default: %(default)s)"
+        "--programs", type=int, default=200, metavar="N", help="of lives (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--seed",
+        type=int,
+        default=0,
+        metavar="N",
+        help="of fuzz and soak, of the first of lives (default: %(default)s)",
     )
     output_arguments(parser, Path("out") / "compat")
 
@@ -61,6 +70,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _fuzz(arguments)
     if arguments.what == "soak":
         return _soak(arguments)
+    if arguments.what == "lives":
+        return _lives(arguments)
     unknown = [name for name in arguments.names if name not in EXAMPLES]
     if unknown:
         raise ValueError(f"unknown example {unknown[0]!r}; expected one of {', '.join(EXAMPLES)}")
@@ -205,6 +216,23 @@ def _fuzz(arguments: argparse.Namespace) -> int:
         for row in changes:
             if row["wrong"]:
                 print(f"    {row['action']} in {row['callback']}: {row['wrong']}")
+    return int(bool(wrong))
+
+
+def _lives(arguments: argparse.Namespace) -> int:
+    if arguments.programs < 1:
+        raise ValueError(f"programs must be at least 1, got {arguments.programs}")
+    attach(pymunk.Space()).detach()  # the machine code is there before the first of them
+    wrong = []
+    for seed in range(arguments.seed, arguments.seed + arguments.programs):
+        text = lives.run(seed)
+        if text:
+            wrong.append({"seed": seed, "wrong": text})
+            print(text, file=sys.stderr, flush=True)
+    settings = {"programs": arguments.programs, "seed": arguments.seed}
+    write_json(envelope("compat lives", settings, wrong, summary={"wrong": len(wrong)}), arguments.json)
+    if arguments.json != "-":
+        print(f"{arguments.programs} programs, {len(wrong)} wrong")
     return int(bool(wrong))
 
 

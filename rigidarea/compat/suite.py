@@ -13,7 +13,6 @@ import re
 import subprocess
 import sys
 import unittest
-import weakref
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -46,25 +45,17 @@ REASONS: dict[str, str] = {
 def _attach_everywhere(frames: bool) -> None:
     """From now on every space of this process is attached when it is made; frames: and stepped by contact.step."""
     Space: Any = pymunk.Space
-    make, restore, step = Space.__init__, Space.__setstate__, Space.step
-    restoring: weakref.WeakSet[pymunk.Space] = weakref.WeakSet()
+    make, step = Space.__init__, Space.step
     inside: set[int] = set()
 
     def made(space: pymunk.Space, *arguments: Any, **named: Any) -> None:
         make(space, *arguments, **named)
-        if space not in restoring and not inside:
+        if not inside:
             inside.add(0)  # area contact makes spaces of its own, to find its way about pymunk's memory
             try:
                 attach(space)
             finally:
                 inside.discard(0)
-
-    def restored(space: pymunk.Space, state: Any) -> None:
-        restoring.add(space)  # a copy brings its contact along
-        try:
-            restore(space, state)
-        finally:
-            restoring.discard(space)
 
     def stepped(space: pymunk.Space, dt: float) -> None:
         contact = attached(space) if frames and dt > 0 and id(space) not in inside else None
@@ -78,7 +69,6 @@ def _attach_everywhere(frames: bool) -> None:
             inside.discard(id(space))
 
     Space.__init__ = made
-    Space.__setstate__ = restored
     Space.step = stepped
 
 

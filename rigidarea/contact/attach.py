@@ -137,6 +137,11 @@ class AreaContact:
         if self._settings["length"] is None and self._settings["law"] == "energy":
             self._state["length"] = self._register.largest()
 
+    def _catch_up(self) -> None:
+        """What has come or gone since the last frame is entered, or forgotten."""
+        if self._state["pending"] and not self.space._locked:
+            self._update()
+
     def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again, after `unsafe_set_vertices` and the like; so do pymunk's `reindex_...`.
 
@@ -232,8 +237,7 @@ class AreaContact:
             raise ValueError(f"body must be one of the space's, got {body!r:.80}")
         if steps is not None:
             whole(steps, "steps", 1, MOST_SUBSTEPS)
-        if self._state["pending"]:
-            self._update()
+        self._catch_up()
         self._store.tables.bodies[self._store.row_of(address_of(body._body))]["asked"] = steps or 0
 
     def _step_alone(self) -> bool:
@@ -246,8 +250,7 @@ class AreaContact:
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
         space = self.space
-        if self._state["pending"] and not space._locked:
-            self._update()
+        self._catch_up()
         if self._state["asleep"] and not space._locked:
             while not self._rouse(space._space, dt):
                 self._store.grow()
@@ -305,6 +308,7 @@ class AreaContact:
         (length/time). Of flexible parts too: as they were at the end of their own motion, their speeds left out.
         """
         assert self.space is not None  # says so if detached
+        self._catch_up()
         own, flexible = regions_of(self._store, self._register.shapes), self._settings["flexible"]
         return own if flexible is None else np.concatenate([own, flexible.rows(own.dtype)])
 
@@ -313,6 +317,8 @@ class AreaContact:
 
         The potential is 0 where a centre of gravity is at the origin. Raises RuntimeError after `detach`.
         """
+        assert self.space is not None  # says so if detached
+        self._catch_up()
         return total_energy(self.space, self._store)
 
     # --- what machine code asks for ---
@@ -339,6 +345,8 @@ class AreaContact:
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
+        if self._space is not None:
+            self._catch_up()
         memory = self._memory if self._space is None else remember(self._store, self._space)
         return {"_settings": dict(self._settings), "_memory": memory}
 

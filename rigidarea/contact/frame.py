@@ -32,6 +32,7 @@ from ..kernel.islands import (
 )
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at
+from ..kernel.motion import start_looks
 from ..kernel.order import order_joints
 from ..kernel.passed import return_what_passed, somebody_flew_off, went_far
 from ..kernel.place import place
@@ -390,6 +391,7 @@ def _whole_frame(s: Any, space: int) -> None:
     while again:
         s.begun = 0
         s.kept = 0
+        start_looks(load_tables(s).counters)
         good = _explicit_frame(s, space, dt) if s.explicit else _frame(s, space, dt)
         if good:
             s.broken = finite(load_tables(s))

@@ -3,6 +3,10 @@
 A constraint that only Chipmunk knows, before all joints (`frame.silence`, `frame.solve`, `frame.report`); the function
 of its global handler that it calls for a touching pair (`record.pre_solve`); the position function of every body that
 has Chipmunk's own (`record.hold`).
+
+What is put there is taken out again when it leaves, in whatever way: a body's position function when the body is
+removed, the space is detached or is garbage; the constraint in the latter two. At the interpreter's end nothing is: a
+thread that nobody waits for may be within a step.
 """
 
 from __future__ import annotations
@@ -34,12 +38,12 @@ class Hook:
             np.uint64,
         )
         state["idle_kind"], state["seized_kind"] = classes.ctypes.data, classes.ctypes.data + 64
-        body = ffi.gc(lib.cpBodyNew(1.0, 1.0), lib.cpBodyFree)  # of no space
+        body = lib.cpBodyNew(1.0, 1.0)  # of no space; freed with the constraint, or by the process's end
         joint = lib.cpPivotJointNew2(lib.cpSpaceGetStaticBody(space._space), body, (0, 0), (0, 0))
-        own = ffi.cast("uintptr_t *", joint)
-        pivot = int(own[0])
-        own[0] = classes.ctypes.data + 32
-        own[int(state["constraint_post_solve"]) // 8] = frame.report.address
+        words = ffi.cast("uintptr_t *", joint)
+        pivot = int(words[0])
+        words[0] = classes.ctypes.data + 32
+        words[int(state["constraint_post_solve"]) // 8] = frame.report.address
         lib.cpSpaceAddConstraint(space._space, joint)
         constraints = address_of(space._space) + int(state["space_constraints"])
         _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
@@ -54,9 +58,22 @@ class Hook:
         state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
         state["hold_at"] = record.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
+        self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
-        kept = body, classes, store
-        self._end = weakref.finalize(space, _take_out, space._space, joint, pivot, constraints, kept)
+        own = joint, body, pivot
+        self._end = weakref.finalize(
+            space, _take_out, space._space, own, constraints, self._held, store, classes
+        )
+        self._end.atexit = False
+
+    def hold(self, body: pymunk.Body) -> None:
+        """The solve moves a body, unless its position function is the user's: that is to be given back."""
+        self._held.add(body)
+
+    def release(self, body: pymunk.Body) -> None:
+        """Give a body its position function back."""
+        self._held.discard(body)
+        _release(body, self._state)
 
     def callbacks(self) -> dict[str, int]:
         """Which functions of its own the global handler has: `record.begin` looks whether they are others."""
@@ -69,14 +86,17 @@ class Hook:
         self._end()
         if int(self._functions[1]) == int(state["pre_solve_at"]):
             self._functions[1] = int(state["user_pre_solve"]) or int(state["no_pre_solve"])
-        for body in space.bodies:
-            function = self._position_function(body)
-            if int(function[0]) == int(state["hold_at"]):
-                function[0] = int(state["position_func"])
 
-    def _position_function(self, body: pymunk.Body) -> Any:
-        """Where Chipmunk keeps a body's position function."""
-        return ffi.cast("uintptr_t *", address_of(body._body) + int(self._state["body_position_func"]))
+
+def _position_function(body: pymunk.Body, state: Any) -> Any:
+    """Where Chipmunk keeps a body's position function."""
+    return ffi.cast("uintptr_t *", address_of(body._body) + int(state["body_position_func"]))
+
+
+def _release(body: pymunk.Body, state: Any) -> None:
+    function = _position_function(body, state)
+    if int(function[0]) == int(state["hold_at"]):
+        function[0] = int(state["position_func"])
 
 
 def _roll(constraints: int, by: int) -> None:
@@ -87,10 +107,16 @@ def _roll(constraints: int, by: int) -> None:
     listed[:] = np.roll(listed, by)
 
 
-def _take_out(space: Any, joint: Any, pivot: int, constraints: int, kept: Any) -> None:
-    """Remove the hidden constraint from Chipmunk's space, and free it. kept: what had to live until now."""
+def _take_out(space: Any, own: Any, constraints: int, held: Any, store: Store, classes: Any) -> None:
+    """Remove the hidden constraint from Chipmunk's space, and free it; the bodies held have their position functions
+    back. own: it, its own body, its class. store, classes: had to live until now.
+    """
+    joint, other, pivot = own
+    for body in held:
+        _release(body, store.state[0])
     lib.cpSpaceSetUserData(space, ffi.NULL)
     _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
     lib.cpSpaceRemoveConstraint(space, joint)
     ffi.cast("uintptr_t *", joint)[0] = pivot
     lib.cpConstraintFree(joint)
+    lib.cpBodyFree(other)

@@ -85,6 +85,7 @@ class Register:
             del self._bodies[body]
         else:
             self._left.append(address_of(body._body))
+            self._hook.release(body)
         self._state["pending"] = max(1, int(self._state["pending"]))
 
     def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
@@ -129,6 +130,8 @@ class Register:
             addresses = _words(address_of(body._body) for body in self._bodies)
             self._store.room(0, len(addresses), 0)
             self._call("bodies_come", addresses, not space._locked and not state["explicit"])
+            for body in self._bodies:
+                self._hook.hold(body)
             self._bodies.clear()
         if pending >= 2:
             self._enter_partners(space)

@@ -32,7 +32,8 @@ def attached_class(plain: Any) -> type:
 
         def reindex_static(self: Any) -> None:
             plain.reindex_static(self)
-            still = [s for s in self._shapes if s.body.body_type == pymunk.Body.STATIC]
+            bodies = ((shape, shape.body) for shape in self._shapes)
+            still = [shape for shape, body in bodies if body and body.body_type == pymunk.Body.STATIC]
             self.__dict__[KEY]._register.reread(still)
 
         def reindex_shape(self: Any, shape: pymunk.Shape) -> None:
@@ -75,6 +76,11 @@ def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
     build, arguments, state = made[:3]
     space = build(*arguments)
     space.__setstate__(state)
+    made_anew = attached(space)
+    if (
+        made_anew is not None
+    ):  # a class that attaches when it is made, or restored: the copy goes on as its original
+        made_anew.detach()
     contact._install(space)
     return space
 

@@ -10,6 +10,7 @@ from ..chipmunk import function
 from ..kernel.jit import callback
 from ..kernel.join import may_touch
 from ..kernel.meet import meets_within
+from ..kernel.motion import start_looks
 from ..kernel.tables import FIXED, MORE_WORK, NEAR, TURN
 from ..store import load_pool, load_tables, load_work, row_of_body
 from .record import members, notice, state_of, user_data
@@ -45,6 +46,7 @@ def rouse(space: int, dt: float) -> int:
         if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
             return 1
     tables.counters[TURN] = 0  # everybody
+    start_looks(tables.counters)
     ahead = dt + dt / s.substeps  # the last substep looks beyond the frame
     s.begun = 0
     if not near_pairs(s, space, ahead, ahead):

@@ -16,6 +16,7 @@ from .birth import arrives, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .jit import kernel
 from .motion import (
+    afford,
     centre_of,
     earlier,
     jumped,
@@ -120,7 +121,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     unseen = unseen_for(pair, h) if fresh else h
     looks = jumped(tables, pair, a, b, unseen) if fresh else 1
     if looks > 1:
-        n, back = overlap_before(pool, work, ia, ib, a, b, unseen, looks)
+        n, back = overlap_before(pool, work, ia, ib, a, b, unseen, afford(counters, looks))
         if back > 0.0:
             pose_a = earlier(a, back)
             pose_b = earlier(b, back)
@@ -336,7 +337,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
                 return True
             r = regions[r].next
     ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
-    n, ahead = overlap_ahead(pool, work, ia, ib, a, b, h, looks, deepest)
+    n, ahead = overlap_ahead(pool, work, ia, ib, a, b, h, afford(counters, looks), deepest)
     if n == 0:
         return True
     if n == OVERFLOW:

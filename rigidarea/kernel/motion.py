@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from .broad import swing
 from .constants import LOOK, MOST_LOOKS
 from .jit import kernel
@@ -12,8 +14,13 @@ from .patch import deepest_of
 from .place import Pose, overlap_of_outlines
 from .pool import Pool
 from .sides import shown_sides
-from .tables import DRIFTS, Tables
+from .tables import BODIES, DRIFTS, LOOKS_LEFT, Tables
 from .work import Work
+
+#: Looks (one overlap each) of a frame: so many, and so many a body; after that FEWEST_LOOKS each time. A frame then
+#: ends in known time, but what moves by many times its size may pass another that moves unseen. What wants MOST_LOOKS
+#: is looked for ten times.
+LOOKS, LOOKS_A_BODY, FEWEST_LOOKS = 100_000, 1000, 2
 
 
 @kernel(forceinline=True)
@@ -110,6 +117,20 @@ def jumped(tables: Tables, pair: Any, a: Any, b: Any, h: float) -> int:
 
 
 @kernel(forceinline=True)
+def start_looks(counters: np.ndarray) -> None:
+    """A frame begins: so many looks are left to it."""
+    counters[LOOKS_LEFT] = LOOKS + LOOKS_A_BODY * counters[BODIES]
+
+
+@kernel(forceinline=True)
+def afford(counters: np.ndarray, looks: int) -> int:
+    """Of so many looks those that the frame has left, FEWEST_LOOKS at least: so it ends, however fast things are."""
+    looks = min(looks, max(FEWEST_LOOKS, counters[LOOKS_LEFT]))
+    counters[LOOKS_LEFT] -= looks
+    return int(looks)
+
+
+@kernel(forceinline=True)
 def since_of(a: Any, b: Any) -> float:
     """How long one of the two has moved by itself (time)."""
     return max(a.since if a.kind == DRIFTS else 0.0, b.since if b.kind == DRIFTS else 0.0)
@@ -166,5 +187,6 @@ def meets_within(pool: Pool, tables: Tables, work: Work, pair: Any, h: float) ->
     a = tables.bodies[tables.shapes[pair.a].body]
     b = tables.bodies[tables.shapes[pair.b].body]
     ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
-    n, _ = overlap_ahead(pool, work, ia, ib, a, b, h, jumped(tables, pair, a, b, h), 0.0)
+    looks = afford(tables.counters, jumped(tables, pair, a, b, h))
+    n, _ = overlap_ahead(pool, work, ia, ib, a, b, h, looks, 0.0)
     return n

@@ -280,14 +280,14 @@ REGION = record(
 #: `awake`, pairs in `told`; which list `live` is;
 #: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
 #: other ones than in the last frame. How many pairs, regions and joints more than there is room for a frame wants at
-#: least, and 1 where the scratch is too small.
+#: least, and 1 where the scratch is too small; looks left (`motion.afford`).
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
 BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
 JOINTS, REJOINED = range(30, 32)
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK = range(32, 36)
-COUNTERS = 36
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, LOOKS_LEFT = range(32, 37)
+COUNTERS = 37
 
 
 class Law(NamedTuple):

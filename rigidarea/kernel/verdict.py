@@ -10,6 +10,7 @@ from typing import Any
 
 from .jit import kernel
 from .meet import earlier, jumped, overlap_before
+from .motion import afford
 from .overlap import OVERFLOW
 from .place import place
 from .pool import Pool
@@ -87,7 +88,7 @@ def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: fl
         ib = sb.outline
         if sa.mirror >= 0 or sb.mirror >= 0:
             ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
-        n, back = overlap_before(pool, work, ia, ib, a, b, dt, looks)
+        n, back = overlap_before(pool, work, ia, ib, a, b, dt, afford(tables.counters, looks))
         if n == OVERFLOW:
             tables.counters[MORE_WORK] = 1
             return False

@@ -1,0 +1,275 @@
+"""What may be done around an attached space: as natively, whatever leaves, is copied, collected, forked or ends."""
+
+import copy
+import gc
+import os
+import pickle
+import subprocess
+import sys
+import textwrap
+import weakref
+
+import pymunk
+import pytest
+
+import rigidarea as ra
+
+DT = 1 / 60
+
+
+class Level(pymunk.Space):
+    """A game's space, which attaches when it is made."""
+
+    def __init__(self, *arguments) -> None:
+        super().__init__(*arguments)
+        self.gravity = 0, -10
+        self.contact = ra.attach(self, penetration=1e-3)
+
+
+class Restored(pymunk.Space):
+    """One that attaches when it is restored."""
+
+    def __setstate__(self, state) -> None:
+        super().__setstate__(state)
+        ra.attach(self)
+
+
+def fill(space: pymunk.Space, n: int = 6) -> pymunk.Space:
+    space.gravity = 0, -10
+    floor = pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0.1)
+    floor.friction = 0.5
+    space.add(floor)
+    for i in range(n):
+        body = pymunk.Body(1, 1 / 6)
+        body.position = 0.1 * i, 0.7 + 1.02 * i
+        shape = pymunk.Poly.create_box(body, (1, 1))
+        shape.friction = 0.5
+        space.add(body, shape)
+    return space
+
+
+def places(space: pymunk.Space) -> list[tuple[float, ...]]:
+    return [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies]
+
+
+def steps(space: pymunk.Space, n: int) -> list[tuple[float, ...]]:
+    for _ in range(n):
+        space.step(DT)
+    return places(space)
+
+
+COPIES = {
+    "copy": lambda space: space.copy(),
+    "deepcopy": copy.deepcopy,
+    "pickle": lambda space: pickle.loads(pickle.dumps(space)),
+    "twice": lambda space: pickle.loads(pickle.dumps(copy.deepcopy(space))),
+}
+
+
+@pytest.mark.parametrize("how", COPIES)
+@pytest.mark.parametrize("made", [Level, Restored])
+def test_a_class_that_attaches_by_itself(how, made):
+    """Its copies have one contact, their original's, and go on with the same bits."""
+    space = fill(made())
+    if made is Restored:
+        ra.attach(space, penetration=1e-3)
+    steps(space, 20)
+    other = COPIES[how](space)
+    contact = ra.attached(other)
+    assert contact.space is other and contact is not ra.attached(space) and contact.penetration == 1e-3
+    assert type(other).__mro__[1] is made and type(other).__name__ == made.__name__
+    if made is Level:
+        assert other.contact is contact
+    assert steps(other, 30) == steps(space, 30)
+    contact.detach()
+    assert type(other) is made and ra.attached(space) is not None
+    steps(other, 5)
+
+
+def test_a_copy_of_what_was_detached_attaches_as_its_class_does():
+    space = fill(Level())
+    space.contact.detach()
+    other = space.copy()
+    assert ra.attached(other) is not None
+    steps(other, 10)
+
+
+def falls_as_natively(space: pymunk.Space, body: pymunk.Body) -> bool:
+    twin = pymunk.Body(body.mass, body.moment)
+    twin.position, twin.velocity = body.position, body.velocity
+    native = pymunk.Space()
+    native.gravity, space.gravity = (0, -10), (0, -10)
+    native.add(twin)
+    if ra.attached(space) is not None:
+        ra.attach(native)
+    for one in (space, native):
+        for _ in range(10):
+            one.step(DT)
+    return body.position == pytest.approx(twin.position, abs=1e-9) and body.velocity.y < 0
+
+
+LEAVES = ["removed", "space detached", "removed, then detached", "space collected", "attached elsewhere"]
+
+
+@pytest.mark.parametrize("how", LEAVES)
+@pytest.mark.parametrize("shapes", [True, False])
+def test_a_body_moves_in_its_next_space(how, shapes):
+    space = fill(pymunk.Space(), 2)
+    body = pymunk.Body(1, 1)
+    body.position = 30, 40
+    space.add(body, *([pymunk.Circle(body, 0.4)] if shapes else []))
+    contact = ra.attach(space)
+    steps(space, 3)
+    if how == "space detached":
+        contact.detach()
+    if how != "space collected":
+        space.remove(body, *body.shapes)
+    if how == "removed, then detached":
+        contact.detach()
+    following = pymunk.Space()
+    if how == "space collected":
+        gone = weakref.ref(space)
+        del space, contact
+        gc.collect()
+        assert gone() is None
+    if how == "attached elsewhere":
+        ra.attach(following)
+    following.add(body)
+    assert falls_as_natively(following, body)
+
+
+def test_rows_of_what_left_are_cleared_at_once():
+    """Bodies without shapes too: their memory is another's as soon as nobody holds them."""
+    space = fill(pymunk.Space(), 3)
+    contact = ra.attach(space)
+    bare = [pymunk.Body(1, 1) for _ in range(5)]
+    hinge = pymunk.PivotJoint(bare[0], bare[1], (0, 0), (0, 0))
+    space.add(*bare, hinge)
+    steps(space, 3)
+    addresses = [int(pymunk._chipmunk_cffi.ffi.cast("uintptr_t", b._body)) for b in bare]
+    assert set(addresses) <= set(contact._store.tables.bodies["address"].tolist())
+    space.remove(hinge, *bare)
+    assert not set(addresses) & set(contact._store.tables.bodies["address"].tolist())
+    dead = [weakref.ref(b) for b in bare]
+    del bare, hinge
+    steps(space, 1)
+    gc.collect()
+    assert all(one() is None for one in dead)
+    steps(space, 5)
+
+
+def test_one_shape_of_a_body_is_removed_and_the_body_reindexed():
+    """A removed shape's number is 0, which is the first shape's."""
+    space = fill(pymunk.Space(), 3)
+    body = list(space.bodies)[1]
+    extra = pymunk.Circle(body, 0.3, (0, 0.6))
+    space.add(extra)
+    ra.attach(space)
+    steps(space, 5)
+    space.remove(extra)
+    extra.unsafe_set_radius(0.1)
+    space.reindex_shapes_for_body(body)
+    steps(space, 5)
+
+
+def test_a_body_that_is_collected_while_its_shape_stays():
+    """pymunk's shapes do not keep their bodies alive: such a shape is no contact's."""
+    space = fill(pymunk.Space(), 3)
+    contact = ra.attach(space)
+    body = pymunk.Body(1, 1)
+    body.position = 0, 8
+    shape = pymunk.Circle(body, 0.5)
+    space.add(body, shape)
+    steps(space, 3)
+    space.remove(body)
+    del body
+    gc.collect()
+    steps(space, 30)
+    contact.energy()
+    space.reindex_static()
+
+
+def run(program: str, seconds: float = 60) -> subprocess.CompletedProcess:
+    """A program of its own."""
+    text = "import pymunk, rigidarea as ra, sys, os\nfrom tests.test_ownership import *\n" + textwrap.dedent(
+        program
+    )
+    return subprocess.run(
+        [sys.executable, "-c", text], capture_output=True, text=True, timeout=seconds, cwd=os.getcwd()
+    )
+
+
+PROGRAMS = {
+    "a daemon thread steps": """
+        import threading, time
+        space = fill(pymunk.Space(), 40)
+        ra.attach(space)
+        space.step(DT)
+        def go():
+            while True:
+                space.step(DT)
+        threading.Thread(target=go, daemon=True).start()
+        time.sleep(0.05)
+    """,
+    "a thread steps, then ends": """
+        import threading
+        space = fill(pymunk.Space(), 10)
+        ra.attach(space)
+        threads = [threading.Thread(target=steps, args=(space, 20)) for _ in range(3)]
+        for thread in threads:
+            thread.start(); thread.join()
+    """,
+    "attached spaces live until the end": """
+        spaces = [Level() for _ in range(20)]
+        for space in spaces: steps(fill(space), 3)
+        keep = [space.contact for space in spaces[:5]]
+    """,
+    "forked": """
+        space = fill(Level())
+        steps(space, 5)
+        for _ in range(5):
+            child = os.fork()
+            if child == 0:
+                steps(space, 20)
+                sys.exit(7)
+            assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 7
+        other = space.copy()
+        assert steps(space, 10) == steps(other, 10)
+    """,
+    "sys.exit in a step": """
+        space = fill(Level())
+        class Ends(pymunk.Space):
+            def step(self, dt): super().step(dt); sys.exit(0)
+        space = fill(Ends()); ra.attach(space)
+        space.step(DT)
+    """,
+}
+
+
+SELDOM = ("a thread steps, then ends", "sys.exit in a step")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=[pytest.mark.slow] if n in SELDOM else []) for n in PROGRAMS]
+)
+def test_programs_end_as_natively(name):
+    done = run(PROGRAMS[name])
+    assert (done.returncode, done.stderr) == (0, ""), done.stderr[-800:]
+
+
+@pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])
+def test_random_programs(programs):
+    """Lifetimes, copies, callbacks, signals, growth, threads, forks: no crash, no hang, whole tables."""
+    command = [
+        sys.executable,
+        "-m",
+        "rigidarea",
+        "compat",
+        "lives",
+        "--programs",
+        str(programs),
+        "--json",
+        "-",
+    ]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=100 * programs)
+    assert done.returncode == 0, done.stderr[-3000:]
