@@ -349,6 +349,8 @@ def run(
     bad = []
     file = folder / f"mutant.{kind}"
     for i in range(count):
+        if i and i % 1000 == 0:
+            print(f"{kind} {i}", file=sys.stderr, flush=True)
         chance = random.Random(f"{kind} {seed} {i}")
         file.write_bytes(mutated(kind, chance.choice(known[kind]), chance))
         result = outcome(kind, str(file))
