@@ -20,7 +20,7 @@ class Limits(NamedTuple):
     """Lists and tables within each other."""
     points: int = 1_000_000
     """Points of all outlines together."""
-    parts: int = 10_000
+    parts: int = 5_000
     """Bodies, shapes, joints, elements of a drawing: of each."""
     pixels: int = 8 * 2**20
     """Pixels of a picture: a screen of 3840 x 2160."""

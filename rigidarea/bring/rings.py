@@ -128,7 +128,7 @@ def polygons_of_rings(rings: Sequence[Ring], limits: Limits) -> list[shapely.Pol
             owner = min(over, key=lambda j: areas[j])
             if owner not in holes:
                 raise ValueError(
-                    f"ring {kept[i]} lies in ring {kept[owner]} and is neither its hole nor apart from it"
+                    f"ring {kept[i]} lies in ring {kept[owner]}, a hole; expected rings apart or within each other"
                 )
             holes[owner].append(i)
     return [shapely.Polygon(edges[i], [edges[j] for j in inner]) for i, inner in holes.items()]

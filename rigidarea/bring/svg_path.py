@@ -48,7 +48,9 @@ def finite_numbers(found: Iterable[str], what: str) -> list[float]:
     """The numbers; ValueError for one beyond LARGEST."""
     given = list(map(float, found))
     if given and not max(max(given), -min(given)) <= LARGEST:
-        raise ValueError(f"{what}: expected numbers of at most {LARGEST:g}, got {max(given, key=abs):g}")
+        raise ValueError(
+            f"{what}: expected finite numbers of at most {LARGEST:g}, got {max(given, key=abs):g}"
+        )
     return given
 
 

@@ -31,8 +31,8 @@ def coordinates(rows: list[Any], widths: Collection[int]) -> Ring | None:
         return np.zeros((0, max(widths)))
     if set(map(type, rows)) - {list} or not (found := set(map(len, rows))) <= set(widths):
         return None
-    widest = max(widths)
-    if found != {widest}:
+    widest = max(found)
+    if len(found) > 1:
         rows = [[*row, *[0.0] * (widest - len(row))] for row in rows]
     if set(map(type, chain.from_iterable(rows))) - {int, float}:
         return None
@@ -40,7 +40,9 @@ def coordinates(rows: list[Any], widths: Collection[int]) -> Ring | None:
         told = np.fromiter(chain.from_iterable(rows), np.float64, widest * len(rows)).reshape(-1, widest)
     except OverflowError:
         return None
-    return told if (np.abs(told) <= LARGEST).all() else None
+    if not (np.abs(told) <= LARGEST).all():
+        return None
+    return np.pad(told, ((0, 0), (0, max(widths) - widest)))
 
 
 def first_wrong(rows: list[Any], widths: Collection[int]) -> int:

@@ -92,8 +92,8 @@ def pictures() -> dict[str, list[bytes]]:
     frames[0].save(moving, "GIF", save_all=True, append_images=frames[1:], comment=b"x" * 300, duration=5)
     return {
         "png": [saved(alpha, "PNG"), saved(dark, "PNG", "1"), saved(dark, "PNG", "P", transparency=0)],
-        "jpeg": [saved(dark, "JPEG"), saved(alpha, "JPEG", "RGB", progressive=True, comment=b"y" * 50)],
-        "bmp": [saved(dark, "BMP"), saved(alpha, "BMP"), saved(dark, "BMP", "1")],
+        "jpeg": [saved(dark, "JPEG"), saved(dark, "JPEG", "RGB", progressive=True, comment=b"y" * 50)],
+        "bmp": [saved(dark, "BMP"), saved(dark, "BMP", "RGB"), saved(dark, "BMP", "1")],
         "gif": [saved(dark, "GIF"), moving.getvalue()],
         "webp": [saved(alpha, "WEBP", lossless=True), saved(alpha, "WEBP"), saved(dark, "WEBP")],
     }
@@ -349,6 +349,8 @@ def run(
     bad = []
     file = folder / f"mutant.{kind}"
     for i in range(count):
+        if i and i % 1000 == 0:
+            print(f"{kind} {i}", file=sys.stderr, flush=True)
         chance = random.Random(f"{kind} {seed} {i}")
         file.write_bytes(mutated(kind, chance.choice(known[kind]), chance))
         result = outcome(kind, str(file))

@@ -24,7 +24,6 @@ def svg(tmp_path, body, head='xmlns="http://www.w3.org/2000/svg" width="100" hei
 
 
 def test_shapes_and_curves_have_their_areas(tmp_path):
-    pytest.importorskip("svgelements")
     body = (
         '<rect x="1" y="2" width="30" height="20"/>'
         '<circle cx="50" cy="50" r="10"/>'
@@ -44,7 +43,6 @@ def test_shapes_and_curves_have_their_areas(tmp_path):
 
 
 def test_letters_keep_their_holes_and_islands(tmp_path):
-    pytest.importorskip("svgelements")
     rings = [f"M{i},{i} H{100 - i} V{100 - i} H{i} Z" for i in (0, 10, 20, 30)]
     outer, island = bring.outlines_from_svg(
         svg(tmp_path, f'<path d="{" ".join(rings)}"/>'), scale=0.1, flip=True
@@ -55,7 +53,6 @@ def test_letters_keep_their_holes_and_islands(tmp_path):
 
 
 def test_finer_tolerance_is_closer(tmp_path):
-    pytest.importorskip("svgelements")
     file = svg(tmp_path, '<ellipse cx="0" cy="0" rx="20" ry="5"/>')
     errors = [
         abs(bring.outlines_from_svg(file, tolerance=tolerance)[0].area - 100 * math.pi)
@@ -84,13 +81,11 @@ def test_finer_tolerance_is_closer(tmp_path):
     ],
 )
 def test_hostile_drawings_are_refused(body, message, tmp_path):
-    pytest.importorskip("svgelements")
     with pytest.raises(ValueError, match=message):
         bring.outlines_from_svg(svg(tmp_path, body), limits=LIMITED)
 
 
 def test_damaged_drawings_end_in_outlines_or_a_value_error(tmp_path):
-    pytest.importorskip("svgelements")
     body = (
         '<g transform="rotate(30) scale(2,3) skewX(10)"><path d="M0,0 C 3,-2 7,-2 10,0 S 13 7 10 10 Q 7,12 5,10 T 0,10'
         ' A 6 7 0 0 1 0 0 z m 3 3 l 2 0 0 2z"/><rect x="1" y="2" width="3" height="4" rx="1"/>'
@@ -132,7 +127,6 @@ def test_damaged_drawings_end_in_outlines_or_a_value_error(tmp_path):
 
 
 def test_entities_are_refused_before_they_unfold(tmp_path):
-    pytest.importorskip("svgelements")
     laughs = "".join(f'<!ENTITY a{i + 1} "{f"&a{i};" * 10}">' for i in range(9))
     file = tmp_path / "laughs.svg"
     file.write_text(f'<!DOCTYPE svg [<!ENTITY a0 "ha">{laughs}]><svg><text>&a9;</text></svg>')
