@@ -99,6 +99,8 @@ def settle(b: Any, gravity: Array, x: Array, mu: Array, turn: Array) -> Array:
     if len(bd.swell):
         u += b.velocity[2] ** 2 * bd.swell[-3:]
     turn[0] = u[2]
+    if b.drive is None and b.damper > 0.0 and _damped(b) == 0.0:
+        turn[1] = -b.velocity[2]  # the damper holds the hub still, where it bears nothing yet
     if b.fixed or (b.drive is None and b.anchor is None):
         return load
     frame = np.array([[c, -s], [s, c]])
