@@ -191,7 +191,7 @@ class Program:
         """A body that left one space comes to another."""
         space = self.space()
         for body in [b for b in self.kept if isinstance(b, pymunk.Body) and b.space is None][:2]:
-            space.add(body, *(shape for shape in body.shapes if shape.space is None))
+            space.add(body)  # its shapes may have lost it: pymunk frees a space so
 
     def copies(self) -> None:
         """A copy, one way or another, which goes on."""
