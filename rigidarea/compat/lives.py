@@ -170,7 +170,7 @@ class Program:
             space.add(joint)
 
     def remove(self) -> None:
-        """Something goes: a body with all that is its own, only a shape, only a joint, or a body whose shapes stay."""
+        """Something goes: a body with all that is its own (Chipmunk wants that), only a shape, only a joint."""
         space = self.space()
         things: list[Any] = [*space.bodies, *space.shapes, *space.constraints]
         if not things:
@@ -178,10 +178,9 @@ class Program:
         thing = self.draw.choice(things)
         if isinstance(thing, pymunk.Body):
             joints = [joint for joint in thing.constraints if joint in space.constraints]
-            alone = self.draw.random() < 0.2
             own = [shape for shape in thing.shapes if shape.space is space]
-            space.remove(*joints, thing, *(() if alone else own))
-            self.kept.append(None if alone else thing)
+            space.remove(*joints, thing, *own)
+            self.kept.append(thing)
         else:
             space.remove(thing)
             if isinstance(thing, pymunk.Shape) and thing.body is not None and thing.body.space is space:
@@ -191,7 +190,7 @@ class Program:
         """A body that left one space comes to another."""
         space = self.space()
         for body in [b for b in self.kept if isinstance(b, pymunk.Body) and b.space is None][:2]:
-            space.add(body, *(shape for shape in body.shapes if shape.space is None))
+            space.add(body)  # its shapes may have lost it: pymunk frees a space so
 
     def copies(self) -> None:
         """A copy, one way or another, which goes on."""
