@@ -178,7 +178,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
         if i == 0 and joints == 0 and not somebody_touches(tables):
-            if not near_pairs(s, space, h, dt):
+            if not near_pairs(s, space, dt, dt):  # for all of it: it may be flown at once
                 return False
             if nobody_comes_near(tables, dt - 0.5 * h):
                 _fly(s, tables, dt, 0.5 * (dt - h), n)

@@ -51,8 +51,8 @@ TURNS = 0.7
 FEATURE = 0.15
 #: Room around a shape's box, as a fraction of its size, before pairs are searched again.
 MARGIN = 0.1
-#: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every other frame.
-AHEAD = 2.0
+#: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every third frame.
+AHEAD = 3.0
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
 #: under gravity has at 60 frames a second, within a factor of 3.
 WEIGHTLESS_PHASE2 = 40.0
