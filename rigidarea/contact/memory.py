@@ -23,8 +23,10 @@ from ..kernel.tables import (
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    NEAR,
     SEARCH,
     SUBSTEP,
+    TURNED,
     UNSORTED,
     end_pair,
     rehash,
@@ -60,7 +62,8 @@ class Memory(NamedTuple):
     leaves one elsewhere whose centre is not its origin."""
 
 
-_COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, BOXED, UNSORTED]
+_COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
+_COUNTERS += [UNSORTED, TURNED]
 #: What a body keeps.
 _BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.

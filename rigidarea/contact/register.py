@@ -118,6 +118,7 @@ class Register:
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         state = self._state
+        told = state["pending"] == 1
         count = len(self.shapes) + len(self._new) - len(self._gone)
         pending = state["pending"]
         if count != len(space._shapes) or pending == 2:
@@ -129,7 +130,8 @@ class Register:
         if self._bodies:
             addresses = _words(address_of(body._body) for body in self._bodies)
             self._store.room(0, len(addresses), 0)
-            self._call("bodies_come", addresses, not space._locked and not state["explicit"])
+            # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
+            self._call("bodies_come", addresses, state["shape_count"] < 0 and not state["explicit"])
             for body in self._bodies:
                 self._hook.hold(body)
             self._bodies.clear()
@@ -137,14 +139,11 @@ class Register:
             self._enter_partners(space)
         self._enter(new, heads)
         self._new.clear()
-        self._store.tidy()
-        facts = self._hear(space)
-        facts |= {
-            "shape_counter": lib.cpSpaceGetShapeIDCounter(space._space),
-            "shape_count": len(self.shapes),
-        }
-        for name, value in facts.items():
-            state[name] = value
+        if not told:  # what begins a frame has noticed something else, of callbacks perhaps
+            for name, value in self._hear(space).items():
+                state[name] = value
+        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
+        state["shape_count"] = len(self.shapes)
         state["pending"] = 0
 
     def _forget(self) -> None:
@@ -154,6 +153,7 @@ class Register:
             for ident in self._gone:
                 self.shapes.pop(ident, None)
             self._gone.clear()
+            self._store.tidy()
         if self._left:
             self._call("bodies_go", _words(self._left))
             self._left.clear()

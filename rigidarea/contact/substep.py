@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..kernel.blows import blows, calm_bounces
-from ..kernel.conjugate import search_together
+from ..kernel.conjugate import search_joints, search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
@@ -87,7 +87,8 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     warm_start(tables)
     lessen(tables, h)
     enough = mass * (SETTLED * small) ** 2
-    sweeps = max(1, whole - 2 * (whole // SEARCH_SWEEPS) - _relaxing(whole))
+    searches = whole // SEARCH_SWEEPS
+    sweeps = max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
@@ -105,9 +106,14 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                     return True
                 break
             if k == 0:
-                search_together(tables, SEARCH_STEPS, enough)
+                if jointed:
+                    search_joints(tables, SEARCH_STEPS, enough)
+                else:
+                    search_together(tables, min(1, searches), False)
                 if moved > small and blows(tables, load_law(s), h):
-                    search_together(tables, SEARCH_STEPS, enough)
+                    search_together(tables, searches, False)
+            elif k == 1 and not jointed:
+                search_together(tables, searches - 1, True)
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
         less = gained and tables.counters[BOUNCES] > 0 and calm_bounces(tables)
         if (not gained and moved <= small) or (not less and moved <= SETTLED * small):
@@ -166,7 +172,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
         if i == 0 and joints == 0 and not somebody_touches(tables):
-            if not near_pairs(s, space, h, dt):
+            if not near_pairs(s, space, dt, dt):  # for all of it: it may be flown at once
                 return False
             if nobody_comes_near(tables, dt - 0.5 * h):
                 _fly(s, tables, dt, 0.5 * (dt - h), n)

@@ -22,9 +22,20 @@ MOST_TRIED = 64
 
 
 @kernel
-def reach(pool: Pool, i: int, mx: float, my: float) -> float:
-    """How far the outer ring of outline i reaches along the unit direction m, in its own frame (length)."""
+def reach(pool: Pool, i: int, line: bool, mx: float, my: float) -> float:
+    """How far the outer ring of outline i reaches along the unit direction m, in its own frame (length).
+
+    line: of a segment without thickness, which is its first edge: that.
+    """
     head = pool.heads[i]
+    if line:
+        p = head.point
+        return float(
+            max(
+                mx * pool.points[p, 0] + my * pool.points[p, 1],
+                mx * pool.points[p + 1, 0] + my * pool.points[p + 1, 1],
+            )
+        )
     if head.disc:
         return float(head.radius)
     most = -np.inf
@@ -43,14 +54,31 @@ def reach(pool: Pool, i: int, mx: float, my: float) -> float:
 
 
 @kernel
-def gap_along(pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float) -> float:
-    """How far B is from A along m, a unit direction in A's frame; negative: so far it must go to be clear (length)."""
-    back = reach(pool, ib, -(rel.c * mx + rel.s * my), rel.s * mx - rel.c * my)
-    return mx * rel.tx + my * rel.ty - reach(pool, ia, mx, my) - back
+def gap_along(
+    pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float, line_a: bool, line_b: bool
+) -> float:
+    """How far B is from A along m, a unit direction in A's frame; negative: so far it must go to be clear (length).
+
+    line_a, line_b: whether one is a segment without thickness.
+    """
+    back = reach(pool, ib, line_b, -(rel.c * mx + rel.s * my), rel.s * mx - rel.c * my)
+    return mx * rel.tx + my * rel.ty - reach(pool, ia, line_a, mx, my) - back
 
 
 @kernel
-def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any) -> None:
+def _nearest(pool: Pool, i: int, x: float, y: float) -> tuple[float, float]:
+    """The point of a segment, outline i's first edge, nearest to (x, y), in its frame (length)."""
+    p = pool.heads[i].point
+    ax = pool.points[p, 0]
+    ay = pool.points[p, 1]
+    ex = pool.points[p + 1, 0] - ax
+    ey = pool.points[p + 1, 1] - ay
+    along = min(1.0, max(0.0, ((x - ax) * ex + (y - ay) * ey) / (ex * ex + ey * ey)))
+    return ax + along * ex, ay + along * ey
+
+
+@kernel
+def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any, line_a: bool, line_b: bool) -> None:
     """The axis along which A and B are farthest apart, into pair.axis_x, axis_y, gap (of those that are tried).
 
     A's frame, A to B. No axis (0, 0) for outlines that are not convex, and where none that is tried parts them.
@@ -62,14 +90,25 @@ def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any) -> None:
     hb = pool.heads[ib]
     if not (ha.convex and hb.convex):
         return
-    length = math.sqrt(rel.tx * rel.tx + rel.ty * rel.ty)
+    dx = rel.tx
+    dy = rel.ty
+    if line_a:
+        x, y = _nearest(pool, ia, dx, dy)
+        dx -= x
+        dy -= y
+    elif line_b:  # A's middle, as B sees it
+        x, y = _nearest(pool, ib, -(rel.c * dx + rel.s * dy), rel.s * dx - rel.c * dy)
+        dx += rel.c * x - rel.s * y
+        dy += rel.s * x + rel.c * y
+    length = math.sqrt(dx * dx + dy * dy)
     if length > 0.0:
-        _try(pool, ia, ib, rel, rel.tx / length, rel.ty / length, pair)
+        _try(pool, ia, ib, rel, dx / length, dy / length, pair, line_a, line_b)
     if ha.count * hb.count > MOST_TRIED:
         return
     for own in range(2):
         head = hb if own else ha
-        for e in range(head.point, head.point + head.count):
+        line = line_b if own else line_a
+        for e in range(head.point, head.point + (1 if line else head.count)):
             if pool.arcs[e, 2] == 0.0:
                 k = pool.following[e]
                 mx = pool.points[k, 1] - pool.points[e, 1]
@@ -79,12 +118,16 @@ def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any) -> None:
                 my /= length
                 if own:  # B's outward normal points from B to A
                     mx, my = -(rel.c * mx - rel.s * my), -(rel.s * mx + rel.c * my)
-                _try(pool, ia, ib, rel, mx, my, pair)
+                _try(pool, ia, ib, rel, mx, my, pair, line_a, line_b)
+                if line:
+                    _try(pool, ia, ib, rel, -mx, -my, pair, line_a, line_b)
 
 
 @kernel
-def _try(pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float, pair: Any) -> None:
-    gap = gap_along(pool, ia, ib, rel, mx, my)
+def _try(
+    pool: Pool, ia: int, ib: int, rel: Relative, mx: float, my: float, pair: Any, line_a: bool, line_b: bool
+) -> None:
+    gap = gap_along(pool, ia, ib, rel, mx, my, line_a, line_b)
     if gap > pair.gap:
         pair.gap = gap
         pair.axis_x = mx

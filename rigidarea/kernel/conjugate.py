@@ -488,13 +488,24 @@ def _go(tables: Tables, part: float) -> None:
 
 
 @kernel
-def search_together(tables: Tables, steps: int, enough: float) -> None:
-    """As many steps for all rows that bear, `steps` at the most, until what is left to solve is no more than `enough`.
+def search_together(tables: Tables, steps: int, known: bool) -> None:
+    """So many steps for all rows that bear; `known`: those that did in the search before."""
+    if tables.counters[ROWS] == 0:
+        return
+    before = 0.0
+    for _ in range(steps):
+        if before == 0.0 and not known:
+            take_part(tables)
+        known = False
+        before = descend(tables, before, 0.0)
+
+
+@kernel
+def search_joints(tables: Tables, steps: int, enough: float) -> None:
+    """As many steps for all rows that bear, joints among them, until no more than `enough` is left to solve.
 
     A step that is cut short ends it: other rows bear from there on. enough: mass times the square of a speed.
     """
-    if tables.counters[ROWS] == 0:
-        return
     take_part(tables)
     before = 0.0
     for _ in range(steps):

@@ -51,8 +51,8 @@ TURNS = 0.7
 FEATURE = 0.15
 #: Room around a shape's box, as a fraction of its size, before pairs are searched again.
 MARGIN = 0.1
-#: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every other frame.
-AHEAD = 2.0
+#: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every third frame.
+AHEAD = 3.0
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
 #: under gravity has at 60 frames a second, within a factor of 3.
 WEIGHTLESS_PHASE2 = 40.0
@@ -70,10 +70,10 @@ STRAIGHT_WAY = 0.1
 SPREAD = 1.0
 #: A joint gives way by this part of its effective mass: of joints that contradict each other, each is held as far as it
 #: can. What hangs in one sinks by this part of the way that it falls in a substep, over the part of an error that goes.
-JOINT_GIVE = 1e-4
+JOINT_GIVE = 1e-5
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
-#: Most steps of a search: it ends sooner where it has converged, or an end lets go.
+#: Most steps of a search with joints: it ends sooner where it has converged, or an end lets go.
 SEARCH_STEPS = 8
 #: One sweep of so many, rounded up, is for the velocities that are left when positions are right (`relax`).
 RELAX_SWEEPS = 5

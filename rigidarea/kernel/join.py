@@ -16,7 +16,7 @@ from .constants import LOOK, STRAIGHT_WAY
 from .jit import kernel
 from .joint import make_joint_row
 from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
-from .place import seen_from
+from .place import Pose, seen_from
 from .pool import Pool
 from .row import make_row
 from .tables import (
@@ -110,12 +110,24 @@ def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
         pair.parted != stamp - 1 or h * max(abs(a.w), abs(b.w)) > STRAIGHT_WAY
     ):
         return False
-    ia = tables.shapes[pair.a].outline
-    ib = tables.shapes[pair.b].outline
-    rel = seen_from(pool.heads[ia], pose_of(a), pool.heads[ib], pose_of(b))
-    pair.gap = gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)
+    pair.gap = _gap(pool, tables, pair, pose_of(a), pose_of(b))
     pair.parted = stamp
-    return bool(pair.gap > 0.0)
+    if pair.gap <= 0.0:
+        return False
+    pair.side_a = 0  # a segment without thickness shows what is off it the side on which that comes
+    pair.side_b = 0
+    return True
+
+
+@kernel
+def _gap(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pose) -> float:
+    """How far apart a pair is along its axis, its bodies in these places (length)."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    rel = seen_from(pool.heads[sa.outline], pose_a, pool.heads[sb.outline], pose_b)
+    return float(
+        gap_along(pool, sa.outline, sb.outline, rel, pair.axis_x, pair.axis_y, sa.mirror >= 0, sb.mirror >= 0)
+    )
 
 
 @kernel
@@ -123,10 +135,9 @@ def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
     """Look for what parts a pair that does not overlap."""
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
-    if sa.mirror < 0 and sb.mirror < 0:
-        rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
-        find_axis(pool, sa.outline, sb.outline, rel, pair)
-        pair.parted = tables.counters[SUBSTEP]
+    rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
+    find_axis(pool, sa.outline, sb.outline, rel, pair, sa.mirror >= 0, sb.mirror >= 0)
+    pair.parted = tables.counters[SUBSTEP]
 
 
 @kernel
@@ -149,10 +160,7 @@ def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
     least = little(tables, pair, a, b, h)
     if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
         return 0.0
-    ia = tables.shapes[pair.a].outline
-    ib = tables.shapes[pair.b].outline
-    rel = seen_from(pool.heads[ia], earlier(a, -h), pool.heads[ib], earlier(b, -h))
-    return float(min(least, gap_along(pool, ia, ib, rel, pair.axis_x, pair.axis_y)))
+    return float(min(least, _gap(pool, tables, pair, earlier(a, -h), earlier(b, -h))))
 
 
 @kernel

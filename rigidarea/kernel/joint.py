@@ -14,8 +14,9 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
 max_bias. Joints that cannot all be held share what is asked of them (`JOINT_GIVE`). A limit that is not reached yet is
-a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone, exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the
-step's end where the step is too long to follow it, as a contact's (`row`).
+a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone,
+exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the step's end where the step is too long to follow
+it, as a contact's (`row`).
 """
 
 from __future__ import annotations

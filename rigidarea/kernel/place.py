@@ -183,7 +183,7 @@ def push_out(pool: Pool, ia: int, ib: int, rel: Relative) -> tuple[float, float]
                 for way in (1.0, -1.0):
                     if r == 0.0 and way < 0.0:
                         continue
-                    depth = -gap_along(pool, ia, ib, rel, way * mx, way * my)
+                    depth = -gap_along(pool, ia, ib, rel, way * mx, way * my, False, False)
                     if 0.0 < depth < best:
                         best = depth
                         best_x = way * mx

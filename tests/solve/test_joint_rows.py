@@ -1,0 +1,153 @@
+"""Joints as rows: each kind does what pymunk's own does, what hangs in many holds, what contradicts itself is held."""
+
+import math
+import random
+
+import pymunk
+import pytest
+
+import rigidarea as ra
+
+DT = 1 / 60
+KINDS = ["pin", "slide", "pivot", "groove", "spring", "rotary spring", "limit", "ratchet", "gear", "motor"]
+
+
+def make(kind: str, draw: random.Random, a: pymunk.Body, b: pymunk.Body) -> pymunk.Constraint:
+    """A joint of a kind between two bodies, off its place by some of its size."""
+    p, q = (draw.uniform(-1, 1), draw.uniform(-1, 1)), (draw.uniform(-1, 1), draw.uniform(-1, 1))
+    apart = (a.local_to_world(p) - b.local_to_world(q)).length
+    joint: pymunk.Constraint
+    if kind == "pin":
+        joint = pymunk.PinJoint(a, b, p, q)
+        joint.distance = apart * draw.uniform(0.9, 1.1)
+    elif kind == "slide":
+        low = apart * draw.choice((0.5, 1.1))
+        joint = pymunk.SlideJoint(a, b, p, q, low, low * 1.2)
+    elif kind == "pivot":
+        joint = pymunk.PivotJoint(a, b, p, q)
+    elif kind == "groove":
+        joint = pymunk.GrooveJoint(a, b, (draw.uniform(-3, -1), 0.5), (draw.uniform(1, 3), 0), q)
+    elif kind == "spring":
+        joint = pymunk.DampedSpring(a, b, p, q, apart * 0.8, draw.uniform(1, 100), draw.uniform(0, 10))
+    elif kind == "rotary spring":
+        joint = pymunk.DampedRotarySpring(a, b, draw.uniform(-1, 1), draw.uniform(1, 100), draw.uniform(0, 10))
+    elif kind == "limit":
+        low = b.angle - a.angle + draw.choice((-1.0, 0.1))
+        joint = pymunk.RotaryLimitJoint(a, b, low, low + 0.5)
+    elif kind == "ratchet":
+        joint = pymunk.RatchetJoint(a, b, draw.uniform(-1, 1), draw.choice((-0.5, 0.5)))
+    elif kind == "gear":
+        joint = pymunk.GearJoint(a, b, draw.uniform(-1, 1), draw.choice((1.0, -1.0, 2.0, 0.5)))
+    else:
+        joint = pymunk.SimpleMotor(a, b, draw.uniform(-5, 5))
+    if draw.random() < 0.4:
+        joint.max_force = draw.uniform(100, 10000)
+    if draw.random() < 0.4:
+        joint.max_bias = draw.uniform(0, 3)
+    if draw.random() < 0.4:
+        joint.error_bias = draw.uniform(0.01, 0.9) ** 60
+    return joint
+
+
+def pair(kind: str, seed: int, attached: bool, dt: float) -> list[float]:
+    """Velocities of two bodies that a joint holds, after one step."""
+    draw = random.Random(seed)
+    space = pymunk.Space()
+    bodies = [pymunk.Body(draw.uniform(0.5, 5), draw.uniform(0.5, 5)) for _ in range(2)]
+    for body, x in zip(bodies, (0, 4)):
+        body.position, body.angle = (x, draw.uniform(-1, 1)), draw.uniform(-1, 1)
+        body.velocity = draw.uniform(-2, 2), draw.uniform(-2, 2)
+        body.angular_velocity = draw.uniform(-3, 3)
+    if draw.random() < 0.3:
+        bodies[1] = space.static_body
+    space.add(*(b for b in bodies if b is not space.static_body), make(kind, draw, *bodies))
+    if attached:
+        ra.attach(space).step(dt, steps=1)
+    else:
+        space.step(dt)
+    return [v for b in bodies for v in (*b.velocity, b.angular_velocity)]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_one_joint_does_what_pymunks_own_does(kind):
+    """Alone between two bodies a joint of pymunk's is solved at once: 60 draws, bounds and biases too.
+
+    To 2e-3 of the largest speed: places are half a step further on here (1e-4 of a second at up to 10 a second), and a
+    joint gives way by 1e-4.
+    """
+    for seed in range(60):
+        own, theirs = pair(kind, seed, True, 1e-4), pair(kind, seed, False, 1e-4)
+        size = max(map(abs, theirs)) + 1
+        assert own == pytest.approx(theirs, abs=2e-3 * size), (seed, own, theirs)
+
+
+def gap(joint: pymunk.Constraint) -> float:
+    """How far apart a pivot's two anchors are."""
+    return (joint.a.local_to_world(joint.anchor_a) - joint.b.local_to_world(joint.anchor_b)).length
+
+
+def chain(links: int, speed: float) -> pymunk.Space:
+    """Links of 20 px hanging in one another, the last one struck from aside."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    before = space.static_body
+    for i in range(links):
+        body = pymunk.Body(1, pymunk.moment_for_box(1, (4, 20)))
+        body.position = 0, -(20 * i + 10)
+        shape = pymunk.Poly.create_box(body, (4, 20))
+        shape.filter = pymunk.ShapeFilter(group=1)
+        joint = pymunk.PivotJoint(before, body, (0, -20 * i))
+        joint.collide_bodies = False
+        space.add(body, shape, joint)
+        before = body
+    before.velocity = speed, 0
+    return space
+
+
+@pytest.mark.parametrize(("links", "speed"), [(10, 100.0), (40, 300.0), (100, 300.0)])
+def test_a_chain_does_not_stretch(links, speed):
+    """At a frame a call: no joint parts by more than a twentieth of a link (pymunk's: hundreds of px, at four 3.7)."""
+    space = chain(links, speed)
+    ra.attach(space)
+    for _ in range(180):
+        space.step(DT)
+        assert max(map(gap, space.constraints)) < 1.0
+    length = space.bodies[-1].position.length + 10
+    assert length < 20 * links + 1.0
+
+
+def test_a_taut_chain_keeps_its_sway():
+    """A taut chain's sway is followed or slowed down, not damped: a pendulum on a chain of 20 keeps 0.8 of its swing.
+
+    Each link's own swing is of 100 rad/s and more under the load of 100 links' mass: a frame follows none of them.
+    """
+    space = chain(20, 0.0)
+    space.bodies[-1].mass = 100.0
+    space.bodies[-1].velocity = 300, 0
+    ra.attach(space)
+    reached = []
+    for _ in range(720):
+        space.step(DT)
+        reached.append(abs(space.bodies[-1].position.x))
+    assert max(reached[-240:]) > 0.8 * max(reached[:240])
+    assert max(map(gap, space.constraints)) < 0.5
+
+
+def test_joints_that_contradict_each_other_are_held():
+    """Two rods of other lengths between the same anchors, and a weld of three: nothing moves on by itself."""
+    draw = random.Random(5)
+    for _ in range(20):
+        space = pymunk.Space()
+        a, b = (pymunk.Body(draw.uniform(0.1, 10), draw.uniform(10, 1000)) for _ in range(2))
+        b.position = 60, 0
+        for length in (50.0, 60.0, draw.uniform(40, 90)):
+            joint = pymunk.PinJoint(a, b)
+            joint.distance = length
+            space.add(joint)
+        space.add(a, b, pymunk.PivotJoint(a, b, (30, 0)), pymunk.GearJoint(a, b, draw.uniform(0, 1), 1))
+        ra.attach(space)
+        for _ in range(300):
+            space.step(DT)
+        assert max(body.velocity.length for body in space.bodies) < 5.0
+        assert 40 < (a.position - b.position).length < 90
+        assert math.isfinite(a.angle + b.angle)
