@@ -28,6 +28,7 @@ import numpy as np
 import pymunk
 
 from .. import AreaContact, SimulationError, attach, attached
+from ..chipmunk import address_of
 from ..contact import arrays
 from ..kernel import tables
 
@@ -86,7 +87,14 @@ def whole(contact: AreaContact) -> None:
             count, r = count + 1, int(rows[r]["next"])
         assert count == t.counters[head + 1], f"free rows: {count}, {t.counters[head + 1]}"
     used = set(t.bodies["address"].tolist()) - {0}
-    assert used == store.known_bodies() <= set(store.owners), "addresses of bodies that are not held"
+    space = contact.space
+    held = {
+        *space.bodies,
+        *(shape.body for shape in space.shapes if shape.body is not None),
+        space.static_body,
+    }
+    held |= {body for joint in space.constraints for body in (joint.a, joint.b)}
+    assert used <= {address_of(body._body) for body in held}, "addresses of bodies that are not held"
 
 
 def add_body(space: pymunk.Space, draw: random.Random, n: int) -> None:

@@ -282,14 +282,8 @@ class Store:
             return array if n <= len(array) else _longer(array, max(n, 2 * len(array)))
 
         pool, forms, new = self.pool, self.forms, copy.copy(self)
-        new.pool = Pool(
-            *(longer(array, 0) for array in pool[:3]),
-            longer(pool.rings, 1),
-            longer(pool.boxes, 2),
-            longer(pool.arcs, 0),
-            longer(pool.heads, 3),
-        )
-        new.forms = Forms(*(longer(array, 3) for array in forms[:4]), longer(forms.raw, 4), *forms[5:])
+        new.pool = Pool._make(map(longer, pool, (0, 0, 0, 1, 2, 0, 3)))
+        new.forms = Forms._make([*map(longer, forms[:5], (3, 3, 3, 3, 4)), *forms[5:]])
         heads = len(new.forms.users)
         if 2 * heads > len(forms.table):
             new.forms = new.forms._replace(table=np.full(_power(4 * heads), -1, np.int32))
@@ -384,11 +378,11 @@ class Store:
         for name, more in zip(("point", "ring", "box"), shift):
             heads[name] += more
         kept = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
-        new.pool = Pool(*map(_filled, old, kept))
+        new.pool = Pool._make(map(_filled, old, kept))
         sums = np.array((points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()), np.int64)
         mirror = renumbered[forms.mirror[used]]
         told = forms.extent[used], mirror, forms.users[used], raw_at, raw
-        new.forms = Forms(*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums)
+        new.forms = Forms._make([*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums])
         for h in np.flatnonzero(raws):
             enter_form(new.forms, int(h))
         outlines = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]

@@ -62,7 +62,7 @@ class Register:
                 heads = self._outlines([shape])
             except ValueError:  # said when the space is stepped
                 return
-            self._forget()
+            self.forget()
             self._enter([shape], heads)
             del self._new[shape]
 
@@ -98,7 +98,7 @@ class Register:
             if self._outlines([shape])[0] != rows["outline"][slots[shape._hashid]]:
                 self.refresh(shape)
                 rows = self._store.known_shapes
-        bodies = {address_of(shape.body._body) for shape in known}
+        bodies = {address_of(shape.body._body) for shape in known if shape.body is not None}
         if bodies:
             self._call("placed_anew", _words(bodies))
 
@@ -126,7 +126,7 @@ class Register:
         new = list(self._new)
         heads = self._outlines(new)  # says what is wrong with one while nothing has changed
         state["pending"] = 2  # until all is done: whoever is interrupted looks through the space
-        self._forget()
+        self.forget()
         if self._bodies:
             addresses = _words(address_of(body._body) for body in self._bodies)
             self._store.room(0, len(addresses), 0)
@@ -146,8 +146,8 @@ class Register:
         state["shape_count"] = len(self.shapes)
         state["pending"] = 0
 
-    def _forget(self) -> None:
-        """What has gone is not in the tables any more."""
+    def forget(self) -> None:
+        """What has gone is not in the tables any more: nothing of it is read or written from now on."""
         if self._gone:
             self._call("shapes_go", np.array(self._gone, np.uint64))
             for ident in self._gone:

@@ -52,6 +52,8 @@ def attached_class(plain: Any) -> type:
             if shape in self._shapes:
                 self.__dict__[KEY]._register.shape_goes(shape)
             plain._remove_shape(self, shape)
+            if not self._locked:
+                self.__dict__[KEY]._register.forget()
 
         def _add_body(self: Any, body: pymunk.Body) -> None:
             plain._add_body(self, body)
@@ -61,6 +63,8 @@ def attached_class(plain: Any) -> type:
             if body in self._bodies:
                 self.__dict__[KEY]._register.body_goes(body)
             plain._remove_body(self, body)
+            if not self._locked:
+                self.__dict__[KEY]._register.forget()
 
         own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
         own |= {method.__name__: method for method in (_add_shape, _remove_shape, _add_body, _remove_body)}

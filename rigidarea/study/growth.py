@@ -250,14 +250,13 @@ class _World:
 
     def __init__(self, growing: Growing, scene: Scene, ours: bool) -> None:
         self.growing, self.scene = growing, scene
-        self.run: Any = get_peer("box2d").build(scene, BOX2D)
+        run: Any = get_peer("box2d").build(scene, BOX2D)
+        self.run = run
         moves = [body.kind == "dynamic" for body in scene.bodies]
-        self.moving = [
-            (made, body) for made, body, moving in zip(self.run.bodies, scene.bodies, moves) if moving
-        ]
+        self.moving = [(made, body) for made, body, moving in zip(run.bodies, scene.bodies, moves) if moving]
         self.gone = 0
         if growing.asleep:
-            self.run.world.sleeping_enabled = True
+            run.world.sleeping_enabled = True
             while any(made.awake for made, _ in self.moving):
                 self.run.advance(10)
 
@@ -412,6 +411,7 @@ def exponents(rows: Sequence[Row]) -> list[Row]:
                 if row["scene"] == name and row["size"] > 0 and row.get(key)
             ]
             if len(logs) > 1:
-                slope = float(np.polyfit(*zip(*logs), 1)[0])
+                sizes, costs = np.array(logs).T
+                slope = float(np.polyfit(sizes, costs, 1)[0])
                 found.append({"scene": name, "engine": key, "exponent": slope})
     return found
