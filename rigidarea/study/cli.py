@@ -17,6 +17,7 @@ BENCHES = {
     "frames": "crowds of up to 10,000 bodies",
     "growth": "levels, terrains, sleepers, comings and goings, beside pymunk and Box2D",
     "islands": "a pile, gears and balls in one level, each in its own substeps",
+    "joints": "chains, bridges, cloth, ragdolls, a car, beside pymunk at 1 and 4 steps a frame",
     "kernels": "one overlap, beside shapely",
     "memory": "of a crowd, a body",
     "sleep": "a sleeping pyramid of 5,050 boxes",
@@ -150,7 +151,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, growth, islands, page, start
+    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, page, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -180,6 +181,8 @@ def _bench(arguments: argparse.Namespace) -> int:
         draw.kernel_times(report, arguments.out)
     elif arguments.what == "islands":
         report = islands.islands()
+    elif arguments.what == "joints":
+        report = jointed.joints(arguments.scene)
     elif arguments.what == "growth":
         report = growth.growth(arguments.scene, arguments.bodies or (), arguments.peer)
         pictures = draw_bench.growth(report, arguments.out)

@@ -74,8 +74,8 @@ def pair(kind: str, seed: int, attached: bool, dt: float) -> list[float]:
 def test_one_joint_does_what_pymunks_own_does(kind):
     """Alone between two bodies a joint of pymunk's is solved at once: 60 draws, bounds and biases too.
 
-    To 2e-3 of the largest speed: places are half a step further on here (5e-6 s at up to 10 a second, which a bias of up
-    to 300 a second sees), and a joint gives way by 1e-5.
+    To 2e-3 of the largest speed: places are half a step further on here (5e-6 s at up to 10 a second, which a bias of
+    up to 300 a second sees), and a joint gives way by 1e-5.
     """
     for seed in range(60):
         own, theirs = pair(kind, seed, True, 1e-5), pair(kind, seed, False, 1e-5)
