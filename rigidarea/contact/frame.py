@@ -361,6 +361,15 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
 
 
 @kernel
+def _finish_jointed(s: Any, tables: Tables) -> None:
+    """What joints have made of the velocity of bodies that are in no space."""
+    for joint in joints_of(s):
+        for i in (joint.a, joint.b):
+            if i >= 0 and not tables.bodies[i].awake and tables.bodies[i].inverse_mass > 0.0:
+                write_motion(s, tables.bodies[i])
+
+
+@kernel
 def _undo(s: Any, tables: Tables) -> None:
     """A frame that failed: every body and joint as it was."""
     for k in range(tables.counters[AWAKE]):
@@ -403,6 +412,8 @@ def _whole_frame(s: Any, space: int) -> None:
     if not good:
         _undo(s, tables)
     _finish_frame(s, tables, good)
+    if good and s.explicit == 0:
+        _finish_jointed(s, tables)
     lap(s, REPORTING)
 
 

@@ -295,6 +295,10 @@ def _look_at_jointed(s: Any, tables: Tables) -> None:
                 body = tables.bodies[i]
                 read_place(s, body.address, body)
                 put_to_rest(s, body)
+                if (
+                    space_of(body.address) == 0
+                ):  # in no space: nobody moves it, but joints change its velocity
+                    read_motion(s, body.address, body)
 
 
 @kernel

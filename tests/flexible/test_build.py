@@ -63,6 +63,8 @@ def test_clamp_on_part_of_a_boundary():
     weight = 50.0 * np.pi * radius**2 * 9.81
     stiff = 1e10 * thick * height**3 / 12
     sag = weight * at**3 / (3 * stiff)
+    own = mat.density * thick * height * 9.81  # the strip's own weight, a length
+    sag += own * at**2 * (6 * length**2 - 4 * length * at + at**2) / (24 * stiff)
     depth = (12 * radius) ** (-1 / 3) * (weight / 1e9) ** (2 / 3) * 1.5  # of a lens of area L³/(12 R)
     ball = m.body(
         circle(radius, tolerance=1e-6), load, level="rigid", at=(at, 0.5 * height + radius - sag - depth)

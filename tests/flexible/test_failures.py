@@ -199,7 +199,8 @@ def test_runs_and_sizes_are_checked():
 
 def test_an_error_names_pair_and_stiffness():
     bar = np.array([[-2, -0.2], [2, -0.2], [2, 0.2], [-2, 0.2]])
-    sim = Simulation([Body(build([bar]), 1.0, 1.0), Body(build([bar]), 1.0, 1.0, angle=np.pi / 2)], k=7.0)
+    across = Body(build([bar]), 1.0, 1.0, (0.0, 2.3), angle=np.pi / 2, velocity=(0.0, -230.0, 0.0))
+    sim = Simulation([Body(build([bar]), 1.0, 1.0), across], k=7.0)
     with pytest.raises(
         RuntimeError, match=r"pair \(0, 1\) under k = 7, E of its bodies rigid and rigid; try"
     ):

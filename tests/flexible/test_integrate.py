@@ -91,7 +91,7 @@ def test_bounce_loses_nothing_and_levels_agree():
 def test_a_step_that_fails_says_so():
     bar = np.array([[-2, -0.2], [2, -0.2], [2, 0.2], [-2, 0.2]])
     a = Body(build([bar]), 1.0, 1.0)
-    b = Body(build([bar]), 1.0, 1.0, angle=np.pi / 2)
+    b = Body(build([bar]), 1.0, 1.0, (0.0, 2.3), angle=np.pi / 2, velocity=(0.0, -230.0, 0.0))
     sim = Simulation([a, b])
     with pytest.raises(RuntimeError, match=r"step 0 .* passes through"):
         sim.run(0.1, 0.01)
