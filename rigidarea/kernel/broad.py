@@ -136,11 +136,13 @@ def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
         carried = h * swing(shape, body)
         dx = h * body.vx
         dy = h * body.vy
+        gained_x = h * body.gain_x  # what is flown at once is kicked on its way
+        gained_y = h * body.gain_y
         if (
-            low_x - carried + min(0.0, dx) < shape.low_x
-            or low_y - carried + min(0.0, dy) < shape.low_y
-            or high_x + carried + max(0.0, dx) > shape.high_x
-            or high_y + carried + max(0.0, dy) > shape.high_y
+            low_x - carried + min(0.0, dx, dx + gained_x) < shape.low_x
+            or low_y - carried + min(0.0, dy, dy + gained_y) < shape.low_y
+            or high_x + carried + max(0.0, dx, dx + gained_x) > shape.high_x
+            or high_y + carried + max(0.0, dy, dy + gained_y) > shape.high_y
         ):
             _widen(shape, body, h, time)
             put_in_tree(tables, i, MOVING)
