@@ -224,6 +224,13 @@ PROGRAMS = {
         for space in spaces: steps(fill(space), 3)
         keep = [space.contact for space in spaces[:5]]
     """,
+    "spaces with a separate callback live until the end": """
+        spaces = [fill(Level()) for _ in range(3)]
+        for space in spaces:
+            space.on_collision(separate=lambda *arguments: None)
+            steps(space, 5)
+            space.me = space
+    """,
     "forked": """
         space = fill(Level())
         steps(space, 5)

@@ -293,10 +293,12 @@ class Program:
     def interrupted(self) -> None:
         """SIGINT comes at some time in the next operations."""
         delay = 10 ** self.draw.uniform(-5, -1.5)
-        threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT)).start()
+        timer = threading.Timer(delay, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
         until = time.monotonic() + delay + 0.01
         while time.monotonic() < until:
             self.draw.choice([self.step, self.add, self.step, self.copies])()
+        timer.join()
 
     def out_of_memory(self) -> None:
         """A table cannot grow, once."""
@@ -328,6 +330,12 @@ class Program:
                 self.draw.choice(operations)()
             except (KeyboardInterrupt, MemoryError, SimulationError):
                 pass
+            for thread in [t for t in threading.enumerate() if isinstance(t, threading.Timer)]:
+                try:
+                    thread.join()  # its interrupt may be late
+                    time.sleep(1e-3)
+                except KeyboardInterrupt:
+                    pass
             for space in self.spaces:
                 contact = attached(space)
                 if contact is not None:

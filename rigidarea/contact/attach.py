@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import time
 import weakref
 from collections.abc import Callable
@@ -10,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pymunk
+from numba.core.compiler_lock import global_compiler_lock
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
@@ -32,6 +34,14 @@ PENETRATION = 2e-4
 
 #: Frames on end go through machine code for no longer than about this (s): then Python may be interrupted.
 ATTENTION = 0.1
+
+
+if hasattr(os, "register_at_fork"):  # a child in which a thread that it has not would compile for ever
+    os.register_at_fork(
+        before=global_compiler_lock.acquire,
+        after_in_parent=global_compiler_lock.release,
+        after_in_child=global_compiler_lock.release,
+    )
 
 
 class SimulationError(RuntimeError):

@@ -5,12 +5,13 @@ of its global handler that it calls for a touching pair (`record.pre_solve`); th
 has Chipmunk's own (`record.hold`).
 
 What is put there is taken out again when it leaves, in whatever way: a body's position function when the body is
-removed, the space is detached or is garbage; the constraint in the latter two. At the interpreter's end nothing is: a
-thread that nobody waits for may be within a step.
+removed, the space is detached or is garbage; the constraint in the latter two, and when the interpreter ends and no
+thread is left that may be within a step.
 """
 
 from __future__ import annotations
 
+import threading
 import weakref
 from typing import Any
 
@@ -61,10 +62,10 @@ class Hook:
         self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
         own = joint, body, pivot
+        self._classes = classes  # Chipmunk looks there as long as the constraint is in the space
         self._end = weakref.finalize(
-            space, _take_out, space._space, own, constraints, self._held, store, classes
+            space, _ended, weakref.ref(space), space._space, own, constraints, self._held, store, classes
         )
-        self._end.atexit = False
 
     def hold(self, body: pymunk.Body) -> None:
         """The solve moves a body, unless its position function is the user's: that is to be given back."""
@@ -83,7 +84,9 @@ class Hook:
     def remove(self, space: pymunk.Space) -> None:
         """Take everything out of the space again."""
         state = self._state
-        self._end()
+        end = self._end.detach()
+        if end is not None:
+            _take_out(*end[2][1:])
         if int(self._functions[1]) == int(state["pre_solve_at"]):
             self._functions[1] = int(state["user_pre_solve"]) or int(state["no_pre_solve"])
 
@@ -105,6 +108,12 @@ def _roll(constraints: int, by: int) -> None:
     count = ffi.cast("int *", at)[0]
     listed = np.frombuffer(ffi.buffer(ffi.cast("void *", int(at[1])), 8 * count), np.uint64)
     listed[:] = np.roll(listed, by)
+
+
+def _ended(space: Any, *arguments: Any) -> None:
+    """The space is garbage, or the interpreter ends: then a thread that nobody waits for may be within its step."""
+    if space() is None or threading.active_count() == 1:
+        _take_out(*arguments)
 
 
 def _take_out(space: Any, own: Any, constraints: int, held: Any, store: Store, classes: Any) -> None:
