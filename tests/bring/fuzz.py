@@ -10,6 +10,7 @@ or in a ValueError in words ("expected", "must"), and starts no other program, c
 from __future__ import annotations
 
 import argparse
+import faulthandler
 import io
 import json
 import math
@@ -29,7 +30,9 @@ import numpy as np
 
 from rigidarea import bring
 
-MEMORY, SECONDS, WALL = 512 << 20, 2, 60
+MEMORY, SECONDS = 512 << 20, 2
+#: Seconds after which a process that takes no processor time is one that waits: long, for busy machines.
+WALL = 300
 READ, REFUSED, RAW, PROGRAM, BAD = 0, 3, 4, 5, 6
 WHAT = {RAW: "another error", PROGRAM: "started something", BAD: "not finite"}
 
@@ -306,7 +309,8 @@ def child(kind: str, path: str) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (size + MEMORY, size + MEMORY))
     used = math.ceil(time.process_time())  # nothing yet: a process starts at 0
     resource.setrlimit(resource.RLIMIT_CPU, (used + SECONDS, used + SECONDS))
-    signal.alarm(WALL)  # against waiting, which takes no processor time
+    faulthandler.register(signal.SIGALRM, chain=True)
+    signal.alarm(WALL)  # against waiting, which takes no processor time; it says where
     sys.addaudithook(watch)
     try:
         code = READ if use(kind, path) else BAD
@@ -325,9 +329,10 @@ def outcome(kind: str, path: str) -> str:
     process = os.fork()
     if process == 0:
         child(kind, path)
-    _, status = os.waitpid(process, 0)
+    _, status, used = os.wait4(process, 0)
     if os.WIFSIGNALED(status):
-        return f"ended by {signal.Signals(os.WTERMSIG(status)).name}"
+        seconds = used.ru_utime + used.ru_stime
+        return f"ended by {signal.Signals(os.WTERMSIG(status)).name} after {seconds:.1f} s of processor time"
     code = os.WEXITSTATUS(status)
     return {READ: "read", REFUSED: "refused"}.get(code) or WHAT.get(code, f"exit code {code}")
 

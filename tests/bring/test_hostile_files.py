@@ -5,6 +5,7 @@ import itertools
 import math
 import os
 import random
+import signal
 import socket
 import subprocess
 import sys
@@ -190,11 +191,11 @@ def test_the_fuzzer_sees_what_it_looks_for(tmp_path, monkeypatch):
         "started something": lambda: subprocess.run(["true"]),
         "not finite": lambda: False,
         "ended by SIGKILL": lambda: sum(1 for _ in iter(int, 1)),
-        "ended by SIGSEGV": lambda: os.kill(os.getpid(), 11),
+        "ended by SIGTERM": lambda: os.kill(os.getpid(), signal.SIGTERM),
     }
     for wanted, fault in faults.items():
         monkeypatch.setattr(fuzz, "use", lambda kind, path, fault=fault: fault())
-        assert fuzz.outcome("json", str(file)) == wanted
+        assert fuzz.outcome("json", str(file)).startswith(wanted)
     monkeypatch.setattr(fuzz, "use", lambda kind, path: bool(bytearray(1 << 30)))
     assert fuzz.outcome("json", str(file)) == "another error"  # MemoryError
 
