@@ -172,9 +172,10 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
         if i == 0 and joints == 0 and not somebody_touches(tables):
-            if not near_pairs(s, space, dt, dt):  # for all of it: it may be flown at once
+            # as far as the last substep would look, half of it beyond the frame
+            if not near_pairs(s, space, dt, dt):
                 return False
-            if nobody_comes_near(tables, dt - 0.5 * h):
+            if nobody_comes_near(tables, dt):
                 _fly(s, tables, dt, 0.5 * (dt - h), n)
                 return True
         kick(tables, s.frame)
