@@ -28,7 +28,8 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
             r[name] = rng.normal()
         r["e1"], r["e2"] = -rng.uniform(0.2, 1), rng.uniform(0.2, 1)
         r["alpha"], r["alpha_t"] = 10 ** rng.uniform(-3, -1, 2)
-        r["gamma_a"], r["gamma_b"], r["gamma_t"] = rng.uniform(0.3, 0.5), rng.uniform(0.0, 0.2), 0.3
+        r["gamma"], r["gamma_t"] = rng.uniform(0.3, 0.5), 0.3
+        r["own"], r["other"] = rng.uniform(4.0, 8.0), rng.uniform(-6.0, -2.0) / 2
         r["friction"], r["weight"] = friction, 1e-6
         r["l1"], r["l2"], r["lt"] = 1e6, 1e6, 0.0  # far from every bound
         r["f1"], r["f2"], r["ft"] = (r["l1"], r["l2"], r["lt"]) + rng.normal(size=3)
@@ -73,9 +74,8 @@ def dense(s: SimpleNamespace) -> tuple[np.ndarray, np.ndarray]:
             jacobian[at, 3 * r["a"] : 3 * r["a"] + 3] += own
             jacobian[at, 3 * r["b"] : 3 * r["b"] + 3] -= other
             right[at] = -(r["t1"], r["t2"], r["tt"])[j]
-        gamma = np.array([[r["gamma_a"], r["gamma_b"]], [r["gamma_b"], r["gamma_a"]]])
         block = np.zeros((3, 3))
-        block[:2, :2] = r["alpha"] * np.linalg.inv(gamma)
+        block[:2, :2] = r["alpha"] / r["gamma"] * np.array([[r["own"], r["other"]], [r["other"], r["own"]]])
         block[2, 2] = r["alpha_t"] / r["gamma_t"]
         compliance[3 * i : 3 * i + 3, 3 * i : 3 * i + 3] = block
         right[3 * i : 3 * i + 3] += block @ (r["f1"] - r["l1"], r["f2"] - r["l2"], r["ft"] - r["lt"])

@@ -105,7 +105,7 @@ def test_a_row_that_the_step_follows_is_k_times_area(kernel: Any, speed: float) 
         a, b = body(kernel, inverse_mass=0.5, vy=-speed), body(kernel)
         got = row_of(kernel, a, b, 1e-2, followed=math.inf, law=law, length=0.25)
         kernel.row.visit(got.row, a, b)
-        assert (got.row["alpha"], got.row["gamma_a"]) == (1.0, 0.0)
+        assert (got.row["alpha"], got.row["gamma"]) == (1.0, 0.0)
         assert got.row["l1"] == pytest.approx(force * 1e-2, rel=1e-12)
         assert a["vy"] == pytest.approx(-speed + 0.5 * force * 1e-2, rel=1e-12)
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from .constants import HIT, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
+from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
 from .patch import patch_of
@@ -121,23 +121,6 @@ def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     u = closing(r, a, b, 0.0)
     stiffness = region_stiffness(law, r.stiffness, r.chord)
     return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse_mass(r, a, b), h))
-
-
-@kernel
-def hit(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
-    """Whether a region at rest closes so fast that its bodies go deeper in a step than they are now.
-
-    Or so fast that it bounces, where a bounce is what was before.
-    """
-    u = closing(r, a, b, 1.0)
-    pushed = abs(closing(r, a, b, 0.0) - u) / h
-    if u <= REST_KICKS * max(law.gravity, pushed) * h:  # in a stack both fall alike: gravity counts
-        return False
-    if _bounced(law, pair, r):
-        stiffness = region_stiffness(law, r.stiffness, r.chord)
-        if u > _slow(law, pushed, stiffness * inverse_mass(r, a, b), h):
-            return True
-    return bool(law.followed < math.inf and u * h > max(r.depth, HIT * min(size_of(a), size_of(b))))
 
 
 @kernel(forceinline=True)

@@ -32,7 +32,6 @@ FACTOR = record(
         ("grip", "i4"),
         ("e11", "f8"),  # compliance of the ends and of friction (1/mass)
         ("e12", "f8"),
-        ("e22", "f8"),
         ("et", "f8"),
         *(
             (f"a{x}{i}", "f8") for i in "12t" for x in "xyw"
@@ -146,7 +145,7 @@ def _take(
 def _bears(row: Any, f: Any) -> bool:
     """Which unknowns of a row take part, and their compliance."""
     most = row.friction * (row.l1 + row.l2)
-    given = row.gamma_a == 0.0  # an impact that the steps follow: its force is given
+    given = row.gamma == 0.0  # an impact that the steps follow: its force is given
     f.first = not given and row.l1 > 0.0
     f.second = not given and row.ends == 2 and row.l2 > 0.0
     if row.ends == 0:
@@ -154,8 +153,7 @@ def _bears(row: Any, f: Any) -> bool:
         free = row.l1 * row.l1 + row.lt * row.lt < limit * limit
         f.first = not given and free and row.low < row.l1 < row.high
         f.grip = row.grips and free and row.low_t < row.lt < row.high_t
-    elif row.ends == 2 and not (f.first and f.second):
-        # what a half open face does follows both of its ends, and both bodies: no energy has that for its slope
+    elif row.ends == 2 and not (f.first and f.second):  # which end of a face opens, the sweeps find
         f.first = 0
         f.second = 0
     if row.ends > 0:
@@ -163,15 +161,9 @@ def _bears(row: Any, f: Any) -> bool:
     f.p1 = 0.0
     f.p2 = 0.0
     f.pt = 0.0
-    f.e12 = 0.0
-    if f.first and f.second:
-        det = row.alpha / (row.gamma_a * row.gamma_a - row.gamma_b * row.gamma_b)
-        f.e11 = row.gamma_a * det
-        f.e22 = f.e11
-        f.e12 = -row.gamma_b * det
-    else:
-        f.e11 = row.alpha / row.gamma_a if f.first else 0.0
-        f.e22 = row.alpha / row.gamma_a if f.second else 0.0
+    give = 0.0 if given else row.alpha / row.gamma
+    f.e11 = give * row.own
+    f.e12 = give * row.other
     f.et = row.alpha_t / row.gamma_t
     return bool(f.first or f.second or f.grip)
 
@@ -247,7 +239,7 @@ def take_part(tables: Tables) -> None:
             s12 = nx * x2 + ny * y2 + wa * f.aw2 + wb * f.bw2
             s22 = nx * x2 + ny * y2 + va * f.aw2 + vb * f.bw2
             s2t = nx * xt + ny * yt + va * f.awt + vb * f.bwt
-        _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e22, s2t, stt + f.et, LEAST_GIVE * row.weight)
+        _invert(f, s11 + f.e11, s12 + f.e12, s1t, s22 + f.e11, s2t, stt + f.et, LEAST_GIVE * row.weight)
         _take(ma, f, f.ax1, f.ay1, f.aw1, f.ax2, f.ay2, f.aw2, f.axt, f.ayt, f.awt)
         _take(mb, f, f.bx1, f.by1, f.bw1, f.bx2, f.by2, f.bw2, f.bxt, f.byt, f.bwt)
 
@@ -274,11 +266,10 @@ def _residual(row: Any, f: Any, a: Any, b: Any) -> None:
     v2 = v - (turn * row.e2 + row.t2)
     f.r1 = 0.0
     f.r2 = 0.0
-    if f.first and f.second:
+    if f.first:
         f.r1 = f.e11 * (row.f1 - row.l1) + f.e12 * (row.f2 - row.l2) + v1
-        f.r2 = f.e12 * (row.f1 - row.l1) + f.e22 * (row.f2 - row.l2) + v2
-    elif f.first:
-        f.r1 = f.e11 * (row.f1 - row.l1) + v1
+    if f.second:
+        f.r2 = f.e12 * (row.f1 - row.l1) + f.e11 * (row.f2 - row.l2) + v2
     slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
     f.rt = f.et * (row.ft - row.lt) + slip - row.tt
 
@@ -382,7 +373,7 @@ def descend(tables: Tables, before: float, enough: float) -> float:
             f.pt = f.zt + beta * f.pt
             ahead += f.r1 * f.p1 + f.r2 * f.p2 + f.rt * f.pt
             curvature += (
-                f.e11 * f.p1 * f.p1 + f.e22 * f.p2 * f.p2 + 2.0 * f.e12 * f.p1 * f.p2 + f.et * f.pt * f.pt
+                f.e11 * f.p1 * f.p1 + f.e11 * f.p2 * f.p2 + 2.0 * f.e12 * f.p1 * f.p2 + f.et * f.pt * f.pt
             )
     if not (ahead > 0.0 and curvature > 0.0):
         return 0.0
@@ -441,7 +432,7 @@ def _best(tables: Tables) -> float:
             row = tables.rows[i]
             gain += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
             curvature += (
-                f.e11 * f.z1 * f.z1 + f.e22 * f.z2 * f.z2 + 2.0 * f.e12 * f.z1 * f.z2 + f.et * f.zt * f.zt
+                f.e11 * f.z1 * f.z1 + f.e11 * f.z2 * f.z2 + 2.0 * f.e12 * f.z1 * f.z2 + f.et * f.zt * f.zt
             )
             _give(row, f, tables.mobility[row.a], tables.mobility[row.b])
     for k in range(tables.counters[LIVE]):

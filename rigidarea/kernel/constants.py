@@ -63,10 +63,6 @@ LOAD_TIME = 0.5
 STIFFER = 1.2
 SOFTER = 1.02
 TOO_STIFF = 10.0
-#: A force that has grown with its stiffness, by this factor at least for so many frames on end, is no load: the two are
-#: held overlapped by joints. (A load is what it is, however stiff that on which it lies.)
-HELD = 1.02
-HELD_FRAMES = 10
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1

@@ -241,27 +241,28 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     ia = a.inverse_moment
     ib = b.inverse_moment
     masses = (a.inverse_mass + b.inverse_mass) * (row.nx * row.nx + row.ny * row.ny)
-    row.m11 = masses + row.arm_a * row.arm_a * ia + row.arm_b * row.arm_b * ib
-    row.m22 = masses + row.lean_a * row.lean_a * ia + row.lean_b * row.lean_b * ib
-    row.m12 = row.arm_a * row.lean_a * ia + row.arm_b * row.lean_b * ib
-    if row.m11 <= 0.0:
+    row.w11 = masses + row.arm_a * row.arm_a * ia + row.arm_b * row.arm_b * ib
+    row.w22 = masses + row.lean_a * row.lean_a * ia + row.lean_b * row.lean_b * ib
+    row.w12 = row.arm_a * row.lean_a * ia + row.arm_b * row.lean_b * ib
+    if row.w11 <= 0.0:
         return False
-    row.weight = row.m11
+    row.weight = row.w11
     row.f1 = 0.0
     row.f2 = 0.0
     row.ft = 0.0
     row.alpha = JOINT_GIVE / (1.0 + JOINT_GIVE)
-    row.gamma_a = row.alpha / (JOINT_GIVE * row.m11)
-    row.gamma_b = 0.0
+    row.gamma = row.alpha / (JOINT_GIVE * row.w11)
+    row.own = 1.0
+    row.other = 0.0
     row.alpha_t = 0.0
     row.gamma_t = 1.0
-    row.grips = row.low_t < row.high_t and row.m22 > 0.0
+    row.grips = row.low_t < row.high_t and row.w22 > 0.0
     if row.grips:
         row.alpha_t = row.alpha
-        row.gamma_t = row.alpha / (JOINT_GIVE * row.m22)
-        row.m11 *= 1.0 + JOINT_GIVE
-        row.m22 *= 1.0 + JOINT_GIVE
-        row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m12)
+        row.gamma_t = row.alpha / (JOINT_GIVE * row.w22)
+        row.w11 *= 1.0 + JOINT_GIVE
+        row.w22 *= 1.0 + JOINT_GIVE
+        row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     if kind == SPRING or kind == ROTARY_SPRING:
         _load_spring(row, joint, a, b, h, followed)
     elif joint.step > 0.0:
@@ -324,7 +325,7 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float
     theta = 0.0 if phase2 <= followed else 1.0 - (followed / phase2) ** 2
     q = math.expm1(min(700.0, damping * h * w)) + theta * phase2
     row.alpha = 1.0 / (1.0 + q)
-    row.gamma_a = q / w * row.alpha
+    row.gamma = q / w * row.alpha
     row.f1 = h * force
     row.l1 = row.f1
 
@@ -344,17 +345,17 @@ def clamp_joint(row: Any, l1: float, lt: float) -> tuple[float, float]:
 @kernel(forceinline=True)
 def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
     """Changes of l and lt that a joint asks for at the closing speed v and the slip: both together, within bounds."""
-    r1 = row.alpha * (row.f1 - row.l1) + row.gamma_a * (v - row.t1)
+    r1 = row.alpha * (row.f1 - row.l1) + row.gamma * (v - row.t1)
     if not row.grips:  # alpha + gamma W = 1
         l1, _ = clamp_joint(row, row.l1 + r1, 0.0)
         return l1 - row.l1, 0.0
-    r1 = v - row.t1 - row.alpha / row.gamma_a * row.l1
+    r1 = v - row.t1 - row.alpha / row.gamma * row.l1
     rt = slip - row.tt - row.alpha_t / row.gamma_t * row.lt
-    lt = row.lt + (row.m11 * rt - row.m12 * r1) * row.det
+    lt = row.lt + (row.w11 * rt - row.w12 * r1) * row.det
     within = min(row.high_t, max(row.low_t, lt))
-    l1 = row.l1 + (row.m22 * r1 - row.m12 * rt) * row.det
+    l1 = row.l1 + (row.w22 * r1 - row.w12 * rt) * row.det
     if within != lt:  # an end of a groove that does not bear: the other alone
-        l1 = row.l1 + (r1 - row.m12 * (within - row.lt)) / row.m11
+        l1 = row.l1 + (r1 - row.w12 * (within - row.lt)) / row.w11
     l1, lt = clamp_joint(row, l1, within)
     return l1 - row.l1, lt - row.lt
 

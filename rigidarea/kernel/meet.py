@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .birth import arrives, crushed, enter, expect, hit, jumped_in, size_of
+from .birth import arrives, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .jit import kernel
 from .motion import (
@@ -97,21 +97,6 @@ def _face(pool: Pool, sa: Any, sb: Any, a: Any, b: Any) -> float:
 
 
 @kernel
-def _remember(regions: Any, pair: Any, stamp: int) -> None:
-    """What a pair bore that has parted, by a hair perhaps: should it join again, it begins with that."""
-    pair.bore = 0.0
-    pair.bore_t = 0.0
-    pair.bore_stamp = stamp
-    r = pair.head
-    while r >= 0:
-        region = regions[r]
-        if region.mode == REST or region.mode == NEARING:
-            pair.bore += (region.l1 + region.l2) / region.step
-            pair.bore_t += region.lt / region.step
-        r = region.next
-
-
-@kernel
 def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> bool:
     """Bring pair p's regions up to where its bodies are: their places, and which of them are new.
 
@@ -147,7 +132,6 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         return False
     if n == 0:
         if not fresh:
-            _remember(regions, pair, stamp)
             free_regions(regions, counters, pair.head)
             pair.head = -1
         return True
@@ -271,9 +255,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.lt = 0.0
             if region.mode >= STRUCK:
                 region.mode = REST
-            if (region.mode == REST and hit(law, pair, region, a, b, h)) or (
-                nearing and arrives(region, a, b, h)
-            ):
+            if nearing and arrives(region, a, b, h):
                 region.born = 1  # hit at a speed of which its present overlap says nothing
     free_regions(regions, counters, old)
     pair.head = kept
@@ -370,7 +352,6 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     pose_b = earlier(b, -ahead)
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
     kept = -1
-    count = 0
     ax, ay = centre_of(a, pose_a)
     bx, by = centre_of(b, pose_b)
     there = _there(pool, work, regions, old, n, ia, pose_a) if seat else 0
@@ -387,8 +368,6 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         r = counters[FREE_REGION]
         region = regions[r]
         fill(region, patch, ax, ay, bx, by)
-        if patch.reach > 3.0 * patch.depth:  # a plank on end, through and through: its width says nothing
-            region.depth = patch.reach
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
             continue
@@ -408,16 +387,8 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.step = h
         region.spring = 0.0
         region.tangent_stiffness = 0.0
-        count += 1
     if kept < 0:
         return True
-    if first and pair.bore_stamp == counters[SUBSTEP]:
-        r = kept
-        while r >= 0:
-            region = regions[r]
-            region.l1 = h * pair.bore / count
-            region.lt = h * pair.bore_t / count
-            r = region.next
     face = _face(pool, sa, sb, a, b)
     if pair.stiffness == 0.0:
         choose_stiffness(law, pair, face, a, b, h)

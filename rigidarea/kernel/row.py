@@ -14,8 +14,9 @@ so that alpha = 1, gamma = 0 is a given force, and alpha = 0 a given speed.
 
 A straight face is two such rows, at the ends e1, e2 of its straight stretch s, solved as one block with
 C [[a, b], [b, a]], a + b = 1/2, a - b = s / 6L: that is a bed's stiffness k L and, against turning, k s^3/12; F0 is
-shared so that k A acts at the centroid; and with both l >= 0 the resultant stays within the face. Friction is a
-third row along the tangent, bounded by mu (l1 + l2).
+shared so that k A acts at the centroid; and with both l >= 0 the resultant stays within the face. What gives way is
+their compliance, so that a face on one end is the slope of an energy as well. Friction is a third row along the
+tangent, bounded by mu (l1 + l2).
 
 n from A to B, t = (-n_y, n_x); an impulse l pushes A along -n and B along +n.
 """
@@ -49,10 +50,10 @@ ROW = record(
         ("lean_a", "f8"),
         ("lean_b", "f8"),
         ("alpha", "f8"),
-        ("gamma_a", "f8"),  # gamma [[a, b], [b, a]]
+        ("gamma", "f8"),
         ("f1", "f8"),  # h F0 of the ends
         ("t1", "f8"),  # vt
-        ("det", "f8"),  # one over its determinant; of a single end: one over m11
+        ("det", "f8"),  # of a joint: one over its determinant
         ("friction", "f8"),
         ("alpha_t", "f8"),
         ("gamma_t", "f8"),
@@ -66,16 +67,16 @@ ROW = record(
         # of two ends:
         ("e1", "f8"),
         ("e2", "f8"),
-        ("gamma_b", "f8"),
+        ("own", "f8"),  # their compliance [[own, other], [other, own]] / C
+        ("other", "f8"),
         ("f2", "f8"),
         ("t2", "f8"),
-        ("m11", "f8"),  # alpha + gamma C W
-        ("m12", "f8"),
-        ("m21", "f8"),
-        ("m22", "f8"),
+        ("w11", "f8"),  # mobility of the ends (1/mass)
+        ("w12", "f8"),
+        ("w22", "f8"),
         ("slip2", "f8"),
         ("l2", "f8"),
-        # of a joint (`joint`), which has m11, m12, m22 of both its unknowns:
+        # of a joint (`joint`), which has w11, w12, w22 of both its unknowns:
         ("low", "f8"),  # bounds of l1 and lt, and of their size
         ("high", "f8"),
         ("low_t", "f8"),
@@ -369,19 +370,21 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.l1 += row.l2
         row.l2 = 0.0
         row.t1 = 0.5 * (row.t1 + row.t2)
+    row.gamma = gamma
+    row.w11 = inverse
+    row.w12 = 0.0
+    row.w22 = 0.0
+    row.own = 1.0
+    row.other = 0.0
+    row.f1 = force
+    row.f2 = 0.0
+    row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
+    row.slip2 = 0.0
     if row.ends == 1:
-        row.gamma_a = gamma
-        row.gamma_b = 0.0
-        row.f1 = force
-        row.f2 = 0.0
-        row.m11 = row.alpha + gamma * inverse
-        row.det = 1.0 / row.m11
-        row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
-        row.slip2 = 0.0
         return
     turning = (row.e2 - row.e1) / (6.0 * r.chord)
-    row.gamma_a = gamma * (0.25 + 0.5 * turning)
-    row.gamma_b = gamma * (0.25 - 0.5 * turning)
+    row.own = 0.5 / turning + 1.0
+    row.other = 1.0 - 0.5 / turning
     row.f1 = force * row.e2 / (row.e2 - row.e1)
     row.f2 = force - row.f1
     a1 = r.arm_a - row.e1
@@ -390,14 +393,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     b2 = r.arm_b - row.e2
     row.slip1 = a1 * lean_a + b1 * lean_b
     row.slip2 = a2 * lean_a + b2 * lean_b
-    w11 = masses + a1 * a1 * ia + b1 * b1 * ib
-    w12 = masses + a1 * a2 * ia + b1 * b2 * ib
-    w22 = masses + a2 * a2 * ia + b2 * b2 * ib
-    row.m11 = row.alpha + row.gamma_a * w11 + row.gamma_b * w12
-    row.m12 = row.gamma_a * w12 + row.gamma_b * w22
-    row.m21 = row.gamma_a * w12 + row.gamma_b * w11
-    row.m22 = row.alpha + row.gamma_a * w22 + row.gamma_b * w12
-    row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
+    row.w11 = masses + a1 * a1 * ia + b1 * b1 * ib
+    row.w12 = masses + a1 * a2 * ia + b1 * b2 * ib
+    row.w22 = masses + a2 * a2 * ia + b2 * b2 * ib
 
 
 @kernel(forceinline=True)
@@ -416,12 +414,32 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
 
 
 @kernel(forceinline=True)
+def _press(
+    l1: float, l2: float, r1: float, r2: float, m11: float, m12: float, m21: float, m22: float
+) -> tuple[float, float]:
+    """What both ends of a face add, of what is left to solve; an end that would pull is open."""
+    det = 1.0 / (m11 * m22 - m12 * m21)
+    d1 = (r1 * m22 - m12 * r2) * det
+    d2 = (m11 * r2 - m21 * r1) * det
+    if l1 + d1 < 0.0 or l2 + d2 < 0.0:
+        if l1 + d1 < l2 + d2:
+            d1 = -l1
+            d2 = max(-l2, (r2 - m21 * d1) / m22)
+        else:
+            d2 = -l2
+            d1 = max(-l1, (r1 - m12 * d2) / m11)
+    return d1, d2
+
+
+@kernel(forceinline=True)
 def visit(row: Any, a: Any, b: Any) -> float:
-    """Solve one row for the bodies' present velocities: both ends as a block, then friction under them.
+    """Solve one row for the bodies' present velocities: its ends and the friction under them, all at once.
 
     Returns by how much that has changed the speed at which the row's bodies close or slip (length/time).
 
-    Friction sees what the ends have just done to the slip (`slip1`, `slip2`) before the bodies do: one push for all.
+    Friction that grips is eliminated; where that is more than its bound it slides, as much as the ends then bear: the
+    local problem of non-smooth contact dynamics, solved exactly (M. Jean, "The non-smooth contact dynamics method",
+    1999, doi:10.1016/S0045-7825(98)00383-1). Normal force and friction by turns diverge where a body turns easily.
     """
     ux = a.vx - b.vx
     uy = a.vy - b.vy
@@ -433,34 +451,52 @@ def visit(row: Any, a: Any, b: Any) -> float:
         row.lt += dt
         push(row, a, b, d1, 0.0, dt)
         return max(abs(d1), abs(dt)) * row.weight
+    gamma = row.gamma
+    c1 = gamma * row.slip1
+    grips = row.mt * (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt))
+    k1 = row.mt * row.gamma_t * row.slip1
     if row.ends == 1:
-        d1 = (row.alpha * (row.f1 - row.l1) + row.gamma_a * (v - row.t1)) * row.det
-        d1 = max(d1, -row.l1)
+        r1 = row.alpha * (row.f1 - row.l1) + gamma * (v - row.t1)
+        m11 = row.alpha + gamma * row.w11
         d2 = 0.0
+        d1 = max(-row.l1, (r1 - c1 * grips) / (m11 - c1 * k1))
+        dt = grips - k1 * d1
+        if abs(row.lt + dt) > row.friction * (row.l1 + d1):
+            side = math.copysign(row.friction, row.lt + dt)
+            if m11 + c1 * side > 0.0:
+                d1 = max(-row.l1, (r1 - c1 * (side * row.l1 - row.lt)) / (m11 + c1 * side))
+            dt = side * (row.l1 + d1) - row.lt
     else:
         turn = a.w - b.w
-        v1 = v - (turn * row.e1 + row.t1)
-        v2 = v - (turn * row.e2 + row.t2)
-        r1 = row.alpha * (row.f1 - row.l1) + (row.gamma_a * v1 + row.gamma_b * v2)
-        r2 = row.alpha * (row.f2 - row.l2) + (row.gamma_a * v2 + row.gamma_b * v1)
-        d1 = (r1 * row.m22 - row.m12 * r2) * row.det
-        d2 = (row.m11 * r2 - row.m21 * r1) * row.det
-        if row.l1 + d1 < 0.0 or row.l2 + d2 < 0.0:  # one end is open
-            if row.l1 + d1 < row.l2 + d2:
-                d1 = -row.l1
-                d2 = max(-row.l2, (r2 - row.m21 * d1) / row.m22)
-            else:
-                d2 = -row.l2
-                d1 = max(-row.l1, (r1 - row.m12 * d2) / row.m11)
+        left1 = row.alpha * (row.f1 - row.l1)
+        left2 = row.alpha * (row.f2 - row.l2)
+        r1 = row.own * left1 + row.other * left2 + gamma * (v - (turn * row.e1 + row.t1))
+        r2 = row.other * left1 + row.own * left2 + gamma * (v - (turn * row.e2 + row.t2))
+        m11 = row.alpha * row.own + gamma * row.w11
+        m12 = row.alpha * row.other + gamma * row.w12
+        m22 = row.alpha * row.own + gamma * row.w22
+        c2 = gamma * row.slip2
+        k2 = row.mt * row.gamma_t * row.slip2
+        d1, d2 = _press(
+            row.l1, row.l2, r1 - c1 * grips, r2 - c2 * grips,
+            m11 - c1 * k1, m12 - c1 * k2, m12 - c2 * k1, m22 - c2 * k2,
+        )  # fmt: skip
+        dt = grips - k1 * d1 - k2 * d2
+        both = row.l1 + row.l2
+        if abs(row.lt + dt) > row.friction * (both + d1 + d2):
+            side = math.copysign(row.friction, row.lt + dt)
+            q1 = c1 * side
+            q2 = c2 * side
+            if m11 + q1 > 0.0 and m22 + q2 > 0.0 and (m11 + q1) * (m22 + q2) > (m12 + q1) * (m12 + q2):
+                slides = side * both - row.lt
+                d1, d2 = _press(
+                    row.l1, row.l2, r1 - c1 * slides, r2 - c2 * slides,
+                    m11 + q1, m12 + q1, m12 + q2, m22 + q2,
+                )  # fmt: skip
+            dt = side * (both + d1 + d2) - row.lt
         row.l2 += d2
-        slip -= d2 * row.slip2
     row.l1 += d1
-    slip -= d1 * row.slip1
-    most = row.friction * (row.l1 if row.ends == 1 else row.l1 + row.l2)
-    lt = row.lt + (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt)) * row.mt
-    lt = min(most, max(-most, lt))
-    dt = lt - row.lt
-    row.lt = lt
+    row.lt += dt
     push(row, a, b, d1, d2, dt)
     return max(abs(d1 + d2), abs(dt)) * row.weight
 
@@ -487,12 +523,6 @@ def stiffen(row: Any) -> bool:
 def harden(row: Any, rigid: float) -> None:
     """Take so much of a row's give."""
     row.alpha -= rigid
-    row.m11 -= rigid
-    if row.ends == 1:
-        row.det = 1.0 / row.m11
-    else:
-        row.m22 -= rigid
-        row.det = 1.0 / (row.m11 * row.m22 - row.m12 * row.m21)
 
 
 @kernel(forceinline=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import HELD, HELD_FRAMES, LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
+from .constants import LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
 from .jit import kernel
 from .tables import AWAKE, LAW_AREA, LED, NEAR, Law, Tables
 
@@ -101,7 +101,6 @@ def carry(pair: Any, load: float, dt: float, most: float) -> None:
     That of the less loaded of its two bodies, not the pair's: where a body lies on several, each bears as much as it is
     stiff, and stiff as it bears they would share the load in any way at all, and go on sharing it anew.
     Too soft, it stiffens; far too stiff, it softens slowly, for every change moves what lies on it.
-    What joints hold overlapped presses back as much as it is stiff: if that does not take it apart it is left as it is.
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pressed = pair.carrying / dt
@@ -109,11 +108,6 @@ def carry(pair: Any, load: float, dt: float, most: float) -> None:
         pair.firm = max(wanted, min(most, pressed) / pair.area)
         k = pair.stiffness
         if wanted > k:
-            pair.held = pair.held + 1.0 if pressed > HELD * pair.pressed else 0.0
-            pair.pressed = pressed
-        else:
-            pair.held = 0.0
-        if wanted > k and pair.held <= HELD_FRAMES:
             pair.stiffness = STIFFER * k
         elif TOO_STIFF * wanted < k:
             pair.stiffness = k / SOFTER

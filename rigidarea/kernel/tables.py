@@ -145,9 +145,6 @@ PAIR = record(
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
-        ("bore", "f8"),  # force along its directions, and across, when it was last found to have parted
-        ("bore_t", "f8"),
-        ("bore_stamp", "i8"),  # in which substep that was
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
@@ -184,8 +181,6 @@ PAIR = record(
         ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
-        ("pressed", "f8"),  # the force when it was last made stiffer
-        ("held", "f8"),  # for how many frames on end the force has grown by that
     ],
 )
 
@@ -439,9 +434,6 @@ def _renew(pair: Any) -> None:
     pair.axis_y = 0.0
     pair.parted = -1
     pair.waiting = -1
-    pair.held = 0.0
-    pair.pressed = 0.0
-    pair.bore_stamp = -1
 
 
 @entry
