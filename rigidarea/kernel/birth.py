@@ -33,12 +33,14 @@ def touch(
     h: float,
     unseen: float,
     turn: float,
+    leave: float,
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
     Nor if its direction was another there: by an angle whose cosine is no more than `turn` (0: whatever it was).
 
-    Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
+    leave: the depth that is to be left (length): of what comes to rest there, that at which it lies.
+    Found at depth d beyond it, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
     u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
     there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms are:
     what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
@@ -49,13 +51,15 @@ def touch(
     nx = region.nx
     ny = region.ny
     for _ in range(3):
-        d = region.depth
+        d = region.depth - leave
         u = closing(region, a, b, 0.5)
         gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
         u -= gain * back
         root = u * u - 2.0 * gain * d
         if u <= 0.0 or root < 0.0:
             return come
+        if d <= 0.0:
+            return True
         tau = 2.0 * d / (u + math.sqrt(root))
         if tau + back > min(MOST_ARRIVED * unseen, since_of(a, b)):
             return come
@@ -87,7 +91,7 @@ def touch(
         fill(region, patch, ax, ay, bx, by)
         region.back = then
         back = then
-        if patch.depth < 0.01 * d:
+        if patch.depth - leave < 0.01 * d:
             return come
     return come
 
@@ -242,14 +246,15 @@ def enter(
         region.mode = REST if placed else IMPACT
     else:
         turn = TURNS if back == 0.0 and region.depth <= height else 0.0
-        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn)
+        leave = region.rest_depth if pair.elasticity == 0.0 else 0.0
+        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn, leave)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
     gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
     u -= gain * region.back
     slow = _slow(law, gain, stiffness * inverse, h)
-    if region.mode == REST and not placed and phase2 > law.followed and min(1.0, pair.elasticity) * u > slow:
+    if region.mode == REST and not placed and phase2 > law.followed and pair.elasticity * u > slow:
         region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
     region.first_speed = max(u, 0.0)
     region.opened = 0
@@ -292,14 +297,14 @@ def expect(
         return False  # it will be there, and say so itself
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
-    if min(1.0, pair.elasticity) * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
+    if pair.elasticity * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
         region.mode = STRUCK
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
         return (
             first
-            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0)
+            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0, 0.0)
             and region.back >= -0.5 * h
         )
     region.mode = NEARING

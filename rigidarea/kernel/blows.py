@@ -61,7 +61,7 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
 
 
 @kernel
-def _give_back_less(row: Any, r: Any, a: Any, b: Any) -> bool:
+def _give_back_less(row: Any, r: Any, a: Any, b: Any, elasticity: float) -> bool:
     """Whether a bounce has added energy: it is to leave more slowly then.
 
     Friction that has turned the slip round had work to give, of which Newton's restitution does not know (T. R. Kane,
@@ -69,7 +69,7 @@ def _give_back_less(row: Any, r: Any, a: Any, b: Any) -> bool:
     friction likewise; slower by d at the ends it is l d / 2 less.
     """
     normal = row.l1 + row.l2
-    if r.mode != STRUCK or normal == 0.0 or drives(a) or drives(b):
+    if r.mode != STRUCK or normal == 0.0 or drives(a) or drives(b) or elasticity > 1.0:
         return False
     vx = a.vx + a.came_vx - b.vx - b.came_vx
     vy = a.vy + a.came_vy - b.vy - b.came_vy
@@ -94,5 +94,6 @@ def calm_bounces(tables: Tables) -> bool:
         row = tables.rows[i]
         if row.ends > 0:
             region = tables.regions[row.region]
-            less |= _give_back_less(row, region, tables.bodies[row.a], tables.bodies[row.b])
+            elasticity = tables.pairs[region.pair].elasticity
+            less |= _give_back_less(row, region, tables.bodies[row.a], tables.bodies[row.b], elasticity)
     return less

@@ -91,8 +91,9 @@ def _open(r: Any, elasticity: float, speed: float, inverse: float) -> None:
     others = (speed - r.first_speed + r.slowed) / r.lasted if r.lasted > 0.0 else 0.0
     touch = r.first_speed + others * r.late
     energy = 0.5 * touch * touch / inverse
-    missing = energy * (1.0 - min(1.0, elasticity) ** 2) - r.loss
-    r.withheld = min(1.0, max(0.0, missing / r.work)) if r.work > 0.0 else 0.0
+    missing = energy * (1.0 - elasticity**2) - r.loss
+    least = 0.0 if elasticity <= 1.0 else -math.inf  # above one it gives more than it took, as it is asked to
+    r.withheld = min(1.0, max(least, missing / r.work)) if r.work > 0.0 else 0.0
 
 
 @kernel
@@ -119,7 +120,7 @@ def impact_force(r: Any, elasticity: float, elastic: float, speed: float, invers
     r.elastic = elastic
     r.excess = force - elastic
     stop = speed / (h * inverse)  # where it turns round within the step, the rest of it is opening already
-    if elasticity < 1.0 and 0.0 <= stop <= force and speed > 0.0:
+    if elasticity != 1.0 and 0.0 <= stop <= force and speed > 0.0:
         moved = 0.5 * h * speed * stop / force
         r.work += elastic * moved
         r.loss += r.excess * moved

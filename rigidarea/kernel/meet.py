@@ -216,6 +216,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             patch.depth,
             patch.reach,
             patch.blind,
+            0 if past else patch.radial,
         )
         region.born = 1 if born else 0
         if born:

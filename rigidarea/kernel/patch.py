@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from .direction import chord_direction, nodal_direction
 from .extent import extent
 from .jit import kernel
 from .place import Pose
 from .pool import Pool
-from .tables import CHORD, Law
+from .tables import CHORD, LAW_AREA, Law
 from .turning import curvature_of_disc, curvatures
 from .work import A_EDGE, Work
+
+#: A disc pressed in so deep that the centroid is nearer to its middle than this part of its radius keeps the chord's.
+DEEP = 0.1
 
 
 class Patch(NamedTuple):
@@ -31,6 +34,7 @@ class Patch(NamedTuple):
     depth: float
     reach: float  # its extent along the direction
     blind: bool  # the chord is nothing: no direction of its own
+    radial: int  # whose radius the direction is: 1 A's, 2 B's, 3 both'
 
 
 @kernel
@@ -74,6 +78,25 @@ def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float, 
 
 
 @kernel
+def _radial(work: Work, loop: Any, disc: int, nx: float, ny: float) -> tuple[float, float, int]:
+    """A disc's direction, from A to B: the radius through the centroid, so that no normal force turns the disc.
+
+    Across a straight edge, and between discs, that is the chord's normal (nx, ny); at a corner it need not be.
+    """
+    for i in range(loop.start, loop.stop):
+        if work.label[i] == disc and work.bows[i, 2] != 0.0:
+            x = loop.x - work.bows[i, 0]
+            y = loop.y - work.bows[i, 1]
+            length = math.sqrt(x * x + y * y)
+            if disc != A_EDGE:
+                length = -length
+            if abs(length) > DEEP * abs(work.bows[i, 2]) and (x * nx + y * ny) * length > 0.0:
+                return x / length, y / length, 1
+            break
+    return nx, ny, 0
+
+
+@kernel
 def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose) -> Patch:
     """Loop k of the work, of outlines ia at `pose` and ib."""
     loop = work.loops[k]
@@ -95,9 +118,14 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
         chord = math.sqrt(loop.area)
     else:
         middle = loop.lever / chord
+    straight = min(loop.straight, chord)
+    radial = 0
+    if not blind and law.direction == CHORD and law.law == LAW_AREA and (head.disc or pool.heads[ib].disc):
+        nx, ny, radial = _radial(work, loop, A_EDGE if head.disc else 1 - A_EDGE, nx, ny)
+        if radial:
+            radial = (1 if head.disc else 0) | (2 if pool.heads[ib].disc else 0)
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
-    straight = min(loop.straight, chord)
     depth = chord
     reach = chord
     curve_a = 0.0
@@ -125,7 +153,9 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
                 curve_a, curve_b = curvatures(
                     work.polygon, work.label, work.bows, loop.start, loop.stop, loop.area, chord
                 )
-    return Patch(loop.area, x, y, wx, wy, chord, middle, straight, curve_a, curve_b, depth, reach, blind)
+    return Patch(
+        loop.area, x, y, wx, wy, chord, middle, straight, curve_a, curve_b, depth, reach, blind, radial
+    )
 
 
 @kernel

@@ -8,6 +8,9 @@ from .jit import kernel
 from .patch import Patch
 from .tables import LAW_AREA, Law
 
+#: An arm of less than this part of the lever along the direction is a radius, but for rounding.
+RADIAL = 1e-9
+
 
 @kernel
 def fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) -> None:
@@ -27,6 +30,13 @@ def fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) 
     region.arm_b = (patch.x - bx) * patch.ny - (patch.y - by) * patch.nx
     region.lean_a = (patch.x - ax) * patch.nx + (patch.y - ay) * patch.ny
     region.lean_b = (patch.x - bx) * patch.nx + (patch.y - by) * patch.ny
+    region.radial = 0
+    if patch.radial & 1 and abs(region.arm_a) <= RADIAL * abs(region.lean_a):
+        region.arm_a = 0.0
+        region.radial = 1
+    if patch.radial & 2 and abs(region.arm_b) <= RADIAL * abs(region.lean_b):
+        region.arm_b = 0.0
+        region.radial |= 2
 
 
 @kernel
@@ -43,6 +53,7 @@ def turn_to(region: Any, nx: float, ny: float) -> None:
     region.ny = ny
     region.middle = 0.0
     region.straight = 0.0
+    region.radial = 0
 
 
 @kernel(forceinline=True)

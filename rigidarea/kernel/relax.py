@@ -73,12 +73,14 @@ def end_relaxing(tables: Tables, h: float) -> None:
 @kernel(forceinline=True)
 def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
     """Parted while they slip, two bodies have other arms: spin makes good what the rows' change gains by that."""
-    share = a.inverse_moment + b.inverse_moment
-    if share > 0.0:
+    ia = a.inverse_moment if row.friction > 0.0 or row.arm_a != 0.0 else 0.0  # nothing turns a smooth disc
+    ib = b.inverse_moment if row.friction > 0.0 or row.arm_b != 0.0 else 0.0
+    if ia + ib > 0.0:
         normal = row.was1 - row.l1 + row.was2 - row.l2
         along = row.was_t - row.lt
         jx = normal * row.nx - along * row.ny
         jy = normal * row.ny + along * row.nx
-        turn = h * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx)) * a.inverse_moment * b.inverse_moment / share
-        a.w += turn
-        b.w += turn
+        spin = h * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx))
+        turn = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
+        a.w += turn if ia > 0.0 else 0.0
+        b.w += turn if ib > 0.0 else 0.0

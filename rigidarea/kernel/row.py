@@ -162,7 +162,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     touch = full - gain * time
     turn = a.w - b.w
     turn_gain = (a.kick_w - b.kick_w) / h
-    e = min(1.0, elasticity) if r.first_speed > 0.0 else 0.0
+    e = elasticity if r.first_speed > 0.0 else 0.0
     row.t1 = 0.0
     row.t2 = 0.0
     for end in range(row.ends):
@@ -197,13 +197,23 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 def _one_point(r: Any, a: Any, b: Any) -> None:
     """Arms of one point of application, bodies where they are now: the heavier one's gives way.
 
-    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere.
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. A radius
+    stays one; between two discs the direction is that of their centres now.
     """
     share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
+    if r.radial == 3:
+        x = b.x - a.x
+        y = b.y - a.y
+        length = math.copysign(math.sqrt(x * x + y * y), x * r.nx + y * r.ny)
+        r.nx = x / length if length != 0.0 else r.nx
+        r.ny = y / length if length != 0.0 else r.ny
+    elif r.radial:
+        share = 0.0 if r.radial == 1 else 1.0
     arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
     lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
-    r.arm_a -= share * arm
-    r.arm_b += (1.0 - share) * arm
+    if r.radial < 3:
+        r.arm_a -= share * arm
+        r.arm_b += (1.0 - share) * arm
     r.lean_a -= share * lean
     r.lean_b += (1.0 - share) * lean
 

@@ -238,6 +238,7 @@ REGION = record(
             "f8",
         ),  # curvatures of the two sides (1/length), where not both have a straight stretch; else 0
         ("curve_b", "f8"),
+        ("radial", "i4"),  # the direction is a radius: of A (1), of B (2), of both (3)
         ("depth", "f8"),  # extent along the direction (length)
         # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
         ("back", "f8"),
