@@ -60,10 +60,10 @@ OFFSETS = [
     *("circle_centre", "circle_radius", "segment_ends", "segment_radius"),
     *("poly_radius", "poly_count", "poly_planes"),
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_count"),
-    *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers"),
+    *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers", "arbiter_stamp"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
     *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve"),
-    *("space_gravity", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
+    *("space_gravity", "space_slop", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
 

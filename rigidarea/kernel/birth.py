@@ -40,10 +40,10 @@ def touch(
     Nor if its direction was another there: by an angle whose cosine is no more than `turn` (0: whatever it was).
 
     leave: the depth that is to be left (length): of what comes to rest there, that at which it lies.
-    Found at depth d beyond it, `back` ago, with the closing speed u there and what else pushes giving it g in a time: it was
-    u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so that
-    there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms are:
-    what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
+    Found at depth d beyond it, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
+    it was u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so
+    that there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms
+    are: what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
     well (`back` negative).
     """
     come = back > 0.0

@@ -145,6 +145,7 @@ PAIR = record(
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
+        ("lasting", "i8"),  # the frame in which it was taken to touch still, by a hair apart
         ("verdict", "i4"),  # 1: the user lets it collide, 0: not
         ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
@@ -457,6 +458,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.next = -1
         pair.near = -1
         pair.stamp = -1
+        pair.lasting = -2
         pair.verdict = 1
         pair.arbiter = 0
         pair.steer_c = 1.0

@@ -8,14 +8,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from .birth import size_of
+from .constants import PUT_FOLLOWED
 from .jit import kernel
 from .meet import earlier, jumped, overlap_before
 from .motion import afford
 from .overlap import OVERFLOW
 from .place import place
 from .pool import Pool
+from .region import closing
 from .sides import shown_sides
-from .tables import DRIFTS, MORE_WORK, NEAR, Tables
+from .tables import DRIFTS, MORE_WORK, NEAR, SUBSTEP, Tables
 from .work import Work
 
 
@@ -37,7 +40,8 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     if pair.stamp == frame:
         return bool(pair.verdict)
     if _heard(tables, pair):
-        return bool(pair.verdict) and pair.stamp == frame - 1  # friction and elasticity as they were set then
+        # friction and elasticity as they were set then
+        return bool(pair.verdict) and (pair.stamp == frame - 1 or pair.lasting == frame)
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     pair.friction = sa.friction * sb.friction
@@ -47,6 +51,30 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
     pair.surface_x = sb.surface_x - sa.surface_x
     pair.surface_y = sb.surface_y - sa.surface_y
     return True
+
+
+@kernel
+def lasts(tables: Tables, pair: Any, frame: int, slop: float) -> bool:
+    """Whether a pair that touched in the frame before still does, for the user: not apart by more than `slop` (length).
+
+    So far rest itself sends bodies apart, and what has begun to touch would be heard to separate and begin anew.
+    """
+    if not pair.verdict or max(pair.stamp, pair.lasting) != frame - 1 or not _heard(tables, pair):
+        return False
+    a = tables.bodies[tables.shapes[pair.a].body]
+    b = tables.bodies[tables.shapes[pair.b].body]
+    if (a.kind == DRIFTS and a.since == 0.0) or (b.kind == DRIFTS and b.since == 0.0):
+        return False  # put there by hand
+    slop = min(slop, PUT_FOLLOWED * min(size_of(a), size_of(b)))
+    if pair.head < 0:
+        return bool(pair.parted == tables.counters[SUBSTEP] and pair.gap <= slop)
+    r = pair.head
+    while r >= 0:  # as the middle of the last substep has found them, and half of it later
+        region = tables.regions[r]
+        if region.depth + 0.5 * region.step * closing(region, a, b, 0.0) >= -slop:
+            return True
+        r = region.next
+    return False
 
 
 @kernel
