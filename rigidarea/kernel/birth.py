@@ -246,7 +246,7 @@ def enter(
         region.mode = REST if placed else IMPACT
     else:
         turn = TURNS if back == 0.0 and region.depth <= height else 0.0
-        leave = region.rest_depth if pair.elasticity == 0.0 else 0.0
+        leave = region.rest_depth if pair.elasticity == 0.0 and turn == 0.0 else 0.0
         touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn, leave)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
