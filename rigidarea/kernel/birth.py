@@ -110,21 +110,37 @@ def size_of(body: Any) -> float:
     return body.extent if body.mobile else np.inf
 
 
-@kernel(forceinline=True)
-def _bounced(law: Law, pair: Any, r: Any) -> bool:
-    """Whether a region is what a bounce has left of itself: two who overlap still, and bear nothing."""
-    free = r.mode == REST and r.first_speed > 0.0 and r.l1 + r.l2 == 0.0
-    return bool(free and pair.elasticity > 0.0 and law.followed < math.inf)
-
-
 @kernel
 def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
-    """Whether two have bounced and part, overlapping still: sent back they bounce anew, a substep later."""
-    if r.born or not _bounced(law, pair, r):
+    """Whether two who bounce part, overlapping still: sent back they bounce anew, a substep later.
+
+    They have bounced, or come to overlap while they part already, and bear nothing.
+    """
+    if r.mode != REST or pair.elasticity == 0.0 or law.followed == math.inf or r.l1 + r.l2 > 0.0:
+        return False
+    if r.first_speed == 0.0:
         return False
     u = closing(r, a, b, 0.0)
     stiffness = region_stiffness(law, r.stiffness, r.chord)
     return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse_mass(r, a, b), h))
+
+
+@kernel
+def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what a bounce has left overlapping closes so fast that it bounces anew, here and now.
+
+    What has bounced is at rest when it closes too slowly for that (`first_speed` is 0 from then on).
+    """
+    if r.first_speed == 0.0 or pair.elasticity == 0.0 or law.followed == math.inf:
+        return False
+    u = closing(r, a, b, 0.5)
+    rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
+    if u <= 0.0 or rate2 * h * h <= law.followed:
+        return False
+    gain = 2.0 * (u - closing(r, a, b, 1.0)) / h
+    r.first_speed = u if pair.elasticity * u > _slow(law, gain, rate2, h) else 0.0
+    r.back = 0.0
+    return bool(r.first_speed > 0.0)
 
 
 @kernel(forceinline=True)
@@ -259,9 +275,11 @@ def enter(
     region.first_speed = max(u, 0.0)
     region.opened = 0
     if u <= slow:
+        # what parts so fast has met others meanwhile: sent back it bounces
+        parts = pair.elasticity > 0.0 and phase2 > law.followed and region.placed == 0 and -u > slow
+        region.first_speed = -u if parts else 0.0
         if region.mode == IMPACT:
             region.mode = REST
-        region.first_speed = 0.0
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .birth import arrives, crushed, enter, expect, jumped_in, size_of
+from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .jit import kernel
 from .motion import (
@@ -256,7 +256,9 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.lt = 0.0
             if region.mode >= STRUCK:
                 region.mode = REST
-            if nearing and arrives(region, a, b, h):
+            if region.mode == REST and bounces_again(law, pair, region, a, b, h):
+                region.mode = STRUCK
+            elif nearing and arrives(region, a, b, h):
                 region.born = 1  # hit at a speed of which its present overlap says nothing
     free_regions(regions, counters, old)
     pair.head = kept

@@ -190,40 +190,27 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
     if leaving < 0.0:
         row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
     if row.shift == 0.0:
-        _one_point(r, a, b)
+        _one_point(r, a, b, row.friction)
 
 
 @kernel(forceinline=True)
-def _one_point(r: Any, a: Any, b: Any) -> None:
-    """Arms of one point of application, bodies where they are now: the heavier one's gives way, a radius does not.
+def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
+    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
 
-    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere.
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. Of a smooth
+    disc a radius stays one: nothing turns it.
     """
     share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
-    if r.radial == 1 or r.radial == 2:
-        share = 0.0 if r.radial == 1 else 1.0
+    smooth = r.radial if friction == 0.0 else 0
+    if smooth == 1 or smooth == 2:
+        share = 0.0 if smooth == 1 else 1.0
     arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
     lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
-    if r.radial != 3:
+    if smooth != 3:
         r.arm_a -= share * arm
         r.arm_b += (1.0 - share) * arm
     r.lean_a -= share * lean
     r.lean_b += (1.0 - share) * lean
-
-
-@kernel(forceinline=True)
-def _way_of_discs(r: Any, a: Any, b: Any) -> float:
-    """By how much two discs come nearer in r.back (length); their direction is that of their centres now."""
-    x = b.x - a.x
-    y = b.y - a.y
-    now = math.sqrt(x * x + y * y)
-    if now == 0.0 or x * r.nx + y * r.ny < 0.0:
-        return float(r.back * closing(r, a, b, 0.0))
-    r.nx = x / now
-    r.ny = y / now
-    x += r.back * (b.vx - a.vx)
-    y += r.back * (b.vy - a.vy)
-    return float(now - math.sqrt(x * x + y * y))
 
 
 @kernel
@@ -238,11 +225,10 @@ def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None
     row.alpha_t = 0.0
     row.tt = surface
     speed = closing(r, a, b, 0.0)
-    way = _way_of_discs(r, a, b) if r.radial == 3 else r.back * speed
     turn = a.w - b.w
-    _one_point(r, a, b)
+    _one_point(r, a, b, row.friction)
     if row.ends == 1:
-        row.t1 = max(0.0, (way - r.depth + r.rest_depth) / h)
+        row.t1 = max(0.0, (speed * r.back - r.depth + r.rest_depth) / h)
         return
     length = row.e2 - row.e1
     mean = r.area / r.chord
