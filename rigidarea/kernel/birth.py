@@ -33,14 +33,12 @@ def touch(
     h: float,
     unseen: float,
     turn: float,
-    leave: float,
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
     Nor if its direction was another there: by an angle whose cosine is no more than `turn` (0: whatever it was).
 
-    leave: the depth that is to be left (length): of what comes to rest there, that at which it lies.
-    Found at depth d beyond it, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
+    Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
     it was u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so
     that there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms
     are: what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
@@ -51,15 +49,13 @@ def touch(
     nx = region.nx
     ny = region.ny
     for _ in range(3):
-        d = region.depth - leave
+        d = region.depth
         u = closing(region, a, b, 0.5)
         gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
         u -= gain * back
         root = u * u - 2.0 * gain * d
         if u <= 0.0 or root < 0.0:
             return come
-        if d <= 0.0:
-            return True
         tau = 2.0 * d / (u + math.sqrt(root))
         if tau + back > min(MOST_ARRIVED * unseen, since_of(a, b)):
             return come
@@ -91,7 +87,7 @@ def touch(
         fill(region, patch, ax, ay, bx, by)
         region.back = then
         back = then
-        if patch.depth - leave < 0.01 * d:
+        if patch.depth < 0.01 * d:
             return come
     return come
 
@@ -262,8 +258,7 @@ def enter(
         region.mode = REST if placed else IMPACT
     else:
         turn = TURNS if back == 0.0 and region.depth <= height else 0.0
-        leave = region.rest_depth if pair.elasticity == 0.0 and turn == 0.0 else 0.0
-        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn, leave)
+        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
@@ -322,7 +317,7 @@ def expect(
         # positions are those of the middle of the substep: the drift yet to come is the half of it
         return (
             first
-            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0, 0.0)
+            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0)
             and region.back >= -0.5 * h
         )
     region.mode = NEARING
