@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from ..kernel.blows import blows, calm_bounces
+from ..kernel.blows import blows, bound_bounces
 from ..kernel.conjugate import search_joints, search_together
 from ..kernel.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..kernel.islands import note, share_kicks
@@ -83,6 +83,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
         return True  # nothing that could change a velocity
     mass, x, y = common(tables)
     energy = kinetic(tables, x, y)
+    came = kinetic(tables, 0.0, 0.0) if tables.counters[BOUNCES] > 0 else 0.0
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
     lessen(tables, h)
@@ -102,8 +103,6 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                 look += wait
             moved = sweep(tables, k % 2 == 0)
             if k > 0 and moved <= SETTLED * small:
-                if tables.counters[BOUNCES] == 0:
-                    return True
                 break
             if k == 0:
                 if jointed:
@@ -115,9 +114,10 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             elif k == 1 and not jointed:
                 search_together(tables, searches - 1, True)
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
-        less = gained and tables.counters[BOUNCES] > 0 and calm_bounces(tables)
-        if (not gained and moved <= small) or (not less and moved <= SETTLED * small):
+        if (not gained and moved <= small) or moved <= SETTLED * small:
             break
+    if tables.counters[BOUNCES] > 0 and not jointed:
+        bound_bounces(tables, came + held_back(tables, h))
     return True
 
 

@@ -6,13 +6,15 @@ shorter than the step. And it adds no energy, which Newton's restitution can whe
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from .birth import drives
 from .constants import REST_KICKS
 from .jit import kernel
 from .region import closing
-from .row import harden
+from .row import harden, push
+from .solve import kinetic
 from .tables import FIXED, REST, ROWS, STRUCK, Law, Tables
 
 
@@ -61,39 +63,51 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
 
 
 @kernel
-def _give_back_less(row: Any, r: Any, a: Any, b: Any, elasticity: float) -> bool:
-    """Whether a bounce has added energy: it is to leave more slowly then.
-
-    Friction that has turned the slip round had work to give, of which Newton's restitution does not know (T. R. Kane,
-    "A dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984). The work is -l (v + v')/2 at each end, and of
-    friction likewise; slower by d at the ends it is l d / 2 less.
-    """
-    normal = row.l1 + row.l2
-    if r.mode != STRUCK or normal == 0.0 or drives(a) or drives(b) or elasticity > 1.0:
-        return False
-    vx = a.vx + a.came_vx - b.vx - b.came_vx
-    vy = a.vy + a.came_vy - b.vy - b.came_vy
-    wa = a.w + a.came_w
-    wb = b.w + b.came_w
-    v = vx * row.nx + vy * row.ny + wa * row.arm_a - wb * row.arm_b
-    slip = vy * row.nx - vx * row.ny + wa * row.lean_a - wb * row.lean_b
-    turn = (wa - wb) * (row.l1 * row.e1 + row.l2 * row.e2)
-    gain = -0.5 * (normal * v - turn + row.lt * slip)
-    if gain <= 0.0:
-        return False
-    row.t1 = max(row.t1, min(0.0, row.t1 + 2.0 * gain / normal))
-    row.t2 = max(row.t2, min(0.0, row.t2 + 2.0 * gain / normal))
-    return True
-
-
-@kernel
-def calm_bounces(tables: Tables) -> bool:
-    """No bounce adds energy: whether one did."""
-    less = False
+def _push_bounces(tables: Tables, part: float) -> float:
+    """Give so much more of their impulses to what bounces; the largest restitution, infinite off what drives."""
+    most = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if row.ends > 0:
             region = tables.regions[row.region]
-            elasticity = tables.pairs[region.pair].elasticity
-            less |= _give_back_less(row, region, tables.bodies[row.a], tables.bodies[row.b], elasticity)
-    return less
+            if region.mode == STRUCK and region.first_speed > 0.0:
+                most = max(most, tables.pairs[region.pair].elasticity)
+                a = tables.bodies[row.a]
+                b = tables.bodies[row.b]
+                if drives(a) or drives(b):
+                    most = math.inf
+                push(row, a, b, part * row.l1, part * row.l2, part * row.lt)
+    return most
+
+
+@kernel
+def bound_bounces(tables: Tables, most: float) -> None:
+    """Bounces leave no more kinetic energy than `most`: all of them give the same part less where they do.
+
+    Friction that turns the slip round has work to give of which Newton's restitution does not know (T. R. Kane, "A
+    dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), and so has a solve that has not converged. Of
+    the impulses' part s energy is a square, known by three of its values.
+    """
+    whole = kinetic(tables, 0.0, 0.0)
+    if whole <= most or _push_bounces(tables, -1.0) > 1.0:
+        if whole > most:
+            _push_bounces(tables, 1.0)
+        return
+    none = kinetic(tables, 0.0, 0.0)
+    _push_bounces(tables, 0.5)
+    half = kinetic(tables, 0.0, 0.0)
+    square = 2.0 * (whole + none) - 4.0 * half
+    slope = whole - none - square
+    s = 1.0
+    if square > 0.0:
+        root = slope * slope - 4.0 * square * (none - most)
+        s = min(1.0, max(0.0, (math.sqrt(max(0.0, root)) - slope) / (2.0 * square)))
+    _push_bounces(tables, s - 0.5)
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0:
+            region = tables.regions[row.region]
+            if region.mode == STRUCK and region.first_speed > 0.0:
+                row.l1 *= s
+                row.l2 *= s
+                row.lt *= s
