@@ -15,7 +15,7 @@ from .jit import kernel
 from .region import closing
 from .row import harden, push
 from .solve import kinetic
-from .tables import FIXED, REST, ROWS, STRUCK, Law, Tables
+from .tables import FIXED, NEARING, REST, ROWS, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -62,6 +62,12 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
     return struck
 
 
+@kernel(forceinline=True)
+def _bounces(row: Any, region: Any) -> bool:
+    """Whether a row is of two who bounce, or part from a bounce."""
+    return bool(row.alpha == 0.0 and region.first_speed > 0.0 and region.mode != NEARING)
+
+
 @kernel
 def _push_bounces(tables: Tables, part: float) -> float:
     """Give so much more of their impulses to what bounces; the largest restitution, infinite off what drives."""
@@ -70,7 +76,7 @@ def _push_bounces(tables: Tables, part: float) -> float:
         row = tables.rows[i]
         if row.ends > 0:
             region = tables.regions[row.region]
-            if region.mode == STRUCK and region.first_speed > 0.0:
+            if _bounces(row, region):
                 most = max(most, tables.pairs[region.pair].elasticity)
                 a = tables.bodies[row.a]
                 b = tables.bodies[row.b]
@@ -107,7 +113,7 @@ def bound_bounces(tables: Tables, most: float) -> None:
         row = tables.rows[i]
         if row.ends > 0:
             region = tables.regions[row.region]
-            if region.mode == STRUCK and region.first_speed > 0.0:
+            if _bounces(row, region):
                 row.l1 *= s
                 row.l2 *= s
                 row.lt *= s
