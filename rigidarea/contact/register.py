@@ -209,7 +209,9 @@ class Register:
             return
         heads = self._outlines(shapes) if heads is None else heads
         idents = [shape._hashid for shape in shapes]
-        self._store.room(len(shapes), len(shapes), max(idents))
+        bodies = {address_of(shape.body._body) for shape in shapes if shape.body is not None}
+        unknown = sum(self._store.row_of(address) < 0 for address in bodies)  # static ones are in no list
+        self._store.room(len(shapes), unknown, max(idents))
         addresses = _words(address_of(shape._shape) for shape in shapes)
         self._calls["shapes_come"](
             self._store.state.ctypes.data, addresses.ctypes.data, heads.ctypes.data, len(shapes)
