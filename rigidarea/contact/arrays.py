@@ -219,7 +219,8 @@ class Store:
         self.tables = self.tables._replace(
             pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
-        rehash(self.tables)
+        if len(old):  # (handing all tables over takes longer than making them)
+            rehash(self.tables)
 
     def grow_regions(self, least: int = 0) -> None:
         """Twice the regions (at least `least`), the new ones free and the last to be taken."""
