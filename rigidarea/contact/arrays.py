@@ -131,8 +131,8 @@ class Store:
         self._most = (0, 0)  # points and rings of the largest outline
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
         self._grow_nodes(shapes)
-        self.grow_pairs(64)
-        self.grow_regions(64)
+        self.grow_pairs(4 * bodies)  # of a pile; each time there are more, a frame is run again
+        self.grow_regions(4 * bodies)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
