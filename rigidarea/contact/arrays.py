@@ -10,6 +10,7 @@ leaves the old ones as they were.
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -72,11 +73,11 @@ _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
-    def __init__(self, bodies: int = 16, shapes: int = 16) -> None:
-        """bodies, shapes: for how many there is room from the start."""
+    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64) -> None:
+        """For how many there is room from the start; pairs: of regions too."""
         self.state = np.zeros(1, STATE)
         self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
-        self._listed: list[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
+        self._listed: Sequence[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
         self.pool = Pool(
             np.zeros((256, 2)),
             np.zeros(256, np.int32),
@@ -131,8 +132,8 @@ class Store:
         self._most = (0, 0)  # points and rings of the largest outline
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
         self._grow_nodes(shapes)
-        self.grow_pairs(4 * bodies)  # of a pile; each time there are more, a frame is run again
-        self.grow_regions(4 * bodies)
+        self.grow_pairs(pairs)
+        self.grow_regions(pairs)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
@@ -177,8 +178,8 @@ class Store:
         own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
         words, known = self._words.copy(), self._listed
-        self._listed = [arrays[name] for name in ARRAYS]
-        for i, (array, before) in enumerate(zip(self._listed, known)):
+        self._listed = listed = [arrays[name] for name in ARRAYS]
+        for i, (array, before) in enumerate(zip(listed, known)):
             if array is not before:  # asking numpy takes a microsecond each
                 words[i], words[len(ARRAYS) + i] = array.ctypes.data, len(array)
         return words

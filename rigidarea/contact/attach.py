@@ -68,7 +68,10 @@ class AreaContact:
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
-        self._store = Store(max(16, len(space._bodies) + 1), max(16, len(space._shapes)))
+        bodies = max(16, len(space._bodies) + 1)
+        # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
+        pairs = 4 * bodies if self._memory is None else 64
+        self._store = Store(bodies, max(16, len(space._shapes)), pairs)
         self._state = state = self._store.state[0]
         settings = self._settings
         self._store.note_layout(layout())
