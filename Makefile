@@ -30,11 +30,12 @@ test: .venv/.installed lint
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
 
-# Redraws all that README.md and docs/study.md show: chart, atlas, game scenes, comparison, stills, into docs/ ($(OUT) has the rest).
+# Redraws all that README.md and docs/study.md show: chart, atlas, game scenes, growth, comparison, stills, into docs/ ($(OUT) has the rest).
 studies: .venv/.installed
 	$(BIN)/python -m rigidarea chart --out $(OUT)/chart --docs docs
 	$(BIN)/python -m rigidarea atlas --out $(OUT)/atlas --docs docs
 	$(BIN)/python -m rigidarea bench everyday --out $(OUT)/bench --docs docs
+	$(BIN)/python -m rigidarea bench growth --out $(OUT)/bench --docs docs
 	$(BIN)/python -m rigidarea compare --out $(OUT)/compare --docs docs
 	$(BIN)/python -m rigidarea demo all --no-film --out $(OUT)/gallery
 	cp $(OUT)/gallery/*.png docs/

@@ -10,6 +10,7 @@ leaves the old ones as they were.
 from __future__ import annotations
 
 import copy
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -43,7 +44,7 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import FREE, NODE
 from ..store import _ARRAYS as ARRAYS
-from ..store import KEPT, STATE, enter_bodies
+from ..store import KEPT, OFFSETS, STATE, enter_bodies
 from .geometry import Forms, enter_form, read_shapes
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
@@ -72,39 +73,42 @@ _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
-    def __init__(self) -> None:
+    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64) -> None:
+        """For how many there is room from the start; pairs: of regions too."""
         self.state = np.zeros(1, STATE)
+        self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
+        self._listed: Sequence[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
         self.pool = Pool(
-            np.zeros((64, 2)),
-            np.zeros(64, np.int32),
-            np.zeros(64, np.int32),
-            np.zeros((16, 2), np.int32),
-            np.zeros((64, 4)),
-            np.zeros((64, 4)),
-            np.zeros(16, HEAD),
+            np.zeros((256, 2)),
+            np.zeros(256, np.int32),
+            np.zeros(256, np.int32),
+            np.zeros((64, 2), np.int32),
+            np.zeros((512, 4)),
+            np.zeros((256, 4)),
+            np.zeros(64, HEAD),
         )
         self.forms = Forms(
-            np.zeros((16, 3)),
-            np.zeros(16, np.int32),
-            np.zeros(16, np.int32),
-            np.zeros((16, 2), np.int32),
-            np.zeros(128),
-            np.full(64, -1, np.int32),
+            np.zeros((64, 3)),
+            np.zeros(64, np.int32),
+            np.zeros(64, np.int32),
+            np.zeros((64, 2), np.int32),
+            np.zeros(512),
+            np.full(256, -1, np.int32),
             np.zeros(5, np.int64),
         )
         self.work = new_work()
         self.tables = Tables(
-            np.zeros(16, BODY),
-            np.zeros(16, SHAPE),
+            np.zeros(bodies, BODY),
+            np.zeros(shapes, SHAPE),
             np.zeros(0, PAIR),
             np.zeros(0, REGION),
             np.zeros(0, ROW),
             np.zeros(0, FACTOR),
-            np.zeros(16, MOBILITY),
-            np.zeros(16, np.int32),
-            np.zeros(16, np.int32),
-            np.zeros(16, np.int32),
-            np.zeros(16, np.int32),
+            np.zeros(bodies, MOBILITY),
+            np.zeros(bodies, np.int32),
+            np.zeros(bodies, np.int32),
+            np.zeros(shapes, np.int32),
+            np.zeros(shapes, np.int32),
             np.zeros(0, np.int32),
             np.zeros(0, NODE),
             np.array([-1, -1, -1], np.int32),
@@ -117,8 +121,9 @@ class Store:
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR, FREE_SHAPE, FREE_BODY]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
-        self.body_keys = np.zeros(64, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
-        self.body_rows = np.zeros(64, np.int32)
+        size = max(64, _power(2 * bodies))
+        self.body_keys = np.zeros(size, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
+        self.body_rows = np.zeros(size, np.int32)
         self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
         self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
         self._kept: dict[str, np.ndarray] = {}  # room for a copy of what a frame changes, and for places
@@ -126,9 +131,9 @@ class Store:
         self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
-        self._grow_nodes(16)
-        self.grow_pairs(64)
-        self.grow_regions(64)
+        self._grow_nodes(shapes)
+        self.grow_pairs(pairs)
+        self.grow_regions(pairs)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
@@ -145,19 +150,24 @@ class Store:
         new._outlines = self._outlines.copy()
         return new
 
+    def note_layout(self, offsets: dict[str, int]) -> None:
+        """Write Chipmunk's layout (`chipmunk.layout`) into the state record."""
+        first = 2 * len(ARRAYS)
+        self._words[first : first + len(OFFSETS)] = [offsets[name] for name in OFFSETS]
+
     def publish(self, new: Store, **facts: int) -> None:
         """Put a changed draft in the place of what there is. facts: fields of the state record that change with it."""
-        record = new._record()
+        own, words = self._words, new._record()
         for name, value in facts.items():
-            record[name] = value
-        self.state[0], self.__dict__ = record, new.__dict__
+            words.view(STATE)[name] = value
+        own[:], self.__dict__ = words, new.__dict__
 
     def sync(self) -> None:
         """Write the arrays' addresses and sizes into the state record."""
-        self.state[0] = self._record()
+        self._words[:] = self._record()
 
-    def _record(self) -> np.record:
-        """The state record of these arrays."""
+    def _record(self) -> np.ndarray:
+        """The words of the state record of these arrays."""
         tables = self.tables._asdict()
         for name in KEPT:
             if len(self._kept.get(f"kept_{name}", ())) != len(tables[name]):
@@ -167,12 +177,12 @@ class Store:
         own = {name: getattr(self, name) for name in _OWN}
         own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
-        state = self.state.copy()
-        fields = state.view(np.int64)  # field by field, by name, takes ten times as long
-        fields[: len(ARRAYS)] = [arrays[name].__array_interface__["data"][0] for name in ARRAYS]
-        fields[len(ARRAYS) : 2 * len(ARRAYS)] = [len(arrays[name]) for name in ARRAYS]
-        record: np.record = state[0]
-        return record
+        words, known = self._words.copy(), self._listed
+        self._listed = listed = [arrays[name] for name in ARRAYS]
+        for i, (array, before) in enumerate(zip(listed, known)):
+            if array is not before:  # asking numpy takes a microsecond each
+                words[i], words[len(ARRAYS) + i] = array.ctypes.data, len(array)
+        return words
 
     def grow(self) -> None:
         """Make the room that machine code has asked for (counters MORE_...), all of it or none."""
@@ -210,7 +220,8 @@ class Store:
         self.tables = self.tables._replace(
             pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
         )
-        rehash(self.tables)
+        if len(old):  # (handing all tables over takes longer than making them)
+            rehash(self.tables)
 
     def grow_regions(self, least: int = 0) -> None:
         """Twice the regions (at least `least`), the new ones free and the last to be taken."""

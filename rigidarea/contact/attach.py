@@ -51,6 +51,8 @@ class SimulationError(RuntimeError):
 class AreaContact:
     """Area contact of one space: what `attach` returns."""
 
+    _compiled = False  # what measures energy, in this process
+
     def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
         self._settings = settings
         self._memory: Memory | None = None
@@ -66,11 +68,13 @@ class AreaContact:
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
-        self._store = Store()
+        bodies = max(16, len(space._bodies) + 1)
+        # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
+        pairs = 4 * bodies if self._memory is None else 64
+        self._store = Store(bodies, max(16, len(space._shapes)), pairs)
         self._state = state = self._store.state[0]
         settings = self._settings
-        for name, offset in layout().items():
-            state[name] = offset
+        self._store.note_layout(layout())
         state["law"] = LAWS[settings["law"]]
         state["direction"] = DIRECTIONS[settings["direction"]]
         state["exponent"] = settings["exponent"]
@@ -108,7 +112,9 @@ class AreaContact:
             if self._memory is not None:
                 recall(self._store, space, self._memory)
                 self._memory = None
-            self.energy()  # compiled now, not when it is asked for
+            if not AreaContact._compiled:
+                self.energy()  # compiled now, not when it is asked for
+                AreaContact._compiled = True
             if settings["flexible"] is not None:
                 settings["flexible"].enter(space)
         except BaseException:  # a shape that cannot be a contact's, an interrupt

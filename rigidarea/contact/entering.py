@@ -10,7 +10,15 @@ from typing import Any
 import numpy as np
 from numba import types
 
-from ..kernel.broad import ask_about, box_of, drop_pairs, end_pairs_of, measure, put_in_tree, toothed
+from ..kernel.broad import (
+    ask_about,
+    box_of,
+    end_pairs_of,
+    forget_the_gone,
+    measure,
+    put_in_tree,
+    toothed,
+)
 from ..kernel.constants import MARGIN
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at
@@ -18,12 +26,11 @@ from ..kernel.place import place
 from ..kernel.tables import (
     ANEW,
     ASKED,
-    AWAKE,
     BODIES,
     CONCAVE,
     FREE_BODY,
     FREE_SHAPE,
-    MOVERS,
+    GONE,
     SHAPES,
     TOOTHED,
     UNSORTED,
@@ -150,33 +157,13 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     return int(i)
 
 
-@kernel
-def _forget_the_gone(tables: Tables) -> None:
-    """Rows that are free are in no list of what is awake, nor of what moves."""
-    counters = tables.counters
-    counters[UNSORTED] = 1
-    n = 0
-    for k in range(counters[AWAKE]):
-        i = tables.awake[k]
-        if tables.bodies[i].awake:
-            tables.awake[n] = i
-            n += 1
-    counters[AWAKE] = n
-    n = 0
-    for k in range(counters[MOVERS]):
-        i = tables.movers[k]
-        if tables.shapes[i].outline >= 0:
-            tables.movers[n] = i
-            n += 1
-    counters[MOVERS] = n
-
-
 @callback(types.void(types.uintp, types.uintp, types.uintp, types.int64))
 def shapes_come(state: int, addresses: int, heads: int, n: int) -> None:
     """Enter n of Chipmunk's shapes; addresses: n words; heads: n int32, the numbers of their outlines."""
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
     counters = tables.counters
+    forget_the_gone(tables)
     head_of = array_at(heads, (n,), np.int32)
     many = n >= MANY and tables.roots[STILL] < 0 and tables.roots[MOVING] < 0
     scratch = tables.asked[counters[ASKED] :]
@@ -216,7 +203,6 @@ def shapes_go(state: int, idents: int, n: int) -> None:
     counters = tables.counters
     slots = array_at(s.slots_at, (s.slots_n,), np.int32)
     users = array_at(s.users_at, (s.users_n,), np.int32)
-    drop_pairs(tables, -2)
     for ident in words(idents, n):
         i = int(slots[ident]) if ident < s.slots_n else -1
         if i < 0:
@@ -236,8 +222,7 @@ def shapes_go(state: int, idents: int, n: int) -> None:
         shape.address = 0
         shape.body = counters[FREE_SHAPE]
         counters[FREE_SHAPE] = i
-    drop_pairs(tables, -2)
-    _forget_the_gone(tables)
+    counters[GONE] = 1
 
 
 @callback(types.void(types.uintp, types.uintp, types.int64, types.int64))
@@ -245,6 +230,7 @@ def bodies_come(state: int, addresses: int, n: int, hold: int) -> None:
     """Enter n of Chipmunk's bodies; hold: have the solve move them, unless their position function is the user's."""
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
+    forget_the_gone(tables)
     for address in words(addresses, n):
         body = tables.bodies[_row_of_body(s, tables, address)]
         if body.entered == 0:
@@ -265,7 +251,7 @@ def bodies_go(state: int, addresses: int, n: int) -> None:
         if i >= 0 and tables.bodies[i].entered:
             tables.bodies[i].entered = 0
             _let_go_of_body(s, tables, i)
-    _forget_the_gone(tables)
+    tables.counters[GONE] = 1
 
 
 @callback(types.void(types.uintp, types.uintp, types.int64))

@@ -15,7 +15,7 @@ import numpy as np
 from numba import types
 
 from ..chipmunk import function
-from ..kernel.broad import ask_about, list_pair, measure, put_in_tree
+from ..kernel.broad import ask_about, forget_the_gone, list_pair, measure, put_in_tree
 from ..kernel.jit import callback, kernel
 from ..kernel.memory import array_at, caller
 from ..kernel.place import place, shift
@@ -458,6 +458,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     if (fresh or s.pending) and not ask(s, REGISTER):
         return False
     load_tables(s).counters[TOLD] = 0
+    forget_the_gone(load_tables(s))
     if not _watch(s, load_tables(s), space, dt):  # somebody came on a way of which pymunk has not told
         s.pending = 2
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):

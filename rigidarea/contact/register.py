@@ -33,6 +33,7 @@ class Register:
 
         self._store = store
         self._state = store.state[0]
+        self._at = store.state.ctypes.data
         self._hook = hook
         self._where = np.array([int(self._state[name]) for name in PLACES], np.int64)
         self._calls = {
@@ -51,11 +52,16 @@ class Register:
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
         self._left: list[int] = []  # bodies that are entered still
 
+    def _pend(self) -> None:
+        """There is something to enter, or to forget, before the next frame."""
+        if self._state["pending"] == 0:
+            self._state["pending"] = 1
+
     # --- what pymunk tells ---
 
     def shape_came(self, shape: pymunk.Shape) -> None:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
-        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._pend()
         self._new[shape] = None
         if shape.body is not None and shape.body.body_type == _STATIC:
             try:
@@ -72,12 +78,12 @@ class Register:
             del self._new[shape]
         else:
             self._gone.append(shape._hashid)
-        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._pend()
 
     def body_came(self, body: pymunk.Body) -> None:
         """A body has been added."""
         self._bodies[body] = None
-        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._pend()
 
     def body_goes(self, body: pymunk.Body) -> None:
         """A body is about to be removed."""
@@ -86,7 +92,7 @@ class Register:
         else:
             self._left.append(address_of(body._body))
             self._hook.release(body)
-        self._state["pending"] = max(1, int(self._state["pending"]))
+        self._pend()
 
     def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
         """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
@@ -100,7 +106,7 @@ class Register:
                 rows = self._store.known_shapes
         bodies = {address_of(shape.body._body) for shape in known if shape.body is not None}
         if bodies:
-            self._call("placed_anew", _words(bodies))
+            self._call("placed_anew", bodies)
 
     def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again: `AreaContact.refresh`.
@@ -110,7 +116,7 @@ class Register:
         if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
             raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
         self._outlines([shape])  # says what is wrong with it while nothing has changed
-        self._call("shapes_go", np.array([shape._hashid], np.uint64))
+        self._call("shapes_go", [shape._hashid])
         self._enter([shape])
 
     # --- entering ---
@@ -128,7 +134,7 @@ class Register:
         state["pending"] = 2  # until all is done: whoever is interrupted looks through the space
         self.forget()
         if self._bodies:
-            addresses = _words(address_of(body._body) for body in self._bodies)
+            addresses = [address_of(body._body) for body in self._bodies]
             self._store.room(0, len(addresses), 0)
             # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
             self._call("bodies_come", addresses, state["shape_count"] < 0 and not state["explicit"])
@@ -149,13 +155,13 @@ class Register:
     def forget(self) -> None:
         """What has gone is not in the tables any more: nothing of it is read or written from now on."""
         if self._gone:
-            self._call("shapes_go", np.array(self._gone, np.uint64))
+            self._call("shapes_go", self._gone)
             for ident in self._gone:
                 self.shapes.pop(ident, None)
             self._gone.clear()
             self._store.tidy()
         if self._left:
-            self._call("bodies_go", _words(self._left))
+            self._call("bodies_go", self._left)
             self._left.clear()
 
     def _look_through(self, space: pymunk.Space) -> None:
@@ -176,7 +182,7 @@ class Register:
     def _enter_partners(self, space: pymunk.Space) -> None:
         """Bodies that joints hold and that are not among the space's: its static one, those that the user moves."""
         held = {address_of(body._body) for joint in space._constraints for body in (joint.a, joint.b)}
-        addresses = _words(sorted(address for address in held if self._store.row_of(address) < 0))
+        addresses = sorted(address for address in held if self._store.row_of(address) < 0)
         self._store.room(0, len(addresses), 0)
         self._call("bodies_come", addresses, 0)
 
@@ -209,15 +215,16 @@ class Register:
             return
         heads = self._outlines(shapes) if heads is None else heads
         idents = [shape._hashid for shape in shapes]
-        self._store.room(len(shapes), len(shapes), max(idents))
+        bodies = {address_of(shape.body._body) for shape in shapes if shape.body is not None}
+        unknown = sum(self._store.row_of(address) < 0 for address in bodies)  # static ones are in no list
+        self._store.room(len(shapes), unknown, max(idents))
         addresses = _words(address_of(shape._shape) for shape in shapes)
-        self._calls["shapes_come"](
-            self._store.state.ctypes.data, addresses.ctypes.data, heads.ctypes.data, len(shapes)
-        )
+        self._calls["shapes_come"](self._at, addresses.ctypes.data, heads.ctypes.data, len(shapes))
         self.shapes.update(zip(idents, shapes))
 
-    def _call(self, name: str, words: np.ndarray, *more: int) -> None:
-        self._calls[name](self._store.state.ctypes.data, words.ctypes.data, len(words), *more)
+    def _call(self, name: str, values: Iterable[int], *more: int) -> None:
+        words = ffi.new("uintptr_t[]", list(values))  # (numpy takes ten times as long for one)
+        self._calls[name](self._at, ffi.cast("uintptr_t", words), len(words), *more)
 
     def largest(self) -> float:
         """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""

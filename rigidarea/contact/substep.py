@@ -17,6 +17,7 @@ from ..kernel.solve import (
     common,
     drift,
     finish,
+    fly,
     held_back,
     kick,
     kinetic,
@@ -142,23 +143,6 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
 
 
 @kernel
-def _fly(s: Any, tables: Tables, dt: float, more: float, n: int) -> None:
-    """The rest of a frame in which nobody touches anybody: so much `more` up to its middle, and then the other half.
-
-    Under constant forces one kick in the middle is exact.
-    """
-    tables.counters[SUBSTEP] += 1
-    tables.counters[ROWS] = 0
-    drift(tables, s.frame, more)
-    share_kicks(tables, 1)
-    kick(tables, s.frame)
-    finish(tables, load_law(s), s.frame, dt, True)
-    drift(tables, s.frame, 0.5 * dt)
-    note(tables, n)
-    lap(s, POSITIONS)
-
-
-@kernel
 def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     """A frame in n substeps of the bodies that are live. Whether there was room for it."""
     h = dt / n
@@ -167,7 +151,6 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     sweeps = s.sweeps
     if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
         sweeps *= max(1, s.substeps // n)
-    share_kicks(tables, n)
     for i in range(n):
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
@@ -176,8 +159,14 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             if not near_pairs(s, space, dt, dt):
                 return False
             if nobody_comes_near(tables, dt):
-                _fly(s, tables, dt, 0.5 * (dt - h), n)
+                tables.counters[SUBSTEP] += 1
+                tables.counters[ROWS] = 0
+                # under constant forces one kick in the middle is exact
+                fly(tables, s.frame, 0.5 * (dt - h), 0.5 * dt, n)
+                lap(s, POSITIONS)
                 return True
+        if i == 0:
+            share_kicks(tables, n)
         kick(tables, s.frame)
         if joints > 0:
             ask_springs(s, tables)

@@ -7,6 +7,7 @@ import math
 from numba import types
 
 from ..chipmunk import function
+from ..kernel.broad import forget_the_gone
 from ..kernel.jit import callback
 from ..kernel.join import may_touch
 from ..kernel.meet import meets_within
@@ -37,6 +38,7 @@ def rouse(space: int, dt: float) -> int:
     if s.asleep == 0 or s.explicit or len(members(space, s.space_bodies)) == 0:
         return 1
     tables = load_tables(s)
+    forget_the_gone(tables)
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0 or tables.bodies[i].stamp != s.frame:

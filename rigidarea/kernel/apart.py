@@ -108,6 +108,10 @@ def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any, line_a: bo
     for own in range(2):
         head = hb if own else ha
         line = line_b if own else line_a
+        if (ha if own else hb).disc and not (
+            head.disc or line
+        ):  # it may be a corner that is nearest to a disc
+            _try_corners(pool, ia, ib, rel, own == 1, pair)
         for e in range(head.point, head.point + (1 if line else head.count)):
             if pool.arcs[e, 2] == 0.0:
                 k = pool.following[e]
@@ -121,6 +125,26 @@ def find_axis(pool: Pool, ia: int, ib: int, rel: Relative, pair: Any, line_a: bo
                 _try(pool, ia, ib, rel, mx, my, pair, line_a, line_b)
                 if line:
                     _try(pool, ia, ib, rel, -mx, -my, pair, line_a, line_b)
+
+
+@kernel
+def _try_corners(pool: Pool, ia: int, ib: int, rel: Relative, own: bool, pair: Any) -> None:
+    """The ways from the corners of B (own), or of A, to the other one, a disc; from the middles of arcs."""
+    head = pool.heads[ib if own else ia]
+    for e in range(head.point, head.point + head.count):
+        x = pool.points[e, 0]
+        y = pool.points[e, 1]
+        if pool.arcs[e, 2] > 0.0:
+            x = pool.arcs[e, 0]
+            y = pool.arcs[e, 1]
+        dx = rel.tx - x
+        dy = rel.ty - y
+        if own:
+            dx = rel.tx + rel.c * x - rel.s * y
+            dy = rel.ty + rel.s * x + rel.c * y
+        length = math.sqrt(dx * dx + dy * dy)
+        if length > 0.0:
+            _try(pool, ia, ib, rel, dx / length, dy / length, pair, False, False)
 
 
 @kernel

@@ -16,9 +16,11 @@ from .pool import Pool
 from .tables import (
     APART,
     ASKED,
+    AWAKE,
     BOXED,
     DRIFTS,
     FREE_PAIRS,
+    GONE,
     MORE_PAIRS,
     MOVERS,
     SEARCH,
@@ -242,9 +244,39 @@ def drop_pairs(tables: Tables, frame: int) -> None:
     counters[BOXED] = k
 
 
+@kernel
+def forget_the_gone(tables: Tables) -> None:
+    """Clear the lists of the rows of what has gone, once for all that went: before a row is used again."""
+    counters = tables.counters
+    if counters[GONE] == 0:
+        return
+    counters[GONE] = 0
+    counters[UNSORTED] = 1
+    for n in range(counters[BOXED]):
+        p = tables.near[n].pair
+        pair = tables.pairs[p]
+        if pair.a >= 0 and (tables.shapes[pair.a].outline < 0 or tables.shapes[pair.b].outline < 0):
+            end_pair(tables, p)
+    drop_pairs(tables, -2)
+    n = 0
+    for k in range(counters[AWAKE]):
+        i = tables.awake[k]
+        if tables.bodies[i].awake:
+            tables.awake[n] = i
+            n += 1
+    counters[AWAKE] = n
+    n = 0
+    for k in range(counters[MOVERS]):
+        i = tables.movers[k]
+        if tables.shapes[i].outline >= 0:
+            tables.movers[n] = i
+            n += 1
+    counters[MOVERS] = n
+
+
 @entry
 def end_pairs_of(tables: Tables, i: int) -> None:
-    """Shape i goes: its pairs end, and it is in no tree. `tables.near` is to be cleared of them by `drop_pairs`."""
+    """Shape i goes: its pairs end, and it is in no tree. `tables.near` is to be cleared by `forget_the_gone`."""
     shape = tables.shapes[i]
     if shape.leaf < 0:
         return

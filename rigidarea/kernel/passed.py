@@ -22,7 +22,7 @@ from .motion import pose_of, seen_whole
 from .place import Pose, place
 from .pool import LEAF, Pool
 from .sides import over
-from .tables import DRIFTS, FIXED, MOVERS, NEAR, Tables, free_regions
+from .tables import DRIFTS, FIXED, MOVERS, NEAR, ROWS, Tables, free_regions
 from .verdict import refused
 
 
@@ -248,6 +248,8 @@ def went_far(tables: Tables) -> tuple[bool, bool]:
     most = 0.0
     least = np.inf
     lines = False
+    if tables.counters[NEAR] == 0 and tables.counters[ROWS] == 0:  # nothing has sent anybody off its way
+        return False, False
     for k in range(tables.counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
         if shape.sensor:

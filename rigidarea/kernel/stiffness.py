@@ -122,6 +122,8 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
     Nobody carries more than what pushes everybody, together, but for who hangs in a joint or lies on a kinematic body:
     those may press harder. (What such a body whirls lies softer on one another than `penetration` says.)
     """
+    if tables.counters[NEAR] == 0:
+        return
     most = 0.0
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
