@@ -169,7 +169,7 @@ class Store:
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
         state = self.state.copy()
         fields = state.view(np.int64)  # field by field, by name, takes ten times as long
-        fields[: len(ARRAYS)] = [arrays[name].__array_interface__["data"][0] for name in ARRAYS]
+        fields[: len(ARRAYS)] = [arrays[name].ctypes.data for name in ARRAYS]
         fields[len(ARRAYS) : 2 * len(ARRAYS)] = [len(arrays[name]) for name in ARRAYS]
         record: np.record = state[0]
         return record
