@@ -243,6 +243,10 @@ PROGRAMS = {
         other = space.copy()
         assert steps(space, 10) == steps(other, 10)
     """,
+    "a heap explodes": """
+        from tests.exploding import dearest
+        dearest(4)
+    """,
     "sys.exit in a step": """
         space = fill(Level())
         class Ends(pymunk.Space):
