@@ -220,9 +220,7 @@ def covers(outline: Outline, place: Sequence[float], point: Sequence[float]) -> 
     pool = _packed(outline, outline)
     head = pool.heads[0]
     along, across = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
-    return bool(
-        is_inside(pool, 0, along - float(head["x"]), across - float(head["y"]), _scratch_for(pool))
-    )
+    return bool(is_inside(pool, 0, along - float(head["x"]), across - float(head["y"]), _scratch_for(pool)))
 
 
 def overlaps(outline_a: Outline, places_a: ArrayLike, outline_b: Outline, places_b: ArrayLike) -> np.ndarray:

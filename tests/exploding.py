@@ -40,7 +40,10 @@ def state(seed: int) -> tuple[pymunk.Space, str]:
         box = pymunk.Poly.create_box(body, (draw.uniform(0.3, 1), draw.uniform(0.1, 1)))
         box.friction, box.elasticity = 0.5, draw.choice([0, 0.5, 1])
         space.add(body, box)
-    return space, f"seed {seed}: width {width:.2g}, moment {light:.1g}, {moving} at {fast:.1g}, spin {spin:.1g}"
+    return (
+        space,
+        f"seed {seed}: width {width:.2g}, moment {light:.1g}, {moving} at {fast:.1g}, spin {spin:.1g}",
+    )
 
 
 def dearest(seed: int, frames: int = 6) -> tuple[float, str]:

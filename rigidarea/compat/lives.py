@@ -198,6 +198,8 @@ class Program:
         """A body that left one space comes to another."""
         space = self.space()
         for body in [b for b in self.kept if isinstance(b, pymunk.Body) and b.space is None][:2]:
+            if body in space.bodies:
+                continue  # pymunk's own `add` was interrupted half-way
             space.add(body)  # its shapes may have lost it: pymunk frees a space so
 
     def copies(self) -> None:
@@ -269,7 +271,13 @@ class Program:
         child = os.fork()
         if child == 0:
             _limit()
-            self.step()
+            try:
+                self.step()
+            except (KeyboardInterrupt, MemoryError, SimulationError):
+                pass
+            except BaseException:
+                traceback.print_exc()
+                os._exit(1)
             os._exit(0)
         code = os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
         assert code == 0, f"the child ended with {code}"
