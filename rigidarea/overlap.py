@@ -13,8 +13,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .arcs import sampled
+from .gate import numbers
 from .kernel.direction import chord_direction
 from .kernel.overlap import Relative, Work, enlarged, fits, new_work
+from .kernel.pick import is_inside
 from .kernel.place import Pose, overlaps_of_outlines, push_out
 from .kernel.pool import Pool, pack
 from .outline import DEFAULT_TOLERANCE, Outline
@@ -205,6 +207,20 @@ def overlap(
             RegionPolygon(corners, bows, pose, (at_x, at_y), DEFAULT_TOLERANCE * math.sqrt(area)),
         )
     return out
+
+
+def covers(outline: Outline, place: Sequence[float], point: Sequence[float]) -> bool:
+    """Whether a point (x, y) (length, world) lies inside an outline whose body is at `place`, arcs as they are.
+
+    place: as of `overlap`. Raises ValueError where that does, and for a point that is no two finite numbers.
+    """
+    _check_outlines(outline, outline)
+    x, y, c, s = _pose(place, "place")
+    px, py = numbers(point, "point", 2)
+    pool = _packed(outline, outline)
+    head = pool.heads[0]
+    along, across = c * (px - x) + s * (py - y), c * (py - y) - s * (px - x)
+    return bool(is_inside(pool, 0, along - float(head["x"]), across - float(head["y"]), _scratch_for(pool)))
 
 
 def overlaps(outline_a: Outline, places_a: ArrayLike, outline_b: Outline, places_b: ArrayLike) -> np.ndarray:

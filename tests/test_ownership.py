@@ -243,6 +243,28 @@ PROGRAMS = {
         other = space.copy()
         assert steps(space, 10) == steps(other, 10)
     """,
+    "forked while a thread is within a step": """
+        import threading, time
+        space = fill(pymunk.Space(), 3)
+        ra.attach(space)
+        steps(space, 20)  # the first has landed
+        inside = threading.Event()
+        def wait(*arguments):
+            inside.set()
+            time.sleep(1)
+        space.on_collision(pre_solve=wait)
+        thread = threading.Thread(target=steps, args=(space, 1), daemon=True)
+        thread.start()
+        inside.wait()
+        child = os.fork()
+        if child:
+            assert os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]) == 0
+            os._exit(0)
+    """,
+    "a heap explodes": """
+        from tests.exploding import dearest
+        dearest(4)
+    """,
     "sys.exit in a step": """
         space = fill(Level())
         class Ends(pymunk.Space):
@@ -264,19 +286,36 @@ def test_programs_end_as_natively(name):
     assert (done.returncode, done.stderr) == (0, ""), done.stderr[-800:]
 
 
+def command(*words: str, seconds: float) -> None:
+    """It ends well."""
+    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=seconds)
+    assert done.returncode == 0, done.stdout[-800:] + done.stderr[-3000:]
+
+
 @pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])
 def test_random_programs(programs):
     """Lifetimes, copies, callbacks, signals, growth, threads, forks: no crash, no hang, whole tables."""
-    command = [
-        sys.executable,
-        "-m",
-        "rigidarea",
-        "compat",
-        "lives",
-        "--programs",
-        str(programs),
-        "--json",
-        "-",
-    ]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=100 * programs)
-    assert done.returncode == 0, done.stderr[-3000:]
+    words = ("-m", "rigidarea", "compat", "lives", "--programs", str(programs), "--json", "-")
+    command(*words, seconds=100 * programs)
+
+
+def test_no_interrupt_is_lost_where_tables_are_published():
+    """numpy describes a structured array in Python for `__array_interface__`, and drops what is raised there."""
+
+    def interrupted(frame, event, argument):
+        if frame.f_code.co_filename.endswith("numpy/_core/_internal.py"):
+            raise KeyboardInterrupt
+
+    contact = ra.attach(fill(pymunk.Space(), 2))
+    sys.settrace(interrupted)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            contact._store.sync()
+    finally:
+        sys.settrace(None)
+
+
+@pytest.mark.slow
+def test_indices_and_addresses():
+    """Every index checked, every table between closed pages; planted errors are seen first."""
+    command("tests/bounds.py", "--scenes", "200", seconds=3000)

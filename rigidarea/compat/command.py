@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import random
 import sys
 import tempfile
 from pathlib import Path
@@ -11,9 +12,8 @@ from typing import Any
 
 import pymunk
 
-from .. import attach
 from ..report import envelope, output_arguments, write_json
-from . import lives, suite
+from . import interrupts, lives, suite
 from .examples import EXAMPLES, FRAMES, GAMES, compare
 from .hostile import fuzz
 from .meddling import meddle
@@ -24,9 +24,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of `rigidarea compat`."""
     parser.add_argument(
         "what",
-        choices=("examples", "tests", "fuzz", "soak", "lives"),
+        choices=("examples", "tests", "fuzz", "soak", "lives", "interrupts"),
         help="pymunk's examples, its tests, calls with hostile values and changes from within callbacks, a fountain, "
-        "random programs (lifetimes, copies, signals, threads), each a process",
+        "random programs (lifetimes, copies, signals, threads), SIGINTs at random times, each a process",
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="some of the examples (default: all)")
     parser.add_argument(
@@ -46,14 +46,21 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of soak: frames between two bodies, each of which lives for 150 (default: %(default)s)",
     )
     parser.add_argument(
-        "--programs", type=int, default=200, metavar="N", help="of lives (default: %(default)s)"
+        "--programs", type=int, default=200, metavar="N", help="of lives, interrupts (default: %(default)s)"
+    )
+    parser.add_argument(
+        "--compiling",
+        type=int,
+        default=0,
+        metavar="N",
+        help="of interrupts: so many more while all machine code compiles, a minute or two each (default: %(default)s)",
     )
     parser.add_argument(
         "--seed",
         type=int,
         default=0,
         metavar="N",
-        help="of fuzz and soak, of the first of lives (default: %(default)s)",
+        help="of fuzz, soak and interrupts, of the first of lives (default: %(default)s)",
     )
     output_arguments(parser, Path("out") / "compat")
 
@@ -72,6 +79,8 @@ def run(arguments: argparse.Namespace) -> int:
         return _soak(arguments)
     if arguments.what == "lives":
         return _lives(arguments)
+    if arguments.what == "interrupts":
+        return _interrupts(arguments)
     unknown = [name for name in arguments.names if name not in EXAMPLES]
     if unknown:
         raise ValueError(f"unknown example {unknown[0]!r}; expected one of {', '.join(EXAMPLES)}")
@@ -222,7 +231,7 @@ def _fuzz(arguments: argparse.Namespace) -> int:
 def _lives(arguments: argparse.Namespace) -> int:
     if arguments.programs < 1:
         raise ValueError(f"programs must be at least 1, got {arguments.programs}")
-    attach(pymunk.Space()).detach()  # the machine code is there before the first of them
+    lives.warm()
     wrong = []
     for seed in range(arguments.seed, arguments.seed + arguments.programs):
         text = lives.run(seed)
@@ -234,6 +243,43 @@ def _lives(arguments: argparse.Namespace) -> int:
     if arguments.json != "-":
         print(f"{arguments.programs} programs, {len(wrong)} wrong")
     return int(bool(wrong))
+
+
+def _interrupts(arguments: argparse.Namespace) -> int:
+    if arguments.programs < 1 or arguments.compiling < 0:
+        raise ValueError(
+            f"programs must be at least 1, compiling at least 0, got {arguments.programs}, {arguments.compiling}"
+        )
+    lives.warm()
+    rows = [
+        {"mode": mode, "course": name, **row}
+        for mode in ("native", "area")
+        for name, row in interrupts.sweep(arguments.programs, arguments.seed, mode == "native").items()
+    ]
+    draw = random.Random(arguments.seed)
+    wrong = [interrupts.compiling(draw.uniform(0, 60)) for _ in range(arguments.compiling)]
+    bad = list(filter(None, wrong))
+    raised = len(wrong) - len(bad)
+    rows.append(
+        {
+            "mode": "area",
+            "course": "compilation",
+            "sent": len(wrong),
+            "raised": raised,
+            "swallowed": 0,
+            "wrong": bad,
+        }
+    )
+    settings = {"programs": arguments.programs, "compiling": arguments.compiling, "seed": arguments.seed}
+    failed = sum(len(row["wrong"]) for row in rows if row["mode"] == "area")
+    write_json(envelope("compat interrupts", settings, rows, summary={"wrong": failed}), arguments.json)
+    if arguments.json != "-":
+        for row in rows:
+            counts = ", ".join(f"{row[key]} {key}" for key in ("sent", "raised", "swallowed"))
+            print(f"{row['mode']:6} {row['course']:14} {counts}, {len(row['wrong'])} wrong")
+            for text in row["wrong"][:3]:
+                print(f"    {text}", file=sys.stderr)
+    return int(failed > 0)
 
 
 def _soak(arguments: argparse.Namespace) -> int:

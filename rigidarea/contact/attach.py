@@ -7,6 +7,7 @@ import os
 import time
 import weakref
 from collections.abc import Callable
+from types import TracebackType
 from typing import Any
 
 import numpy as np
@@ -97,7 +98,7 @@ class AreaContact:
         self._ask = ffi.callback(
             "void(uintptr_t)",
             lambda request: _serve(own, request),
-            onerror=lambda kind, error, trace: _note(own, error),  # an interrupt at its first line too
+            onerror=lambda kind, error, trace: _note(own, error, trace),  # an interrupt at its first line too
         )
         state["ask_at"] = address_of(self._ask)
         self._space = space
@@ -374,16 +375,9 @@ class AreaContact:
 
 def _serve(own: weakref.ref[AreaContact], request: int) -> None:
     """Machine code asks for something. What is raised goes to `_note`; until the last line it counts as not done."""
-    from . import record
-
     contact = own()
     if contact is not None and contact._space is not None:
-        if (
-            request == record.REGISTER
-        ):  # not begun yet, but Chipmunk will go on with this step: to be put back after it
-            contact._before = [(b, _state_of(b)) for b in contact._space.bodies]
         contact._answer(request)
-        contact._before = []
         contact._state["failed"] = 0
 
 
@@ -392,11 +386,19 @@ def _state_of(body: pymunk.Body) -> tuple[float, ...]:
     return (*place, *motion, *body.force, body.torque)
 
 
-def _note(own: weakref.ref[AreaContact], error: BaseException) -> None:
-    """Keep what was raised while machine code was at work, to be raised after the step: nothing can be raised in it."""
+def _note(own: weakref.ref[AreaContact], error: BaseException, trace: TracebackType) -> None:
+    """Keep what was raised while machine code was at work, to be raised after the step: nothing can be raised in it.
+
+    trace: it begins in the function that was called with the `request`. Where that was to register what has come, no
+    frame has begun, but Chipmunk goes on with its step: bodies are put back after it.
+    """
+    from . import record
+
     contact = own()
     if contact is not None and contact._space is not None:
         contact._error = contact._error or error
+        if trace.tb_frame.f_locals["request"] == record.REGISTER:
+            contact._before = [(body, _state_of(body)) for body in contact._space.bodies]
         if not contact._stepping:  # a step of pymunk's that has gone past the attached space's own
             contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
 

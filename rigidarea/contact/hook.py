@@ -110,10 +110,13 @@ def _roll(constraints: int, by: int) -> None:
     listed[:] = np.roll(listed, by)
 
 
-def _ended(space: Any, *arguments: Any) -> None:
-    """The space is garbage, or the interpreter ends: then a thread that nobody waits for may be within its step."""
-    if space() is None or threading.active_count() == 1:
-        _take_out(*arguments)
+def _ended(space: Any, address: Any, *arguments: Any) -> None:
+    """The space is garbage, or the interpreter ends: then a thread that nobody waits for may be within its step.
+
+    Or was, when this process was forked: then the space is locked for ever.
+    """
+    if (space() is None or threading.active_count() == 1) and not lib.cpSpaceIsLocked(address):
+        _take_out(address, *arguments)
 
 
 def _take_out(space: Any, own: Any, constraints: int, held: Any, store: Store, classes: Any) -> None:

@@ -6,10 +6,9 @@ import os
 
 import pygame
 import pymunk
-import shapely
 
 from ..gallery import Run, load
-from .canvas import placed_polygon
+from ..overlap import covers
 from .picture import FINE, SIZE, Picture
 
 #: How hard the mouse may pull, in weights of the body (or, without gravity, in the scene's drawn forces).
@@ -71,12 +70,11 @@ class Hand:
 
     def grab(self) -> None:
         """Take the dynamic body whose true outline is under the mouse, if there is one."""
-        point = shapely.Point(self.body.position)
         for part in reversed(self.run.parts):
             body = part.body
             if body.body_type != pymunk.Body.DYNAMIC:
                 continue
-            if placed_polygon(part.outline, body).contains(point):
+            if covers(part.outline, (*body.position, body.angle), self.body.position):
                 joint = pymunk.PivotJoint(self.body, body, (0, 0), body.world_to_local(self.body.position))
                 weight = body.mass * abs(self.run.space.gravity)
                 joint.max_force = PULL * (weight or self.run.scene.force)

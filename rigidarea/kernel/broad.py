@@ -306,11 +306,15 @@ def list_anew(tables: Tables) -> None:
 
 
 @kernel
-def end_unlisted(tables: Tables) -> None:
-    """After `list_anew` and `find_pairs`: pairs that have not been found again are none."""
+def end_unlisted(tables: Tables, frame: int) -> None:
+    """After `list_anew` and `find_pairs`: pairs that have not been found again are none, but for those of which
+    Chipmunk has told in this frame: their impulse is yet to be reported.
+    """
     for p in range(len(tables.pairs)):
         pair = tables.pairs[p]
-        if pair.a >= 0 and pair.near != tables.counters[SEARCH]:
+        if pair.a >= 0 and pair.stamp == frame:
+            list_pair(tables, p)
+        elif pair.a >= 0 and pair.near != tables.counters[SEARCH]:
             a = tables.bodies[tables.shapes[pair.a].body]
             b = tables.bodies[tables.shapes[pair.b].body]
             if a.awake or b.awake:

@@ -43,7 +43,7 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> 
     if counters[ASKED] > 0 and not find_pairs(tables):
         return False
     if counters[ANEW]:
-        end_unlisted(tables)
+        end_unlisted(tables, frame)
         counters[ANEW] = 0
     if counters[UNSORTED]:
         drop_pairs(tables, frame)

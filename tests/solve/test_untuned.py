@@ -1,5 +1,6 @@
 """Scenes that games are full of, each beside its exact answer: bounces, one-way platforms, small moments."""
 
+import itertools
 import math
 import random
 
@@ -31,7 +32,7 @@ def disc(space, radius, at, elasticity=0.0):
 
 
 def lines(space, points, radius=0.0, friction=0.0, elasticity=0.0):
-    for a, b in zip(points, points[1:], strict=False):
+    for a, b in itertools.pairwise(points):
         line = pymunk.Segment(space.static_body, a, b, radius)
         line.friction, line.elasticity, line.collision_type = friction, elasticity, 2
         space.add(line)
