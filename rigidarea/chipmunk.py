@@ -374,7 +374,6 @@ def _space_and_constraint() -> dict[str, int]:
     space = pymunk.Space()
     space.gravity = (51.5, 52.5)
     space.sleep_time_threshold = 53.5
-    space.collision_slop = 54.5
     one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)
     joint = pymunk.PivotJoint(one, two, (0, 0), (0, 0))
     joint.max_force, joint.error_bias, joint.max_bias = 61.5, 62.5, 63.5
@@ -386,7 +385,6 @@ def _space_and_constraint() -> dict[str, int]:
         raise LayoutError("iterations: expected at the start of Chipmunk's space")
     found = {
         "space_gravity": _find(memory, "gravity", [51.5, 52.5]),
-        "space_slop": _find(memory, "collision slop", [54.5]),
         "space_bodies": _find_array(space._space, "bodies", [address_of(one._body), address_of(two._body)]),
         "space_constraints": _find_array(space._space, "constraints", [address_of(joint._constraint)]),
     }

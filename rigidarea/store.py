@@ -63,7 +63,7 @@ OFFSETS = [
     *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers", "arbiter_stamp"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
     *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve"),
-    *("space_gravity", "space_slop", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
+    *("space_gravity", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
 

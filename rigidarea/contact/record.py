@@ -428,11 +428,11 @@ def _take_back(body: Any, dt: float) -> None:
 
 
 @kernel
-def _last(s: Any, tables: Tables, slop: float, dt: float) -> None:
-    """What touches still but for `slop` (length): Chipmunk does not take it for separated in this step."""
+def _last(s: Any, tables: Tables, dt: float) -> None:
+    """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if lasts(tables, pair, s.frame, slop, dt):
+        if lasts(tables, pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
@@ -464,7 +464,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
             return False
     look_at_partners(s, load_tables(s))
-    _last(s, load_tables(s), floats(space + s.space_slop, 1)[0], dt)
+    _last(s, load_tables(s), dt)
     s.asleep = len(members(space, s.space_sleeping)) > 0
     if not s.explicit:
         n = len(members(space, s.space_constraints))

@@ -54,11 +54,10 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 
 
 @kernel
-def lasts(tables: Tables, pair: Any, frame: int, slop: float, dt: float) -> bool:
-    """Whether a pair that touched in the frame before still does, for the user: not apart by more than `slop` (length).
+def lasts(tables: Tables, pair: Any, frame: int, dt: float) -> bool:
+    """Whether a pair that touched in the frame before still does, for the user: no farther apart than a solve leaves.
 
-    So far rest itself sends bodies apart, and what turns about a corner leaves it by its centripetal way in a frame of
-    dt. What has begun to touch would be heard to separate and begin anew.
+    And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be heard to separate and begin anew.
     """
     if not pair.verdict or max(pair.stamp, pair.lasting) != frame - 1 or not _heard(tables, pair):
         return False
@@ -66,7 +65,7 @@ def lasts(tables: Tables, pair: Any, frame: int, slop: float, dt: float) -> bool
     b = tables.bodies[tables.shapes[pair.b].body]
     if (a.kind == DRIFTS and a.since == 0.0) or (b.kind == DRIFTS and b.since == 0.0):
         return False  # put there by hand
-    slop = min(slop, PUT_FOLLOWED * min(size_of(a), size_of(b)))
+    slop = PUT_FOLLOWED * min(size_of(a), size_of(b))
     slop += 0.5 * dt * dt * (a.w * a.w * a.reach + b.w * b.w * b.reach)
     if pair.head < 0:
         return bool(pair.parted == tables.counters[SUBSTEP] and pair.gap <= slop)
