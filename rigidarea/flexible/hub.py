@@ -88,19 +88,30 @@ def _shorter(stiff: Array, q: Array) -> float:
 
 
 @kernel
-def hub_of(body, w, sy, buf, state, scheme, stiff, b):  # type: ignore[no-untyped-def]
-    """The hub of body b in the present state; stiff (3, m, m): of its modes, (0, m, m) where that is left out."""
-    x = y = 0.0
+def second_order(body, w, stiff, q, out):  # type: ignore[no-untyped-def]
+    """What the hub moves by squares of the deformation, of the predicted one: within a step it is a constant, as D is,
+    and Newton's iteration need not know its gradient. Into out (2,), body frame.
+
+    stiff (3, m, m): of the body's modes q (m,), (0, m, m) where that is left out.
+    """
+    out[0] = out[1] = 0.0
     if w.tight[0]:
         draw(body, w)
         for k in range(len(w.drawn[0])):  # coordinates of the basis, with tension
             w.drawn[2, k] += w.drawn[0, k]
-        x, y = -_shorter(body.tension[1], w.drawn[2]), -_shorter(body.tension[2], w.drawn[2])
-    n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
+        out[0], out[1] = -_shorter(body.tension[1], w.drawn[2]), -_shorter(body.tension[2], w.drawn[2])
     if len(stiff) > 0:
-        x, y = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
-    x += sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
-    y += sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
+        out[0], out[1] = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
+
+
+@kernel
+def hub_of(body, w, sy, buf, state, scheme, b):  # type: ignore[no-untyped-def]
+    """The hub of body b in the present state."""
+    n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
+    if w.tight[0]:
+        draw(body, w)
+    x = buf.hubs[b, 6] + sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
+    y = buf.hubs[b, 7] + sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
     keep_turn(state, scheme, b, static_displacement(body, w, 2))
     turn = state.turn[b, 0] + dot(body.modes[n - 1], q)
     return Hub(c * x - s * y, s * x + c * y, turn, state.mu[b, 2] + sy.torque[b])
