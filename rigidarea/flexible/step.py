@@ -225,9 +225,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         tighten(boundary_at(bodies, b), w, sy.tense[b])
         w.tight[1] = not slack(sy.tense[b], w.spin[0], w.hub_load[0], w.hub_load[1])
         stiff, lo, hi = geometric_at(bodies, b), sy.first[b], sy.first[b + 1]
-        second_order(
-            boundary_at(bodies, b), w, stiff if w.tight[1] else stiff[:0], state.q[lo:hi], buf.hubs[b, 6:]
-        )
+        second_order(stiff if w.tight[1] else stiff[:0], state.q[lo:hi], buf.hubs[b, 6:])
         for i in range(lo, hi):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
             w.mobility[i - lo] = 1.0 / stiffness
