@@ -104,8 +104,9 @@ class Buffers(NamedTuple):
     shift: Array  # (c,) what the modes' residual moves
     compliance: Array  # (c, c)
     moves: Array  # (c, 6 b)
-    system: Array  # (c, c + 6 b + 1) and its right-hand sides
-    right: Array  # (c, 6 b + 1)
+    system: Array  # (3, c, c) scratch of ``dense.yielded``
+    last: Ints  # (c,) the same
+    right: Array  # (6 b + 1, c) right-hand sides, then solutions
     answer: Array  # (c,) change of each load
     # friction and damping, see ``resist``
     rate: Array  # (b, 3) velocities of the frames
@@ -126,8 +127,8 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 8)),
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
-        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((room, room + 6 * n + 1)),
-        np.zeros((room, 6 * n + 1)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
+        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((3, room, room)), np.zeros(room, np.int64),
+        np.zeros((6 * n + 1, room)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
         np.zeros((4, max(modes, default=0))), np.zeros(4), np.zeros((2, REGIONS)),
     )  # fmt: skip
