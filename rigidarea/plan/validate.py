@@ -226,14 +226,14 @@ def judge(
                 if sum(found) < PATIENCE_S:  # the noise of a long run is small beside it
                     found.append(seconds_of(scene, each))
     costs = [statistics.median(found) for found in times]
-    within = error <= tolerance
+    within, warned = error <= tolerance, not own.reachable or bool(own.unpromised)
     least = min(costs[1:], default=math.inf)
     if within:
         verdict = "within"
     elif not good:
-        verdict = "none reaches it" + ("" if own.reachable else ", and the plan says so")
+        verdict = "none reaches it" + (", and the plan says so" if warned else "")
     else:
-        verdict = "outside" + ("" if own.reachable else ", and the plan says so")
+        verdict = "outside" + (", and the plan says so" if warned else "")
     return {
         "scene": scene.name,
         "varied": varied,
