@@ -28,6 +28,7 @@ class Choice(NamedTuple):
     reason: str
     overridden: bool
     mesh: float  # spacing of the boundary nodes of a level that bends (length)
+    load: float  # what presses or strikes it, as far as that is known (force)
     bed: float  # contact stiffness at which it sinks by the tolerance under its load (force/length²)
 
 
@@ -223,7 +224,7 @@ def choose(
         mesh = (0.5 * shape.length if shape.teeth else shape.height) / ACROSS
         # as deep as the tolerance allows on half of what bears; where nothing presses, as stiff as the body itself
         bed = 2.0 * load / (tolerance * shape.length**2) or material.young * material.thickness / shape.length
-        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, bed))
+        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, load, bed))
     return out
 
 

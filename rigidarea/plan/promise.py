@@ -29,6 +29,8 @@ def unpromised(
     bends = [choice for choice in bending if choice.level != "rigid"]
     if any(_meets_rigid(space, choice.body, bends) for choice in bends):
         out.append("what bends meets what is rigid with its undeformed outline")
+    if any(choice.load == 0.0 for choice in bending):
+        out.append("what presses a body with a material: neither weight, motor nor blow is seen on one")
     if _hinged(space):
         out.append("bodies that hang in one another by joints: no estimate knows what joints pull")
     row = _row(seen, seconds)

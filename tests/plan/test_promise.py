@@ -108,6 +108,7 @@ def test_blows_choose_the_level():
     assert made.elastic[0].level == "modal" and made.elastic[0].reason.startswith("a blow at 1:")
     ball[0].velocity = 0.0, 0.0
     assert made.again().elastic[0].level == "rigid"
+    assert any("what presses a body" in reason for reason in made.unpromised)
     rubber = disc(0.05, 1100.0 * np.pi * 0.05**2 * 0.02, (0.0, 0.5))
     soft = ra.plan(space_with(rubber, gravity=9.81), "0.1%", materials={rubber[0]: RUBBER})
     assert soft.elastic[0].level == "modal"
