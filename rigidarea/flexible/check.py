@@ -122,30 +122,37 @@ def held_nodes(
 
 
 def check_start(bodies: Sequence[Any], pairs: NDArray[np.int64], limit: float) -> None:
-    """No pair may overlap at t = 0 by a mean depth of more than ``limit``, or than half of a body's half thickness.
+    """No pair may overlap at t = 0 deeper than ``limit``, or than a body's half thickness: from the other side of the
+    middle a contact would push the wrong way.
 
-    Area over perimeter is half of the half thickness, of a bar as of a disc; from the other side of the middle a
-    contact would push the wrong way. The depth of an overlap is twice its area over its perimeter.
+    The half thickness is the radius of the largest circle in a body, the depth the diameter of that in the overlap.
     """
     solids = [_solid(b) for b in bodies]
     for i, j in pairs.tolist():
         reach = sum(float(np.linalg.norm(bodies[k].boundary.points, axis=1).max()) for k in (i, j))
         if np.hypot(*np.subtract(bodies[i].position, bodies[j].position)) > reach:
             continue
-        most = min(limit, solids[i][1], solids[j][1])
-        shared = shapely.intersection(solids[i][0], solids[j][0])
+        shared = shapely.intersection(solids[i], solids[j])
+        if shared.area == 0.0:
+            continue
+        most = min(limit, _within(solids[i]), _within(solids[j]))
         for part in getattr(shared, "geoms", [shared]):
-            depth = 2.0 * part.area / part.length if part.length > 0 else 0.0
+            depth = 2.0 * _within(part)
             if depth > most:
                 x, y = part.centroid.coords[0]
                 raise ValueError(
-                    f"bodies {i} and {j} overlap at t = 0: expected a mean depth of at most {most:.4g}, got {depth:.4g}"
+                    f"bodies {i} and {j} overlap at t = 0: expected a depth of at most {most:.4g}, got {depth:.4g}"
                     f" about ({x:.4g}, {y:.4g})"
                 )
 
 
-def _solid(body: Any) -> tuple[Any, float]:
-    """A body where it is at t = 0, as far as its contact rings bound it (shapely), and its area over its perimeter.
+def _within(part: Any) -> float:
+    """The radius of the largest circle in a polygon (shapely); of a line or a point: 0."""
+    return float(shapely.maximum_inscribed_circle(part).length) if part.area > 0.0 else 0.0
+
+
+def _solid(body: Any) -> Any:
+    """A body where it is at t = 0, as far as its contact rings bound it (shapely).
 
     Where only holes touch others, the body goes on around them farther than any depth that is looked for.
     """
@@ -157,10 +164,8 @@ def _solid(body: Any) -> tuple[Any, float]:
     outer = [r for r in rings if r.geom_type != "Polygon" or r.exterior.is_ccw]
     holes = shapely.unary_union([r for r in rings if r not in outer])
     if outer:
-        solid = shapely.union_all(outer).difference(holes)
-        return solid, solid.area / solid.length
-    around = holes.area / holes.length
-    return holes.buffer(4.0 * around).difference(holes), around
+        return shapely.union_all(outer).difference(holes)
+    return holes.buffer(4.0 * holes.area / holes.length).difference(holes)
 
 
 def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -> None:

@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work, make_ready
-from rigidarea.flexible.dense import dot, eliminate
+from rigidarea.flexible.dense import dot, yielded
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
@@ -386,36 +386,22 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         columns += 6 if held else 3
     # (I + K C̃) y = −K (a + P δ)
     for i in range(n):
-        row, k = buf.system[i], s.stiffness[i]
-        for j in range(n + columns + 1):
-            row[j] = 0.0
-        row[i] = 1.0
-        right = row[n:]
-        for m in range(n):
-            stiff = k[m]
-            if stiff == 0.0:
-                continue
-            for j in range(n):
-                row[j] += stiff * buf.compliance[m, j]
-            right[0] -= stiff * (buf.stale[m] + buf.shift[m])
-            for c in range(columns):
-                right[c + 1] -= stiff * buf.moves[m, c]
-    eliminate(buf.system, n, columns + 1)
-    for i in range(n):
-        for c in range(columns + 1):
-            buf.right[i, c] = buf.system[i, n + c]
+        buf.right[0, i] = buf.stale[i] + buf.shift[i]
+        for c in range(columns):
+            buf.right[c + 1, i] = buf.moves[i, c]
+    yielded(s.stiffness, buf.compliance, buf.right, n, columns + 1, buf.system, buf.last)
     off = 0.0
     for i in range(n):
-        off += abs(buf.right[i, 0])
+        off += abs(buf.right[0, i])
     for c in range(columns):
         to = buf.active[c]
         for i in range(n):
             p = buf.moves[i, c]
             if p == 0.0:
                 continue
-            buf.push[to] += p * buf.right[i, 0]
+            buf.push[to] += p * buf.right[0, i]
             for d in range(columns):
-                buf.tangent[to, buf.active[d]] -= p * buf.right[i, d + 1]
+                buf.tangent[to, buf.active[d]] -= p * buf.right[d + 1, i]
     buf.counts[2] = columns
     return off
 
@@ -436,13 +422,13 @@ def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float, part: f
                 x, y = w.given_load[j, 0], w.given_load[j, 1]
                 add_load(w.node_load, w.node_flag, w.loaded, node, rest * x, rest * y)
     for i in range(n):
-        y = buf.right[i, 0]
+        y = buf.right[0, i]
         for c in range(columns):
             to = buf.active[c]
             if to < count:
-                y += buf.right[i, c + 1] * buf.rhs[to]
+                y += buf.right[c + 1, i] * buf.rhs[to]
             elif buf.column[to - count] >= 0:
-                y += buf.right[i, c + 1] * buf.rhs[buf.column[to - count]] / scale
+                y += buf.right[c + 1, i] * buf.rhs[buf.column[to - count]] / scale
         buf.answer[i] = y
         if s.node[i] >= 0:
             w = work_at(bodies, s.side[i])

@@ -3,9 +3,9 @@
 Its angle is θ + Φ_h q + φ: the frame's, the modes', and that by static flexibility. Of all three the rate is the
 scheme's, so the hub's rate is B times the rates of the unknowns with the same B that takes the hub's moment to them: a
 damper takes the power that it should, whatever the step. (With φ left out of the rate a damper drives a hub that is
-not at the centre of mass; with its difference over the step for a rate it still does, where ρ∞ > 0.) So is its place: a
-force on the hub stiffens the body by S_x and S_y (``frame``, ``tension``), so the hub moves by −½ qᵀ S q more than
-linearly: a beam that bends is shorter.
+not at the centre of mass; with its difference over the step for a rate it still does, where ρ∞ > 0.) A force on the hub
+stiffens a modal body by S_x and S_y (``frame``), so the hub moves by −½ qᵀ S q more than linearly: a beam that bends is
+shorter. (A compliant body's hub has no such place: it would follow the hub's own force at once.)
 """
 
 from __future__ import annotations
@@ -88,19 +88,25 @@ def _shorter(stiff: Array, q: Array) -> float:
 
 
 @kernel
-def hub_of(body, w, sy, buf, state, scheme, stiff, b):  # type: ignore[no-untyped-def]
-    """The hub of body b in the present state; stiff (3, m, m): of its modes, (0, m, m) where that is left out."""
-    x = y = 0.0
+def second_order(stiff, q, out):  # type: ignore[no-untyped-def]
+    """What the hub moves by squares of a modal body's deformation, the predicted one, so that within a step it is a
+    constant and Newton's iteration need not know its gradient. Into out (2,), body frame.
+
+    stiff (3, m, m): of the body's modes q (m,), (0, m, m) where that is left out.
+    """
+    out[0] = out[1] = 0.0
+    if len(stiff) > 0:
+        out[0], out[1] = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
+
+
+@kernel
+def hub_of(body, w, sy, buf, state, scheme, b):  # type: ignore[no-untyped-def]
+    """The hub of body b in the present state."""
+    n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
     if w.tight[0]:
         draw(body, w)
-        for k in range(len(w.drawn[0])):  # coordinates of the basis, with tension
-            w.drawn[2, k] += w.drawn[0, k]
-        x, y = -_shorter(body.tension[1], w.drawn[2]), -_shorter(body.tension[2], w.drawn[2])
-    n, q, c, s = len(body.modes), state.q[sy.first[b] : sy.first[b + 1]], buf.pose[b, 2], buf.pose[b, 3]
-    if len(stiff) > 0:
-        x, y = -_shorter(stiff[1], q), -_shorter(stiff[2], q)
-    x += sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
-    y += sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
+    x = buf.hubs[b, 6] + sy.hub[b, 0] + static_displacement(body, w, 0) + dot(body.modes[n - 3], q)
+    y = buf.hubs[b, 7] + sy.hub[b, 1] + static_displacement(body, w, 1) + dot(body.modes[n - 2], q)
     keep_turn(state, scheme, b, static_displacement(body, w, 2))
     turn = state.turn[b, 0] + dot(body.modes[n - 1], q)
     return Hub(c * x - s * y, s * x + c * y, turn, state.mu[b, 2] + sy.torque[b])

@@ -26,7 +26,7 @@ from rigidarea.flexible.check import (
 )
 from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.joints import JOINT, Joint
-from rigidarea.flexible.run import BODY, HALVINGS, HEAD, run_steps
+from rigidarea.flexible.run import BODY, HALVINGS, HEAD, NOT_FINITE, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.start import moving, settle, start, weighed
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
@@ -307,11 +307,6 @@ class Simulation:
             )
         if code < 0:
             raise RuntimeError(f"step {done} (t = {self.time:.6g}, h = {h:g}, {self._trouble(code)}")
-        if not (np.isfinite(self.state.x).all() and np.isfinite(self.state.v).all()):
-            raise RuntimeError(
-                f"the state of the bodies is not finite at t = {self.time:.6g}, h = {h:g}: expected forces, stiffnesses"
-                " and speeds whose products are numbers"
-            )
         # a column at a time: a maximum over the long axis of a narrow array takes numpy fifty times as long
         spin = np.array([np.abs(w).max(initial=0.0) for w in self.record.v[:, :, 2].T])
         watch(self.bodies, self.system.size, self._buffers.most, spin)
@@ -323,6 +318,7 @@ class Simulation:
             MANY: "more contact points than the work arrays hold",
             TORN: "a boundary crosses itself, or the bodies overlap deeper than a feature",
             SLICED: "one body passes through the other",
+            NOT_FINITE: "the state is not finite: expected forces, stiffnesses and speeds whose products are numbers",
         }.get(code, "no convergence")
         told = f"halved {HALVINGS} times): {reason}"
         if len(self.pairs):

@@ -65,6 +65,12 @@ def _angles(points: Array, triangles: NDArray[np.int64]) -> Array:
     return out
 
 
+def turns(ring: Array) -> Array:
+    """By how much a closed ring (n, 2) turns at each of its points (n,), radians, counter-clockwise positive."""
+    u, v = ring - np.roll(ring, 1, 0), np.roll(ring, -1, 0) - ring
+    return np.asarray(np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.einsum("ij,ij->i", u, v)))
+
+
 def resample(ring: Array, size: float, refine: int = 1) -> Array:
     """Nodes on a closed ring about ``size`` apart, (k, 2): corners kept, arcs between them divided evenly.
 
@@ -76,9 +82,7 @@ def resample(ring: Array, size: float, refine: int = 1) -> Array:
     ring = np.asarray(ring, float)
     step = np.roll(ring, -1, 0) - ring
     length = np.hypot(step[:, 0], step[:, 1])
-    before = np.roll(step, 1, 0)
-    cross, dot = before[:, 0] * step[:, 1] - before[:, 1] * step[:, 0], np.einsum("ij,ij->i", before, step)
-    corner = np.flatnonzero(np.abs(np.arctan2(cross, dot)) > CORNER)
+    corner = np.flatnonzero(np.abs(turns(ring)) > CORNER)
     if len(corner) == 0:
         corner = np.array([0])
     total = np.concatenate([[0.0], np.cumsum(length)])
@@ -110,10 +114,8 @@ def keep_area(ring: Array) -> Array:
     stay.
     """
     before, after = np.roll(ring, 1, 0), np.roll(ring, -1, 0)
-    u, v = ring - before, after - ring
-    turn = np.arctan2(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0], np.einsum("ij,ij->i", u, v))
     out = (ring - 0.5 * (before + after)) / 6
-    out[np.abs(turn) > CORNER] = 0.0
+    out[np.abs(turns(ring)) > CORNER] = 0.0
     return ring + out
 
 

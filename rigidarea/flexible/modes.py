@@ -27,7 +27,7 @@ from rigidarea.flexible.blocks import WIDE, Pieces, no_pieces, spans, whole
 from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
 from rigidarea.flexible.factor import factorise, forward, substitute, trace
-from rigidarea.flexible.mesh import Mesh
+from rigidarea.flexible.mesh import CORNER, Mesh, turns
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -141,16 +141,23 @@ def carriers(mesh: Mesh, contact_rings: Sequence[int], sides: int) -> sp.csc_arr
 
     A load is spread as linear shape functions of the loaded nodes' spacing would have it, over all of the mesh's nodes
     there, and they are moved by the same mean. A load on single nodes, with others between them, would be one
-    that the mesh's stresses see node by node.
+    that the mesh's stresses see node by node. Round a corner nothing is spread, and less towards it: on either side as
+    far, so that a load's mean place is its node.
     """
     rows, columns, values, first = [], [], [], 0
-    share = 1.0 - np.abs(np.arange(1 - sides, sides)) / sides
+    offset = np.arange(1 - sides, sides)
     for k in contact_rings:
         ring = mesh.rings[k]
+        corner = np.abs(turns(mesh.points[ring])) > CORNER
         at = np.arange(0, len(ring), sides)
-        rows.append(ring[(at[:, None] + np.arange(1 - sides, sides)) % len(ring)].ravel())
-        columns.append(np.repeat(first + np.arange(len(at)), len(share)))
-        values.append(np.tile(share / sides, len(at)))
+        width = np.full(len(at), float(sides))
+        for d in range(1, sides):
+            near = corner[(at - (sides - 1 - d)) % len(ring)] | corner[(at + (sides - 1 - d)) % len(ring)]
+            width[near] = sides - d
+        share = np.maximum(0.0, 1.0 - np.abs(offset) / width[:, None]) / width[:, None]
+        rows.append(ring[(at[:, None] + offset) % len(ring)].ravel())
+        columns.append(np.repeat(first + np.arange(len(at)), len(offset)))
+        values.append(share.ravel())
         first += len(at)
     i, j, v = (np.concatenate(x) for x in (rows, columns, values))
     one = sp.csc_array((v, (i, j)), shape=(len(mesh.points), first))

@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import make_ready
 from rigidarea.flexible.dense import dot
 from rigidarea.flexible.hub import hub_angle
+from rigidarea.flexible.place import clear_nodes
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
 from rigidarea.flexible.tension import between
 from rigidarea.kernel.jit import entry, kernel
 
+NOT_FINITE = -11
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
 BODY = 8  # columns of a body in a row of the record: frame, its velocity, hub's angle and its rate
 HEAD = 7  # columns before the bodies': time, iterations, halvings, strain and kinetic energy, regions, loads
@@ -35,6 +39,30 @@ def _copy(source, target):  # type: ignore[no-untyped-def]
         target.dq[i] = source.dq[i]
         target.ddq[i] = source.ddq[i]
         target.auxq[i] = source.auxq[i]
+
+
+@kernel
+def _finite(state):  # type: ignore[no-untyped-def]
+    total = 0.0
+    for b in range(len(state.x)):
+        for i in range(3):
+            total += abs(state.x[b, i]) + abs(state.v[b, i]) + abs(state.mu[b, i])
+    for i in range(len(state.q)):
+        total += abs(state.q[i]) + abs(state.dq[i])
+    return np.isfinite(total)
+
+
+@kernel
+def _unloaded(bodies, sy, state, buf):  # type: ignore[no-untyped-def]
+    """What a step left that was not finite is taken out of the work arrays: no loads, hubs' as in ``state``."""
+    for b in range(len(sy.mass)):
+        w, mu = work_at(bodies, b), state.mu[b]
+        clear_nodes(w)
+        c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
+        w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
+        w.hub_load[2] = mu[2] + sy.torque[b]
+    buf.pace[:] = 0.0
+    buf.sway[:] = 0.0
 
 
 @kernel
@@ -138,6 +166,8 @@ def run_steps(  # type: ignore[no-untyped-def]
             for part in range(parts):
                 at = t0 + h * (n + part / parts)
                 code = step(bodies, sy, state, pairs, st, s, found, buf, at, h / parts)
+                if code > 0 and not _finite(state):
+                    code = NOT_FINITE
                 if code < 0:
                     break
                 keep_springs(buf, 0, 1)
@@ -146,6 +176,8 @@ def run_steps(  # type: ignore[no-untyped-def]
                 break
             _copy(saved, state)
             keep_springs(buf, 2, 1)
+            if code == NOT_FINITE:
+                _unloaded(bodies, sy, state, buf)
             if code == FULL:
                 return n, code
             parts *= 2

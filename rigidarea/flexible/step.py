@@ -21,7 +21,7 @@ from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
 from rigidarea.flexible.frame import inertia_forces
-from rigidarea.flexible.hub import Hub, hub_of, keep_turn, static_displacement
+from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
 from rigidarea.flexible.place import clear_loads, clear_nodes
@@ -224,9 +224,11 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         w.spin[0] = state.v[b, 2] ** 2
         tighten(boundary_at(bodies, b), w, sy.tense[b])
         w.tight[1] = not slack(sy.tense[b], w.spin[0], w.hub_load[0], w.hub_load[1])
-        for i in range(sy.first[b], sy.first[b + 1]):
+        stiff, lo, hi = geometric_at(bodies, b), sy.first[b], sy.first[b + 1]
+        second_order(stiff if w.tight[1] else stiff[:0], state.q[lo:hi], buf.hubs[b, 6:])
+        for i in range(lo, hi):
             stiffness = scheme.acc + sy.viscous[i] * scheme.vel + sy.square[i]
-            w.mobility[i - sy.first[b]] = 1.0 / stiffness
+            w.mobility[i - lo] = 1.0 / stiffness
     if st.loose and _flies(bodies, sy, state, scheme, pairs, st, s, found, buf):
         return 1
     end = _number(sy, buf)
@@ -259,7 +261,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             stiff = geometric_at(bodies, b)
             if not w.tight[1]:
                 stiff = stiff[:0]
-            hub = hub_of(body, w, sy, buf, state, scheme, stiff, b)
+            hub = hub_of(body, w, sy, buf, state, scheme, b)
             moment = inertia_forces(
                 sy.inertia[b], sy.stretch[lo:hi], coupling_at(bodies, b), stiff, w.hub_load[0],
                 w.hub_load[1], state.q[lo:hi], state.dq[lo:hi], state.ddq[lo:hi], state.v[b, 2], state.acc[b, 2],

@@ -57,7 +57,8 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 def lasts(tables: Tables, pair: Any, frame: int, dt: float) -> bool:
     """Whether a pair that touched in the frame before still does, for the user: no farther apart than a solve leaves.
 
-    And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be heard to separate and begin anew.
+    And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be
+    heard to separate and begin anew.
     """
     if not pair.verdict or max(pair.stamp, pair.lasting) != frame - 1 or not _heard(tables, pair):
         return False

@@ -32,10 +32,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     add(
         "--tolerance",
-        type=float,
-        default=0.01,
+        default="1%",
         metavar="T",
-        help="relative error allowed (default %(default)s)",
+        help="relative error allowed, 0.01 or 1%% (default %(default)s)",
     )
     add(
         "--seconds",
@@ -88,6 +87,7 @@ def told(made: Plan) -> dict[str, Any]:
         "penetration": made.penetration,
         "stiffness": made.stiffness,
         "reachable": made.reachable,
+        "unpromised": made.unpromised,
         "predicted_error": made.error,
         "predicted_cost_s_per_s": made.cost_s_per_s,
         "lines": [
@@ -112,7 +112,10 @@ class _Found(BaseException):
 
 
 def of_script(name: str, arguments: argparse.Namespace) -> Plan:
-    """The plan of the first space that a program steps, before that step; the program ends there."""
+    """The plan of the first space that a program steps, before that step; the program ends there.
+
+    What its bodies are made of it says by `body.material = rigidarea.flexible.Material(...)`.
+    """
     from ..compat.host import Host
 
     if not Path(name).is_file():
@@ -135,7 +138,21 @@ def of_script(name: str, arguments: argparse.Namespace) -> Plan:
         raise ValueError(f"{name} stepped no pymunk space: there is nothing to plan")
     space, dt = spaces[0]
     frame = dt if dt > 0.0 else 1.0 / 60.0
-    return plan(space, arguments.tolerance, arguments.seconds, frame=frame)
+    return plan(space, arguments.tolerance, arguments.seconds, frame=frame, materials=_materials(space))
+
+
+def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
+    """What a program's bodies are made of: `body.material`, or that of one of its shapes, where it gives them one."""
+    from ..flexible import Material
+
+    out = {}
+    for body in space.bodies:
+        for thing in (body, *body.shapes):
+            given = getattr(thing, "material", None)
+            if isinstance(given, Material):
+                out[body] = given
+                break
+    return out
 
 
 def _validate(arguments: argparse.Namespace) -> int:

@@ -28,6 +28,7 @@ class Choice(NamedTuple):
     reason: str
     overridden: bool
     mesh: float  # spacing of the boundary nodes of a level that bends (length)
+    load: float  # what presses or strikes it, as far as that is known (force)
     bed: float  # contact stiffness at which it sinks by the tolerance under its load (force/length²)
 
 
@@ -85,6 +86,50 @@ def load_on(space: pymunk.Space, body: pymunk.Body, lever: float) -> float:
     return float(body.mass * space.gravity.length)
 
 
+def blow_on(space: pymunk.Space, body: pymunk.Body) -> tuple[float, float]:
+    """(the speed, the mass) of the heaviest blow that a body is about to take: 0, infinite where there is none.
+
+    Of each other body with shapes: how fast the two come on along the axis that parts their boxes, and by how much more
+    once one has fallen through the gap; their reduced mass. The blow is the largest v √m.
+    """
+    worst = 0.0, math.inf
+    mine = _box(body)
+    if mine is None:
+        return worst
+    for other in (*space.bodies, space.static_body):
+        theirs = _box(other)
+        if other is body or theirs is None or any(other in (j.a, j.b) for j in body.constraints):
+            continue
+        own = [b for b in (body, other) if b.body_type == pymunk.Body.DYNAMIC]
+        if not own:
+            continue
+        # apart in x and y, negative where the boxes overlap: they part along the larger
+        gap = [max(mine[i] - theirs[i + 2], theirs[i] - mine[i + 2]) for i in range(2)]
+        along = 0 if gap[0] > gap[1] else 1
+        if gap[1 - along] > 0.0:
+            continue  # they pass each other, as they stand now
+        side = 1.0 if mine[along] + mine[along + 2] < theirs[along] + theirs[along + 2] else -1.0
+        v = side * (body.velocity[along] - other.velocity[along])
+        falls = [side * space.gravity[along], -side * space.gravity[along]]
+        pulled = sum(falls[i] for i, b in enumerate((body, other)) if b in own)
+        square = v * abs(v) + 2.0 * pulled * max(0.0, gap[along])
+        if square <= 0.0:
+            continue
+        mass = 1.0 / sum(1.0 / b.mass for b in own)
+        if square * mass > (worst[0] ** 2 * worst[1] if worst[0] > 0.0 else 0.0):
+            worst = math.sqrt(square), mass
+    return worst
+
+
+def _box(body: pymunk.Body) -> tuple[float, float, float, float] | None:
+    """Left, bottom, right, top of a body's shapes; None without any."""
+    boxes = [shape.cache_bb() for shape in body.shapes if not shape.sensor]
+    if not boxes:
+        return None
+    low = min(box.left for box in boxes), min(box.bottom for box in boxes)
+    return (*low, max(box.right for box in boxes), max(box.top for box in boxes))
+
+
 def first_frequency(shape: Shape, material: Any) -> float:
     """First elastic frequency (rad/time): of a ring where there is a bore, of a lump or bar else.
 
@@ -114,10 +159,11 @@ def choose(
     materials: by body. stiffness: k of the contacts (force/length²), None if each pair has its own. overrides: what
     somebody has said otherwise, by body. tolerance: relative.
 
-    Rigid where the body bends by less than the tolerance allows, as a fraction of a tooth's pitch or of its extent;
-    compliant where what statics leaves out is less than that; else modal, with the modes up to three times the
-    excitation. What excites is the mesh of the teeth at the present spin, or where there are none the contact's
-    own frequency.
+    What loads it is its weight or its motor, or a blow that it is about to take: v √(K m), for as long as √(m/K) says,
+    K its own stiffness and the contact's in series. Rigid where the body bends by less than the tolerance allows, as a
+    fraction of a tooth's pitch or of its extent; compliant where what statics leaves out is less than that; else modal,
+    with the modes up to three times the excitation. What excites is the blow, the mesh of the teeth at the present
+    spin, or where there are none the contact's own frequency.
     """
     out = []
     loads = {}
@@ -136,13 +182,23 @@ def choose(
         height = shape.length if not shape.teeth else 0.5 * shape.length
         if not shape.teeth:
             slender, height = shape.length, shape.height
-        bends = est.deflection(load, material.young, material.thickness, slender, height)
+        give = est.deflection(1.0, material.young, material.thickness, slender, height)
+        bends = load * give
         excitation = shape.teeth * abs(body.angular_velocity)
         if not shape.teeth and stiffness is not None and body.body_type == pymunk.Body.DYNAMIC:
             excitation = float(est.contact_frequency(stiffness, shape.height, body.mass))
+        speed, mass = blow_on(space, body)
+        struck = (
+            est.blow(speed, mass, give, stiffness, shape.height) if speed > 0.0 else est.Blow(0.0, 0.0, 0.0)
+        )
+        hit = struck.force > load
+        if hit:
+            load, bends, excitation = struck.force, struck.force * give, struck.frequency
         first = first_frequency(shape, material)
         static = bends / shape.length
         left = static * est.dynamic_error(excitation, first)
+        if hit:  # of the blow's speed, what stays in it as vibration
+            left = max(left, struck.share * min(1.0, est.dynamic_error(excitation, first)))
         sinks = est.penetration(load, stiffness, 0.5 * shape.length) / shape.length if stiffness else 0.0
         told = f"bends {static:.1e} of {'its pitch' if shape.teeth else 'its length'}"
         modes = 0
@@ -157,6 +213,8 @@ def choose(
                 3.0 * max(excitation, first), shape.area, material.young, material.density
             )
             reason = f"{excitation:.3g} rad/s against {first:.3g}: resonance, {modes} modes"
+        if hit:
+            reason = f"a blow at {speed:.3g}: {reason}"
         if sinks > max(tolerance, static):
             reason += f"; sinks {sinks:.1e} at this k"
             error = max(error, sinks)
@@ -166,7 +224,7 @@ def choose(
         mesh = (0.5 * shape.length if shape.teeth else shape.height) / ACROSS
         # as deep as the tolerance allows on half of what bears; where nothing presses, as stiff as the body itself
         bed = 2.0 * load / (tolerance * shape.length**2) or material.young * material.thickness / shape.length
-        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, bed))
+        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, load, bed))
     return out
 
 

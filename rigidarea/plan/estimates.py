@@ -14,7 +14,7 @@ of what bends (length).
 from __future__ import annotations
 
 import math
-from typing import TypeVar
+from typing import NamedTuple, TypeVar
 
 import numpy as np
 
@@ -172,6 +172,25 @@ def deflection(load: float, young: float, thickness: float, length: float, heigh
     """
     slender = length / height
     return load / (young * thickness) * (slender + 0.25 * slender**3)
+
+
+class Blow(NamedTuple):
+    """A blow on what yields: its largest force, its frequency (rad/time), and the body's share of its energy."""
+
+    force: float
+    frequency: float
+    share: float
+
+
+def blow(speed: float, mass: float, give: float, stiffness: float | None, chord: float) -> Blow:
+    """A mass that comes at a speed on what yields by ``give`` (length/force) behind a contact of ``stiffness``
+    (force/length²; None: rigid) along ``chord`` (length).
+
+    F = v sqrt(K m), w = sqrt(K/m), 1/K = give + 1/(k L): the energy m v²/2 is F²/2K (Timoshenko, Strength of Materials;
+    W. Goldsmith, Impact, 1960, chapter 4).
+    """
+    both = give + (1.0 / (stiffness * chord) if stiffness else 0.0)
+    return Blow(speed * math.sqrt(mass / both), math.sqrt(1.0 / (both * mass)), give / both)
 
 
 def bar_frequency(young: float, density: float, length: float, height: float) -> float:

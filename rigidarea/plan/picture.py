@@ -59,9 +59,11 @@ def summaries(report: Row) -> str:
         "the study's scenes": report["summary"]["scenes"],
         **{f"… at {100 * float(t):g} %": found for t, found in report["summary"]["by_tolerance"].items()},
         "seeded variations": report["summary"]["variations"],
+        "scenes that no estimate was found on": report["summary"]["unseen"],
     }
     columns = (
-        *("", "cells", "some setting is within", "planned within", "cost ratio, median", "worst"),
+        *("", "cells", "some setting is within", "planned within", "outside, and said so"),
+        *("cost ratio, median", "worst"),
         *("none is within", "said so"),
     )
     rows = []
@@ -70,6 +72,7 @@ def summaries(report: Row) -> str:
             (
                 *(name, str(found["cells"]), str(found["reachable"])),
                 f"{found['within_tolerance_percent']:.0f} %" if found["reachable"] else "–",
+                str(found["outside_said"]),
                 *(
                     number(found["cost_ratio_median"]),
                     number(found["cost_ratio_worst"]),

@@ -21,6 +21,7 @@ from .curves import FACETS
 from .facts import AHEAD, Facts, facts
 from .parts import Part, parts_of
 from .predict import Cause, Setting, causes, total
+from .promise import unpromised
 from .survey import survey
 from .table import Line, lines_of, text_of
 
@@ -51,19 +52,20 @@ class Plan:
     `stiffness` where it was given; `sampling`, the sagitta of each curved outline that is sampled anew (length).
     `finer`: bodies whose islands take more substeps than `steps`, and how many. `error` is predicted, `cost_s_per_s`
     too (processor time over simulated time). `reachable`: whether any setting is predicted to be within the tolerance;
-    where none is, the plan is the one with the least predicted error.
+    where none is, the plan is the one with the least predicted error. `unpromised`: what bears on the error and no
+    estimate knows, a sentence each.
     """
 
     def __init__(
         self,
         space: pymunk.Space,
-        tolerance: float,
+        tolerance: float | str,
         seconds: float | None,
         frame: float,
         materials: Mapping[pymunk.Body, Any],
     ) -> None:
         self.space = space
-        self.tolerance = positive(tolerance, "tolerance")
+        self.tolerance = relative(tolerance)
         self.seconds = SECONDS if seconds is None else positive(seconds, "seconds")
         self.frame = positive(frame, "frame")
         self.materials = dict(materials)
@@ -76,6 +78,7 @@ class Plan:
         self._asked: set[pymunk.Body] = set()
         self._sampled: dict[pymunk.Shape, float] = {}
         self.reachable = False
+        self.unpromised: list[str] = []
         self.error = self.cost_s_per_s = math.inf
         self.causes: list[Cause] = []
         self.elastic: list[elastic.Choice] = []
@@ -140,6 +143,7 @@ class Plan:
             ]
             self.causes = sorted(told, key=lambda cause: -cause.error)
             self.error = self.causes[0].error if self.causes else 0.0
+        self.unpromised = unpromised(self.space, seen, self.causes, self.elastic, self.seconds)
         self.finer = self._finer(finer if keep else {})
         if keep:
             self.sampling = sampled
@@ -408,6 +412,20 @@ def _native_will_do(found: Facts, stiffness: float | None) -> bool:
     return stiffness is None and all(outline is None for outline in found.seen.outlines)
 
 
+def relative(tolerance: float | str) -> float:
+    """A relative tolerance: 0.05, "0.05" or "5%". Raises ValueError for what is none of these."""
+    if not isinstance(tolerance, str):
+        return positive(tolerance, "tolerance")
+    text = tolerance.strip()
+    try:
+        number = float(text.removesuffix("%"))
+    except ValueError:
+        raise ValueError(
+            f"tolerance must be a number, or a number of per cent like 5%, got {tolerance!r:.80}"
+        ) from None
+    return positive(number, "tolerance") / (100.0 if text.endswith("%") else 1.0)
+
+
 def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]) -> None:
     if target is None:
         allowed: tuple[str, ...] = SETTINGS[:-1]
@@ -434,7 +452,7 @@ def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, A
 
 def plan(
     space: pymunk.Space,
-    tolerance: float,
+    tolerance: float | str,
     seconds: float | None = None,
     *,
     frame: float = 1 / 60,
@@ -443,7 +461,7 @@ def plan(
     """Choose the cheapest model and settings for a space whose predicted error is within `tolerance`.
 
     tolerance: relative, of the study's errors: a velocity's over the approach speed, a path's over its length or the
-        body's size; 0.01 is one per cent.
+        body's size; 0.01 is one per cent, and so is "1%".
     seconds: simulated time over which it must hold, 10 unless said; errors that grow (bounces, curved paths) grow
     with it. frame: length of a frame (time).
     materials: what bodies are made of (`flexible.Material`), where it matters whether they bend.

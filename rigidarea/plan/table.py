@@ -1,4 +1,4 @@
-"""A plan to be read: its table, line by line, and the names of what is in it."""
+"""A plan to be read: its table, line by line."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import pymunk
 
 from . import estimates as est
 from .predict import Cause, causes
+from .promise import name_of
 
 if TYPE_CHECKING:
     from .plan import Plan
@@ -46,7 +47,7 @@ def lines_of(plan: Plan) -> list[Line]:
     for cause in plan.causes:
         out.append(
             Line(
-                name_of(plan, cause.who),
+                name_of(plan.space, cause.who),
                 "as the space",
                 f"{cause.name}: {cause.number}",
                 cause.error,
@@ -70,13 +71,13 @@ def lines_of(plan: Plan) -> list[Line]:
     for target, settings in plan.overrides.items():
         if isinstance(target, pymunk.Body) and "steps" in settings:
             text = f"{settings['steps']} substeps for its island (yours)"
-            out.append(Line(name_of(plan, target), text, "", float("nan"), 0.0, target))
+            out.append(Line(name_of(plan.space, target), text, "", float("nan"), 0.0, target))
     for shape, sagitta in plan.sampling.items():
         yours = " (yours)" if "sampling" in plan.overrides.get(shape, {}) else ""
         turn = est.facet_turn(abs(float(seen.radius[seen.shapes.index(shape)])) or 1.0, sagitta)
         out.append(
             Line(
-                name_of(plan, shape),
+                name_of(plan.space, shape),
                 f"sampled to {sagitta:.1e}{yours}",
                 f"facets turn by {turn:.1e} rad",
                 float("nan"),
@@ -88,7 +89,7 @@ def lines_of(plan: Plan) -> list[Line]:
         yours = " (yours)" if choice.overridden else ""
         out.append(
             Line(
-                name_of(plan, choice.body),
+                name_of(plan.space, choice.body),
                 f"{choice.level}{yours}",
                 choice.reason,
                 choice.error,
@@ -111,21 +112,6 @@ def lines_of(plan: Plan) -> list[Line]:
     return out
 
 
-def name_of(plan: Plan, who: Any) -> str:
-    """What a body or shape is called in a table; None: the space."""
-    if who is None:
-        return "space"
-    if isinstance(who, pymunk.Shape):
-        body = who.body
-        return f"{type(who).__name__} of {name_of(plan, body)}" if body is not None else type(who).__name__
-    if who is plan.space.static_body:
-        return "static_body"
-    for i, body in enumerate(plan.space.bodies):
-        if body is who:
-            return f"bodies[{i}]"
-    return "a body that is gone"
-
-
 def text_of(plan: Plan) -> str:
     """The table as text."""
     rows = [("", "choice", "decided by", "error", "ms a frame")]
@@ -145,4 +131,7 @@ def text_of(plan: Plan) -> str:
         "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows
     )
     verdict = "predicted" if plan.reachable else "no setting is predicted to reach it: the least is"
-    return f"plan for {plan.tolerance:g} over {plan.seconds:g} s: {verdict} {plan.error:.1e}\n{table}"
+    told = f"{verdict} {plan.error:.1e}" if plan.error > 0.0 else "no error is predicted"
+    if plan.unpromised:
+        told += " for what is modelled" + "".join(f"\nnot promised: {reason}" for reason in plan.unpromised)
+    return f"plan for {plan.tolerance:g} over {plan.seconds:g} s: {told}\n{table}"

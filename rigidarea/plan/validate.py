@@ -4,9 +4,9 @@ variations of them.
 A plan is given a space, never a scene. Of each scene all settings of a grid are run and measured; a plan is right
 where its own run's error is within the tolerance (or where it has said that none will be, and none is), and its
 cost is compared with that of the cheapest setting of the grid that is within it. Errors are those of the study.
-Variations have no exact answer: the finest setting is their reference, and those whose finest two differ by more
-than a third of the tolerance have none; nor have those of a scene on which the finest setting itself is further than
-that from the exact answer.
+Variations, and the scenes of `unseen`, have no exact answer: the finest setting is their reference, and those whose
+finest two differ by more than a third of the tolerance have none; nor have those of a scene on which the finest setting
+itself is further than that from the exact answer.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ from ..study.sweep import key
 from ..study.timing import one_core, timed
 from .plan import plan
 from .trial import Trial, at_settings, planned, space_of
+from .unseen import unseen
 from .variations import variations
 
 TOLERANCES = (0.1, 0.01, 0.001)
@@ -143,8 +144,8 @@ def study(
     doubt: float | None = 0.0
     if varied:
         doubt = kept({**name, "reference": True}, lambda: {"doubt": reference()[1]})["doubt"]
-        origin = scene.name.rpartition("-")[0]
-        far = kept({"scene": origin, "finest": True}, partial(_finest, origin))["error"]
+        origin = scene.name.rpartition("-")[0]  # of a variation
+        far = kept({"scene": origin, "finest": True}, partial(_finest, origin))["error"] if origin else 0.0
         doubt = None if doubt is None or far is None else max(doubt, far)
     judged = [tolerance for tolerance in tolerances if doubt is not None and doubt <= tolerance / 3.0]
     rows: list[Row] = [
@@ -226,14 +227,14 @@ def judge(
                 if sum(found) < PATIENCE_S:  # the noise of a long run is small beside it
                     found.append(seconds_of(scene, each))
     costs = [statistics.median(found) for found in times]
-    within = error <= tolerance
+    within, warned = error <= tolerance, not own.reachable or bool(own.unpromised)
     least = min(costs[1:], default=math.inf)
     if within:
         verdict = "within"
     elif not good:
-        verdict = "none reaches it" + ("" if own.reachable else ", and the plan says so")
+        verdict = "none reaches it" + (", and the plan says so" if warned else "")
     else:
-        verdict = "outside" + ("" if own.reachable else ", and the plan says so")
+        verdict = "outside" + (", and the plan says so" if warned else "")
     return {
         "scene": scene.name,
         "varied": varied,
@@ -276,11 +277,13 @@ def summary(rows: Sequence[Row]) -> Row:
     within = [row for row in reachable if row["verdict"] == "within"]
     ratios = [row["cost_ratio"] for row in within]
     hopeless = [row for row in judged if not row["reachable"]]
+    outside = [row for row in reachable if row["verdict"].startswith("outside")]
     return {
         "cells": len(judged),
         "without_reference": len(rows) - len(judged),
         "reachable": len(reachable),
         "within_tolerance_percent": 100.0 * len(within) / max(1, len(reachable)),
+        "outside_said": sum("says so" in row["verdict"] for row in outside),
         "cost_ratio_median": statistics.median(ratios) if ratios else math.nan,
         "cost_ratio_worst": max(ratios, default=math.nan),
         "unreachable": len(hopeless),
@@ -338,6 +341,7 @@ def validate(
     names = list(scene_names) or [name for name, scene in scenes().items() if not scene.deforms]
     chosen = [(get_scene(name), False) for name in names]
     chosen += [(scene, True) for scene in variations(count, scene_names)]
+    chosen += [(scene, True) for scene in unseen() if not scene_names]
     progress = Progress("plan", len(chosen))
     rows: list[Row] = []
     for scene, varied in chosen:
@@ -350,9 +354,11 @@ def validate(
 def report(rows: Sequence[Row], settings: Row) -> Row:
     """The object of the command: what the issue asks, then every row."""
     tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
+    judging = {scene.name for scene in unseen()}
     told = {
         "scenes": summary([row for row in rows if not row["varied"]]),
-        "variations": summary([row for row in rows if row["varied"]]),
+        "variations": summary([row for row in rows if row["varied"] and row["scene"] not in judging]),
+        "unseen": summary([row for row in rows if row["scene"] in judging]),
         "by_tolerance": {
             str(t): summary([r for r in rows if not r["varied"] and r["tolerance"] == t]) for t in tolerances
         },

@@ -13,7 +13,7 @@ import pymunk
 from ..contact import attached
 from ..kernel.constants import HIT
 from . import estimates as est
-from .table import name_of
+from .promise import name_of
 
 if TYPE_CHECKING:
     from .plan import Plan
@@ -161,7 +161,7 @@ class Watch:
             speed = body.velocity.length + rim
             if speed > fastest:
                 fastest, who = speed, body
-        found["speed"] = fastest, name_of(plan, who)
+        found["speed"] = fastest, name_of(plan.space, who)
         if contact is None:
             return found
         h = plan.frame / plan.steps
@@ -198,7 +198,7 @@ class Watch:
                     pressure = float(region["force"] / (region["chord"] * material.thickness))
                     most("strain", pressure / material.young, shapes)
         for name, (value, shapes) in worst.items():
-            found[name] = value, " and ".join(name_of(plan, shape) for shape in shapes)
+            found[name] = value, " and ".join(name_of(plan.space, shape) for shape in shapes)
         if not _driven(space):
             energy = contact.energy()
             kinetic = sum(

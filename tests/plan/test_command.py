@@ -138,7 +138,14 @@ def test_tables_and_picture_of_the_page(tmp_path):
         }
         for tolerance, verdict, error, ratio in ((0.1, "within", 0.05, 1.5), (0.01, "outside", 0.02, None))
     ]  # fmt: skip
-    told = {"rows": rows, "summary": {"scenes": validate.summary(rows), "variations": validate.summary([])}}
+    told = {
+        "rows": rows,
+        "summary": {
+            "scenes": validate.summary(rows),
+            "variations": validate.summary([]),
+            "unseen": validate.summary([]),
+        },
+    }
     told["summary"]["by_tolerance"] = {
         str(t): validate.summary([r for r in rows if r["tolerance"] == t]) for t in (0.1, 0.01)
     }

@@ -290,8 +290,8 @@ def test_the_table_says_what_decided(build):
     lines = made.lines
     assert f"{made.steps} x {made.sweeps} sweeps" in text or made.level == "pymunk"
     assert lines[0].what == "space" and lines[0].error == made.error
-    assert made.causes[0].number in text and "bodies[" in text
-    assert len(text.splitlines()) == len(lines) + 2
+    assert made.causes[0].number in text and "box at (" in text
+    assert len(text.splitlines()) == len(lines) + 2 + len(made.unpromised)
 
 
 def test_what_may_sleep_lies_flush_and_still():

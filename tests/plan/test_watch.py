@@ -55,7 +55,7 @@ def test_a_pile_at_rest_keeps_to_its_plan():
     assert set(found) == {"penetration", "phase", "load", "speed", "sweeps", "energy"}
     assert 0 < found["penetration"].measured <= 2 * found["penetration"].predicted
     assert 0 < found["load"].measured <= 4  # of a pile of four rows
-    assert "bodies[" in found["load"].where
+    assert "box at (" in found["load"].where
     assert not watch.warned
 
 
@@ -102,7 +102,7 @@ def test_a_drive_that_speeds_up():
     watch.step(frames=5)
     before = made.steps
     wheel.angular_velocity = 10.0
-    with pytest.warns(PlanWarning, match=r"speed of bodies\[0\]") as told:
+    with pytest.warns(PlanWarning, match=r"speed of outline at \(0, 0\)") as told:
         watch.step(frames=3)
     assert len(told) == 1  # once
     assert made.steps > before
