@@ -45,6 +45,7 @@ from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
     AWAKE,
+    COUNTED,
     DRIFTS,
     LED,
     MET,
@@ -409,7 +410,9 @@ def _whole_frame(s: Any, space: int) -> None:
             _again(s)
         again = not good and ask(s, GROW if s.broken < 0 else BROKEN)
     tables = load_tables(s)
-    if not good:
+    if good:
+        tables.counters[COUNTED] = s.frame
+    else:
         _undo(s, tables)
     _finish_frame(s, tables, good)
     if good and s.explicit == 0:

@@ -19,6 +19,7 @@ from ..kernel.tables import (
     ASKED,
     AWAKE,
     BOXED,
+    COUNTED,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
@@ -63,7 +64,7 @@ class Memory(NamedTuple):
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
-_COUNTERS += [UNSORTED, TURNED]
+_COUNTERS += [UNSORTED, TURNED, COUNTED]
 #: What a body keeps.
 _BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.

@@ -282,14 +282,15 @@ REGION = record(
 #: `awake`, pairs in `told`; which list `live` is;
 #: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
 #: other ones than in the last frame. How many pairs, regions and joints more than there is room for a frame wants at
-#: least, and 1 where the scratch is too small; looks left (`motion.afford`).
+#: least, and 1 where the scratch is too small; looks left (`motion.afford`);
+#: the last frame that did not fail.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
 BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
 JOINTS, REJOINED, GONE = range(30, 33)
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, LOOKS_LEFT = range(33, 38)
-COUNTERS = 38
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, LOOKS_LEFT, COUNTED = range(33, 39)
+COUNTERS = 39
 
 
 class Law(NamedTuple):

@@ -18,7 +18,7 @@ from .place import place
 from .pool import Pool
 from .region import closing
 from .sides import shown_sides
-from .tables import DRIFTS, MORE_WORK, NEAR, SUBSTEP, Tables
+from .tables import COUNTED, DRIFTS, MORE_WORK, NEAR, SUBSTEP, Tables
 from .work import Work
 
 
@@ -41,7 +41,7 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
         return bool(pair.verdict)
     if _heard(tables, pair):
         # friction and elasticity as they were set then
-        return bool(pair.verdict) and (pair.stamp == frame - 1 or pair.lasting == frame)
+        return bool(pair.verdict) and (pair.stamp == tables.counters[COUNTED] or pair.lasting == frame)
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     pair.friction = sa.friction * sb.friction
@@ -54,13 +54,14 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 
 
 @kernel
-def lasts(tables: Tables, pair: Any, frame: int, dt: float) -> bool:
+def lasts(tables: Tables, pair: Any, dt: float) -> bool:
     """Whether a pair that touched in the frame before still does, for the user: no farther apart than a solve leaves.
 
     And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be
     heard to separate and begin anew.
     """
-    if not pair.verdict or max(pair.stamp, pair.lasting) != frame - 1 or not _heard(tables, pair):
+    before = tables.counters[COUNTED]
+    if not pair.verdict or (pair.stamp != before and pair.lasting != before) or not _heard(tables, pair):
         return False
     a = tables.bodies[tables.shapes[pair.a].body]
     b = tables.bodies[tables.shapes[pair.b].body]

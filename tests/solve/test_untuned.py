@@ -73,7 +73,7 @@ def test_a_bumper_returns_what_it_is_asked_to(product):
 
 
 def test_a_light_box_between_a_wall_and_a_heavy_one():
-    """1 : 1e4, e = 1 (Galperin's billiard): the heavy one comes back as fast as it went, to 1 %, and keeps 98 % of the energy."""
+    """1 : 1e4, e = 1 (Galperin's billiard): the heavy one comes back as fast as it went, and has 98 % of the energy."""
     space = pymunk.Space()
     lines(space, [(0, -100), (0, 100)], radius=5, elasticity=1.0)
     settings = dict(friction=0.0, elasticity=1.0, moment=math.inf)
@@ -161,7 +161,7 @@ def thrown(shape, draw):
 
 @pytest.mark.parametrize("shape", ["box", "card"])
 def test_what_falls_back_on_a_one_way_platform_lies_there(shape):
-    """As pymunk programs write it: `begin` lets through what rises. Of 40 all but 3 (pymunk itself: 1, and 10 cards)."""
+    """As pymunk programs write it: `begin` lets through what rises. Of 40 all but 3 (pymunk: 1, and 10 cards)."""
     draw = random.Random(8)
     found = [thrown(shape, draw) for _ in range(40)]
     assert sum(on for on, _ in found) >= 37
