@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import pymunk
-from scipy.spatial import cKDTree
+import shapely
 
 from .elastic import Choice
 from .predict import Cause
@@ -67,10 +67,11 @@ def _row(seen: Survey, seconds: float) -> int:
     speed, reach = seen.speed[mine], seen.reach[mine]
     fast = speed > np.sqrt(0.2 * seen.g * seen.extent[mine])
     at = np.array([tuple(seen.bodies[i].position) for i in mine])
-    near = cKDTree(at).query_ball_point(
-        at[fast], speed[fast] * seconds + reach[fast] + reach.max(), return_length=True
-    )
-    return int(near.max(initial=0)) if near.max(initial=0) >= ROW else 0
+    points = shapely.points(at)
+    ways = speed[fast] * seconds + reach[fast] + reach.max()
+    one, _ = shapely.STRtree(points).query(points[fast], predicate="dwithin", distance=ways)
+    most = int(np.bincount(one).max(initial=0))
+    return most if most >= ROW else 0
 
 
 def name_of(space: pymunk.Space, who: Any) -> str:
