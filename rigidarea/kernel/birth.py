@@ -101,6 +101,12 @@ def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
 
 
 @kernel(forceinline=True)
+def _pushed(law: Law, gain: float, h: float) -> float:
+    """What pushes two that have met before together (length/time^2): in a pile both fall alike, gravity counts."""
+    return max(law.gravity, abs(gain) / h)
+
+
+@kernel(forceinline=True)
 def size_of(body: Any) -> float:
     """The smallest extent of a body that moves (length)."""
     return body.extent if body.mobile else np.inf
@@ -117,8 +123,8 @@ def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     if r.first_speed == 0.0:
         return False
     u = closing(r, a, b, 0.0)
-    stiffness = region_stiffness(law, r.stiffness, r.chord)
-    return bool(-u > _slow(law, (u - closing(r, a, b, 1.0)) / h, stiffness * inverse_mass(r, a, b), h))
+    rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
+    return bool(-u > _slow(law, _pushed(law, u - closing(r, a, b, 1.0), h), rate2, h))
 
 
 @kernel
@@ -133,7 +139,7 @@ def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool
     rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
     if u <= 0.0 or rate2 * h * h <= law.followed:
         return False
-    gain = 2.0 * (u - closing(r, a, b, 1.0)) / h
+    gain = _pushed(law, 2.0 * (u - closing(r, a, b, 1.0)), h)
     r.first_speed = u if pair.elasticity * u > _slow(law, gain, rate2, h) else 0.0
     r.back = 0.0
     return bool(r.first_speed > 0.0)
@@ -271,7 +277,8 @@ def enter(
     region.opened = 0
     if u <= slow:
         # what parts so fast has met others meanwhile: sent back it bounces
-        parts = pair.elasticity > 0.0 and phase2 > law.followed and region.placed == 0 and -u > slow
+        parts = pair.elasticity > 0.0 and phase2 > law.followed and region.placed == 0
+        parts = parts and -u > _slow(law, _pushed(law, gain * h, h), stiffness * inverse, h)
         region.first_speed = -u if parts else 0.0
         if region.mode == IMPACT:
             region.mode = REST
