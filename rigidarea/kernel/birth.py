@@ -8,22 +8,24 @@ from typing import Any
 import numpy as np
 
 from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
+from .exposed import exposed_patch
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
-from .patch import patch_of
 from .place import overlap_of_outlines
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, turn_to
 from .stiffness import depth_for
-from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
+from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
 from .work import Work
 
 
 @kernel
 def touch(
     pool: Pool,
+    tables: Tables,
     work: Work,
     law: Law,
+    pair: Any,
     region: Any,
     ia: int,
     ib: int,
@@ -69,7 +71,7 @@ def touch(
             n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
             least = np.inf
             for k in range(n):
-                patch = patch_of(pool, work, law, k, ia, ib, pose)
+                patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
                 far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
                 if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
                     least = far
@@ -78,7 +80,7 @@ def touch(
                 break
         if best < 0:
             return come
-        patch = patch_of(pool, work, law, best, ia, ib, pose)
+        patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
         if turn > 0.0 and patch.nx * nx + patch.ny * ny <= turn:
             turn_to(region, nx, ny)
             return False
@@ -188,7 +190,18 @@ def _lying(law: Law, pair: Any, face: float, inverse: float) -> float:
 
 @kernel
 def goes_over(
-    pool: Pool, work: Work, law: Law, region: Any, ia: int, ib: int, a: Any, b: Any, height: float, h: float
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    height: float,
+    h: float,
 ) -> bool:
     """Whether a new region is an edge no higher than what bodies sink by: what is met there goes over it.
 
@@ -209,14 +222,14 @@ def goes_over(
     least = np.inf
     best = -1
     for k in range(n):
-        patch = patch_of(pool, work, law, k, ia, ib, pose)
+        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
         far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
         if not patch.blind and far < least:
             least = far
             best = k
     if best < 0:
         return False
-    patch = patch_of(pool, work, law, best, ia, ib, pose)
+    patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
     if patch.nx * region.nx + patch.ny * region.ny > TURNS:
         return False
     turn_to(region, patch.nx, patch.ny)
@@ -226,6 +239,7 @@ def goes_over(
 @kernel
 def enter(
     pool: Pool,
+    tables: Tables,
     work: Work,
     law: Law,
     pair: Any,
@@ -245,7 +259,7 @@ def enter(
     inverse = inverse_mass(region, a, b)
     phase2 = stiffness * inverse * h * h
     height = STEP * _lying(law, pair, face, inverse)
-    if back == 0.0 and goes_over(pool, work, law, region, ia, ib, a, b, height, h):
+    if back == 0.0 and goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, height, h):
         region.mode = REST
         region.placed = 0
         region.opened = 0
@@ -264,7 +278,7 @@ def enter(
         region.mode = REST if placed else IMPACT
     else:
         turn = TURNS if back == 0.0 and region.depth <= height else 0.0
-        touched = touch(pool, work, law, region, ia, ib, a, b, back, h, unseen, turn)
+        touched = touch(pool, tables, work, law, pair, region, ia, ib, a, b, back, h, unseen, turn)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
@@ -289,6 +303,7 @@ def enter(
 @kernel
 def expect(
     pool: Pool,
+    tables: Tables,
     work: Work,
     law: Law,
     pair: Any,
@@ -313,7 +328,7 @@ def expect(
         return False  # the steps follow it
     lying = _lying(law, pair, face, inverse)
     sinks = law.gravity * h * h  # what carries it is not solved for yet
-    if goes_over(pool, work, law, region, ia, ib, a, b, STEP * lying + sinks, h):
+    if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying + sinks, h):
         return False  # it will be there, and say so itself
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
@@ -324,7 +339,7 @@ def expect(
         # positions are those of the middle of the substep: the drift yet to come is the half of it
         return (
             first
-            and touch(pool, work, law, region, ia, ib, a, b, -ahead, h, h, 0.0)
+            and touch(pool, tables, work, law, pair, region, ia, ib, a, b, -ahead, h, h, 0.0)
             and region.back >= -0.5 * h
         )
     region.mode = NEARING

@@ -14,6 +14,7 @@ import numpy as np
 
 from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
+from .exposed import exposed_patch
 from .jit import kernel
 from .motion import (
     afford,
@@ -28,7 +29,7 @@ from .motion import (
     unseen_for,
 )
 from .overlap import A_EDGE, OVERFLOW, Work
-from .patch import Patch, patch_of
+from .patch import Patch
 from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, steer
@@ -152,7 +153,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             if on_line == 0.0:
                 continue  # reaches under the line without crossing it
             area_cap = 2.0 * on_line * on_line  # only the line's end pokes in
-        patch = patch_of(pool, work, law, k, ia, ib, pose_a)
+        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
         r = _match(regions, old, patch.x, patch.y, stamp)
         born = r < 0
         if born:
@@ -269,7 +270,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
         if region.born:
-            enter(pool, work, law, pair, region, face, ia, ib, a, b, back, h)
+            enter(pool, tables, work, law, pair, region, face, ia, ib, a, b, back, h)
         steer(pair, region, a, b)
         region.stiffness = pair.stiffness
         r = region.next
@@ -365,7 +366,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
             continue
-        patch = patch_of(pool, work, law, k, ia, ib, pose_a)
+        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
         if patch.blind or patch.reach <= deepest:
             continue
         r = counters[FREE_REGION]
@@ -399,7 +400,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     while r >= 0:  # after the loops have been read: looking for the touch takes the work
         region = regions[r]
         after = region.next
-        if expect(pool, work, law, pair, region, face, ia, ib, a, b, ahead, h, first and old < 0):
+        if expect(pool, tables, work, law, pair, region, face, ia, ib, a, b, ahead, h, first and old < 0):
             steer(pair, region, a, b)
             region.next = pair.head
             pair.head = r
