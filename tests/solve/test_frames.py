@@ -77,14 +77,13 @@ def test_who_turns_is_seen_to_come(steps):
 
 
 def test_sweeps_are_the_spaces_iterations():
-    """Forces under a heavy crate after 1 s, off statics: more sweeps bring them nearer, 60 to 5 %."""
+    """Forces under a heavy crate after 1 s, off statics: to 5 % at any number of sweeps, by 60 to 1 %."""
     off = []
     for sweeps in (2, 10, 60):
         world = on_two(400.0, iterations=sweeps)
         world.run(1.0, 2)
         off.append(float(np.abs(supports(world) / statics(400.0) - 1).max()))
-    assert off[2] < 0.05
-    assert off[2] <= off[0]
+    assert max(off) < 0.05 and off[2] < 0.01
 
 
 def rolling_end(steps=None, tolerance=None):

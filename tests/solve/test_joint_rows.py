@@ -109,14 +109,12 @@ def chain(links: int, speed: float) -> pymunk.Space:
 
 @pytest.mark.parametrize(("links", "speed"), [(10, 100.0), (40, 300.0), (100, 300.0)])
 def test_a_chain_does_not_stretch(links, speed):
-    """At a frame a call no joint parts by more than a twentieth of a link, 20 frames after the blow (pymunk: by 474 px,
-    in four steps 3.7); in those by 3 px: the link that is struck turns by 0.1 and more in a substep.
-    """
+    """At a frame a call: no joint parts by more than a twentieth of a link (pymunk's: hundreds of px, at four 3.7)."""
     space = chain(links, speed)
     ra.attach(space)
-    for i in range(180):
+    for _ in range(180):
         space.step(DT)
-        assert max(map(gap, space.constraints)) < (1.0 if i > 20 else 3.0)
+        assert max(map(gap, space.constraints)) < 1.0
     length = list(space.bodies)[-1].position.length + 10
     assert length < 20 * links + 1.0
 
@@ -139,10 +137,11 @@ def test_a_taut_chain_keeps_its_sway():
     assert max(map(gap, space.constraints)) < 0.5
 
 
-def test_joints_that_contradict_each_other_are_held():
-    """Three rods of other lengths between the same anchors, and a pivot: nothing moves on by itself."""
+@pytest.mark.parametrize("held", ["pivot", "weld"])
+def test_joints_that_contradict_each_other_are_held(held):
+    """Three rods of other lengths between the same anchors, and a pivot, or a weld: nothing moves on by itself."""
     draw = random.Random(5)
-    for _ in range(10):
+    for _ in range(20 if held == "weld" else 10):
         space = pymunk.Space()
         a, b = (pymunk.Body(draw.uniform(0.1, 10), draw.uniform(10, 1000)) for _ in range(2))
         b.position = 60, 0
@@ -151,6 +150,8 @@ def test_joints_that_contradict_each_other_are_held():
             joint.distance = length
             space.add(joint)
         space.add(a, b, pymunk.PivotJoint(a, b, (30, 0)))
+        if held == "weld":
+            space.add(pymunk.GearJoint(a, b, draw.uniform(0, 1), 1))
         ra.attach(space)
         for _ in range(300):
             space.step(DT)

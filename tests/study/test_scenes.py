@@ -500,7 +500,7 @@ def test_gears_start_touching():
 
 
 def test_standing_falls_on_too_soft_a_bed():
-    """About where `softest` says: twice as soft it is falling when the scene ends (at half as soft again it still
+    """About where `softest` says: twice as soft it tips over within the scene's time (at half as soft again it still
     leans by 0.03), at half of it it stands."""
     from rigidarea.study.peers import get_peer, record
 
@@ -513,4 +513,4 @@ def test_standing_falls_on_too_soft_a_bed():
     limit = standing.softest()
     assert limit == pytest.approx(8.33e-5, rel=1e-3)
     assert error(0.5 * limit) < 0.01
-    assert error(2.0 * limit) > 0.3
+    assert error(2.0 * limit) > 1.0
