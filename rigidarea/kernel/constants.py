@@ -58,6 +58,10 @@ AHEAD = 3.0
 WEIGHTLESS_PHASE2 = 40.0
 #: Time over which the load that a pair carries is averaged (time).
 LOAD_TIME = 0.5
+#: What bears n times its own weight sinks as deep as that by sqrt(n), as round things do on one another, but by no more
+#: than so many times. With depth the same under any load, the lowest of a pile of twenty layers were twenty times as
+#: stiff as ten sweeps can solve: their error moved bodies by more than they overlap, and such a pile never rested.
+DEEPER = 20.0
 #: A stiffness that is too low grows by this factor a frame, and shrinks by that one when it is this much too high. (A
 #: load that comes and goes is not followed: a pile in which stiffness goes up and down never rests.)
 STIFFER = 1.2

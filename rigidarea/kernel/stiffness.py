@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
+from .constants import DEEPER, LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
 from .jit import kernel
 from .tables import AWAKE, LAW_AREA, LED, NEAR, Law, Tables
 
@@ -104,7 +104,7 @@ def carry(pair: Any, load: float, dt: float, most: float) -> None:
     """
     if pair.area > 0.0 and pair.stiffness > 0.0:
         pressed = pair.carrying / dt
-        wanted = load / pair.area
+        wanted = max(math.sqrt(load * pair.least), load / DEEPER) / pair.area
         pair.firm = max(wanted, min(most, pressed) / pair.area)
         k = pair.stiffness
         if wanted > k:
