@@ -28,7 +28,10 @@ SAME_FACE = 0.9
 
 @kernel
 def _behind_line(pool: Pool, shape: Any, wall: Any, x: float, y: float, far_x: float, far_y: float) -> bool:
-    """Whether a point lies behind a segment without thickness, or on it, seen from (far_x, far_y)."""
+    """Whether a point lies behind a segment without thickness, or on it, seen from (far_x, far_y).
+
+    As far past its ends as it lies behind: between two segments of a chain nothing is exposed.
+    """
     head = pool.heads[shape.outline]
     p = head.point
     ax = pool.points[p, 0] + head.x
@@ -37,7 +40,9 @@ def _behind_line(pool: Pool, shape: Any, wall: Any, x: float, y: float, far_x: f
     uy = pool.points[p + 1, 1] + head.y - ay
     dx = wall.c * (x - wall.ox) + wall.s * (y - wall.oy) - ax
     dy = wall.c * (y - wall.oy) - wall.s * (x - wall.ox) - ay
-    if not 0.0 <= dx * ux + dy * uy <= ux * ux + uy * uy:
+    along = dx * ux + dy * uy
+    behind = abs(dx * uy - dy * ux)
+    if not -behind <= along <= ux * ux + uy * uy + behind:
         return False
     ex = wall.c * (far_x - wall.ox) + wall.s * (far_y - wall.oy) - ax
     ey = wall.c * (far_y - wall.oy) - wall.s * (far_x - wall.ox) - ay
@@ -45,9 +50,11 @@ def _behind_line(pool: Pool, shape: Any, wall: Any, x: float, y: float, far_x: f
 
 
 @kernel
-def _hidden(pool: Pool, tables: Tables, work: Work, own: int, mover: Any, x: float, y: float) -> bool:
-    """Whether a point lies within a shape that nothing moves, other than shape `own`."""
-    room = 2.0 * FLUSH * mover.extent
+def _hidden(
+    pool: Pool, tables: Tables, work: Work, own: int, mover: Any, x: float, y: float, deep: float
+) -> bool:
+    """Whether a point, so `deep` in shape `own`, lies within another shape that nothing moves."""
+    room = deep + 2.0 * FLUSH * mover.extent
     at = -1
     while True:
         at = next_met(tables.nodes, tables.roots[STILL], at, x - room, y - room, x + room, y + room)
@@ -81,11 +88,14 @@ def exposed_patch(
         return patch
     own, mover, side = (pair.a, b, A_EDGE) if a.kind == FIXED else (pair.b, a, 1 - A_EDGE)
     loop = work.loops[k]
-    if loop.arcs > 0 or tables.shapes[own].mirror >= 0:
+    if loop.arcs > 0 and patch.radial == 0:
         return patch
     edges = 0
     for i in range(loop.start, loop.stop):
-        edges += work.label[i] == side
+        if work.label[i] == side:
+            edges += 1
+            if loop.arcs > 0 and work.bows[i, 2] != 0.0:
+                return patch
     if edges < 2:
         return patch
     head = pool.heads[ia]
@@ -104,7 +114,7 @@ def exposed_patch(
         ly = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1]) - flush * dx + head.y
         x = pose.x + pose.c * lx - pose.s * ly
         y = pose.y + pose.s * lx + pose.c * ly
-        if _hidden(pool, tables, work, own, mover, x, y):
+        if _hidden(pool, tables, work, own, mover, x, y, patch.reach):
             hidden = True
         else:
             nx += dy
@@ -119,11 +129,24 @@ def exposed_patch(
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
     face = wx * patch.nx + wy * patch.ny > SAME_FACE
-    reach = reach_along(work, loop.start, loop.stop, False, nx, ny)
+    reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
+    px = patch.x
+    py = patch.y
+    if patch.radial:  # a disc's force goes through its centre
+        for i in range(loop.start, loop.stop):
+            if work.label[i] != side and work.bows[i, 2] != 0.0:
+                lx = work.bows[i, 0] + head.x
+                ly = work.bows[i, 1] + head.y
+                cx = pose.x + pose.c * lx - pose.s * ly
+                cy = pose.y + pose.s * lx + pose.c * ly
+                along = (px - cx) * wx + (py - cy) * wy
+                px = cx + along * wx
+                py = cy + along * wy
+                break
     return Patch(
         patch.area,
-        patch.x,
-        patch.y,
+        px,
+        py,
         wx,
         wy,
         patch.chord,
@@ -134,5 +157,5 @@ def exposed_patch(
         patch.depth if face else reach,
         reach,
         False,
-        0,
+        patch.radial,
     )

@@ -27,7 +27,7 @@ import math
 from typing import Any
 
 from .birth import drives, flies_off
-from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, SMOOTH, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .joint import solve_joint
@@ -214,6 +214,43 @@ def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
 
 
 @kernel
+def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
+    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
+
+    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
+    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
+    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
+    doi:10.1007/BF02440162). So where it lies on something already, and comes to the next side at a flat angle.
+    """
+    u_x = a.vx - a.kick_x - b.vx + b.kick_x
+    u_y = a.vy - a.kick_y - b.vy + b.kick_y
+    square = u_x * u_x + u_y * u_y
+    closes = u_x * r.nx + u_y * r.ny
+    disc = a if b.inverse_mass == 0.0 else b
+    other = b if b.inverse_mass == 0.0 else a
+    round_one = 1 if b.inverse_mass == 0.0 else 2
+    if (
+        r.radial & round_one == 0
+        or other.inverse_mass > 0.0
+        or other.w != 0.0
+        or disc.pushed == 0
+        or closes <= left
+        or closes * closes > SMOOTH * square
+    ):
+        return left
+    along = u_y * r.nx - u_x * r.ny
+    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
+    x = closes - left
+    y = along - then
+    size = math.sqrt(x * x + y * y)
+    nx = (x * r.nx - y * r.ny) / size
+    ny = (x * r.ny + y * r.nx) / size
+    r.nx = nx
+    r.ny = ny
+    return (left * x + then * y) / size
+
+
+@kernel
 def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
     """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
 
@@ -228,7 +265,7 @@ def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None
     turn = a.w - b.w
     _one_point(r, a, b, row.friction)
     if row.ends == 1:
-        row.t1 = max(0.0, (speed * r.back - r.depth + r.rest_depth) / h)
+        row.t1 = _turn_along(r, a, b, max(0.0, (speed * r.back - r.depth + r.rest_depth) / h))
         return
     length = row.e2 - row.e1
     mean = r.area / r.chord
@@ -366,7 +403,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             row.l1 += row.l2
             row.l2 = 0.0
             most = HIT * least / h
-            row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
+            row.t1 = _turn_along(r, a, b, 0.0) + min(most, max(-most, turning_speed(r, a, b, h)))
+            row.nx = r.nx
+            row.ny = r.ny
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
