@@ -426,7 +426,8 @@ def attach(
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 
     stiffness: k of F = k A (force/length^2), for every pair. None: each pair's own, such that no body sinks deeper
-        than `penetration` (a fraction of its smallest extent) under the load that it has carried.
+        than `penetration` (a fraction of its smallest extent) under its own weight, under n times that by sqrt(n)
+        as deep, 20 times at the most.
     law: "area" (F = k A at the centroid, Eq. 5 and 7), or "energy" (F = k A L / length along the gradient of
         k A^2 / (2 length), conservative between any two outlines; length None: the largest body's size).
     direction: "chord" (exact and independent of the sampling), or "nodal" (Eq. 8-15, weights depth^exponent).

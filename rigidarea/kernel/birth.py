@@ -73,7 +73,8 @@ def touch(
             for k in range(n):
                 patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
                 far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-                if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
+                along = patch.nx * region.nx + patch.ny * region.ny
+                if not patch.blind and patch.area > 0.0 and along > 0.0 and far < least:
                     least = far
                     best = k
             if best >= 0:
@@ -224,7 +225,7 @@ def goes_over(
     for k in range(n):
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
         far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-        if not patch.blind and far < least:
+        if not patch.blind and patch.area > 0.0 and far < least:
             least = far
             best = k
     if best < 0:

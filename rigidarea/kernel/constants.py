@@ -53,8 +53,8 @@ FEATURE = 0.15
 MARGIN = 0.1
 #: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every third frame.
 AHEAD = 3.0
-#: Square of the sine of the angle (8 degrees) up to which the next side of a chain of edges is the same smooth curve for
-#: a disc that lies on it: a corner of that angle would take no more than this part of its energy.
+#: Square of the sine of the angle (8 degrees) up to which the next side of a chain is the same smooth curve for a disc
+#: that lies on it: a plastic corner of that angle would take no more than this part of its energy.
 SMOOTH = 0.02
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
 #: under gravity has at 60 frames a second, within a factor of 3.

@@ -77,10 +77,35 @@ def _hidden(
 
 
 @kernel
+def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float, reach: float) -> Patch:
+    """A patch along another direction: what turns far has lost its face."""
+    face = nx * patch.nx + ny * patch.ny > SAME_FACE
+    return Patch(
+        area,
+        x,
+        y,
+        nx,
+        ny,
+        patch.chord,
+        patch.middle if face else 0.0,
+        patch.straight if face else 0.0,
+        0.0,
+        0.0,
+        patch.depth if face else reach,
+        reach,
+        False,
+        patch.radial,
+    )
+
+
+@kernel
 def exposed_patch(
     pool: Pool, tables: Tables, pair: Any, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose
 ) -> Patch:
-    """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges."""
+    """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges.
+
+    Its area is 0 where a disc is only within a round end that nothing of is exposed.
+    """
     patch = patch_of(pool, work, law, k, ia, ib, pose)
     a = tables.bodies[tables.shapes[pair.a].body]
     b = tables.bodies[tables.shapes[pair.b].body]
@@ -91,12 +116,12 @@ def exposed_patch(
     if loop.arcs > 0 and patch.radial == 0:
         return patch
     edges = 0
+    caps = 0
     for i in range(loop.start, loop.stop):
         if work.label[i] == side:
             edges += 1
-            if loop.arcs > 0 and work.bows[i, 2] != 0.0:
-                return patch
-    if edges < 2:
+            caps += loop.arcs > 0 and work.bows[i, 2] != 0.0
+    if edges < 2 and caps == 0:
         return patch
     head = pool.heads[ia]
     nx = 0.0
@@ -110,8 +135,17 @@ def exposed_patch(
         if work.label[i] != side or length == 0.0:
             continue
         flush = FLUSH * mover.extent / length
-        lx = 0.5 * (work.polygon[j, 0] + work.polygon[i, 0]) + flush * dy + head.x
-        ly = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1]) - flush * dx + head.y
+        mx = 0.5 * (work.polygon[j, 0] + work.polygon[i, 0])
+        my = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1])
+        if loop.arcs > 0 and work.bows[i, 2] != 0.0:  # the arc's middle, which is less than half a turn
+            ux = mx - work.bows[i, 0]
+            uy = my - work.bows[i, 1]
+            out = abs(work.bows[i, 2]) / math.sqrt(ux * ux + uy * uy)
+            mx = work.bows[i, 0] + out * ux
+            my = work.bows[i, 1] + out * uy
+            flush = 0.0  # it leaves the neighbour's side along a tangent: what lies flush is within it
+        lx = mx + flush * dy + head.x
+        ly = my - flush * dx + head.y
         x = pose.x + pose.c * lx - pose.s * ly
         y = pose.y + pose.s * lx + pose.c * ly
         if _hidden(pool, tables, work, own, mover, x, y, patch.reach):
@@ -120,6 +154,10 @@ def exposed_patch(
             nx += dy
             ny -= dx
     length = math.sqrt(nx * nx + ny * ny)
+    if (
+        length == 0.0 and hidden and caps > 0
+    ):  # all of it within a neighbour, which says where the disc can go
+        return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach)
     if not hidden or length == 0.0:
         return patch
     if side != A_EDGE:  # from A to B is into B
@@ -128,7 +166,6 @@ def exposed_patch(
     ny /= length
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
-    face = wx * patch.nx + wy * patch.ny > SAME_FACE
     reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
     px = patch.x
     py = patch.y
@@ -143,19 +180,4 @@ def exposed_patch(
                 px = cx + along * wx
                 py = cy + along * wy
                 break
-    return Patch(
-        patch.area,
-        px,
-        py,
-        wx,
-        wy,
-        patch.chord,
-        patch.middle if face else 0.0,
-        patch.straight if face else 0.0,
-        0.0,
-        0.0,
-        patch.depth if face else reach,
-        reach,
-        False,
-        patch.radial,
-    )
+    return _turned(patch, patch.area, px, py, wx, wy, reach)

@@ -154,6 +154,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 continue  # reaches under the line without crossing it
             area_cap = 2.0 * on_line * on_line  # only the line's end pokes in
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
+        if patch.area == 0.0:
+            continue
         r = _match(regions, old, patch.x, patch.y, stamp)
         born = r < 0
         if born:
@@ -367,7 +369,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
             continue
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
-        if patch.blind or patch.reach <= deepest:
+        if patch.blind or patch.area == 0.0 or patch.reach <= deepest:
             continue
         r = counters[FREE_REGION]
         region = regions[r]

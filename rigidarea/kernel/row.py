@@ -27,7 +27,16 @@ import math
 from typing import Any
 
 from .birth import drives, flies_off
-from .constants import HIT, LOOK, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, SMOOTH, TANGENT_STIFFNESS
+from .constants import (
+    HIT,
+    LOOK,
+    PLACED_LOADS,
+    RELEASE_SPEED,
+    RELEASE_STEPS,
+    REST_KICKS,
+    SMOOTH,
+    TANGENT_STIFFNESS,
+)
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .joint import solve_joint
@@ -220,7 +229,8 @@ def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
     It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
     speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
     keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
-    doi:10.1007/BF02440162). So where it lies on something already, and comes to the next side at a flat angle.
+    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
+    at rest.
     """
     u_x = a.vx - a.kick_x - b.vx + b.kick_x
     u_y = a.vy - a.kick_y - b.vy + b.kick_y
@@ -236,6 +246,7 @@ def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
         or disc.pushed == 0
         or closes <= left
         or closes * closes > SMOOTH * square
+        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
     ):
         return left
     along = u_y * r.nx - u_x * r.ny

@@ -1,4 +1,7 @@
-"""The stiffness that keeps a promise: no body sinks deeper than a fraction of its smallest extent under its load."""
+"""The stiffness that keeps a promise: under its own weight no body sinks by more than a part of its smallest extent.
+
+Under n times that it sinks by sqrt(n) as much.
+"""
 
 from __future__ import annotations
 

@@ -146,7 +146,7 @@ def pyramid_shift(rows: int, seconds: float, n: int | None) -> float:
 
 def ratio(kind: str, value: float, n: int | None) -> tuple[str, bool]:
     way, end, moved, speed = test_mass_ratio.sinking(kind, value, n)
-    good = way < 0.1 and end <= 1.05 * test_mass_ratio.PENETRATION and moved < 0.1
+    good = way < 0.1 and end <= test_mass_ratio.allowed(kind, value) and moved < 0.1
     return f"way {way:.2g}, end {end:.2g}, moved {moved:.2g}, speed {speed:.1g}", good
 
 

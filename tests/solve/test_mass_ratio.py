@@ -41,6 +41,15 @@ def gaps(world, kind):
     return [0.5 - y[0], *(1.0 - (b - a) for a, b in itertools.pairwise(y))]
 
 
+def allowed(kind, ratio):
+    """Depth (m) promised of the lowest: `penetration` times the root of its load over a light one's weight, 20 at most.
+
+    Of two light ones the one nearer to the middle bears 0.55 of the heavy one. (5 % over.)
+    """
+    load = 3.0 + ratio if kind == "column" else 1.0 + 0.55 * ratio
+    return 1.05 * PENETRATION * min(20.0, load**0.5)
+
+
 def sinking(kind, ratio, steps=None, seconds=6.0, engine=ENGINE, iterations=None):
     """(deepest on the way, at the end, furthest way of a body, fastest at the end): m and m/s; sides are 1 m."""
     world = {"on two": on_two, "column": column}[kind](ratio, engine=engine, iterations=iterations)
@@ -58,8 +67,7 @@ def sinking(kind, ratio, steps=None, seconds=6.0, engine=ENGINE, iterations=None
 @pytest.mark.parametrize("ratio", [400.0, 1000.0, 10000.0])
 @pytest.mark.parametrize("kind", ["on two", "column"])
 def test_heavy_on_light_holds(kind, ratio, steps):
-    """Deepest 0.1 of the light one on the way; after 6 s (and 5 %) `penetration` times the root of the load over the
-    light one's weight, at most 20; at rest, in place. (Of two the one nearer to the middle bears 0.55 of the heavy one.)
+    """Deepest 0.1 of the light one on the way; after 6 s as promised (`allowed`), at rest, in place.
 
     Seen: mass 1,000 a little off the middle squirts one away at 5,400 px/s.
     """
@@ -68,8 +76,7 @@ def test_heavy_on_light_holds(kind, ratio, steps):
     assert way < 0.1
     assert speed < 1e-3
     if ENGINE == "area":
-        load = 3.0 + ratio if kind == "column" else 1.0 + 0.55 * ratio
-        assert end <= 1.05 * PENETRATION * min(20.0, load**0.5)
+        assert end <= allowed(kind, ratio)
 
 
 def supports(world):
