@@ -93,6 +93,9 @@ LEFT = 0.1
 MOVED = 0.003
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
 SETTLED = 5e-3
+#: A speed smaller than this part of what pushes gives in a substep is rounding's, and none: a program that asks whether
+#: what lies on a platform moves up is not answered by the last digit.
+ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.2

@@ -393,6 +393,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
         row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
+        if phase2 >= 1.0 and r.curve_a == 0.0 and r.curve_b == 0.0 and r.placed != PLACED:
+            row.theta = 1.0  # a step longer than an edge's own time opens it all by itself: no trace of speed is left
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness
@@ -414,9 +416,11 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             row.l1 += row.l2
             row.l2 = 0.0
             most = HIT * least / h
-            row.t1 = _turn_along(r, a, b, 0.0) + min(most, max(-most, turning_speed(r, a, b, h)))
-            row.nx = r.nx
-            row.ny = r.ny
+            row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
+            if theta > 0.0:
+                row.t1 += _turn_along(r, a, b, 0.0)
+                row.nx = r.nx
+                row.ny = r.ny
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib

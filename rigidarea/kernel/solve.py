@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import HIT, LEFT, MOVED
+from .constants import HIT, LEFT, MOVED, ROUNDING
 from .jit import kernel
 from .joint import settle_joint
 from .place import place, shift
@@ -193,6 +193,12 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.pushed = 0
+        if body.stamp == frame:
+            least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
+            if abs(body.vx) < least:
+                body.vx = 0.0
+            if abs(body.vy) < least:
+                body.vy = 0.0
         if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
             if body.kind == DRIFTS:
                 body.x += body.shift_x
