@@ -87,6 +87,7 @@ STATE = record(
         ("failed", "i8"),  # 1: Python could not do what it was asked for
         ("begun", "i8"),  # 1: the frame has changed regions; where it ends too soon they are forgotten, but
         ("kept", "i8"),  # 1: it was kept what it started from
+        ("fragile", "i8"),  # 1: it may fail: it is kept from the beginning what it starts from
         ("asked_arbiter", "u8"),  # the arbiter whose normal Chipmunk is to find again, and what it is
         ("asked_x", "f8"),
         ("asked_y", "f8"),
