@@ -42,13 +42,9 @@ def fast(a: pymunk.Body, b: pymunk.Body) -> None:
     a.velocity, b.velocity = (1e200, 1e199), (-1e200, 0)
 
 
-def spun(a: pymunk.Body, b: pymunk.Body) -> None:
-    a.angular_velocity, b.angular_velocity = 1e300, 1e300
-
-
 def light(a: pymunk.Body, b: pymunk.Body) -> None:
     a.moment, b.mass = 1e-300, 1e-300
-    a.velocity = 3, 0
+    a.velocity, b.velocity = (1e160, 0), (-1e160, 0)
 
 
 def rough(a: pymunk.Body, b: pymunk.Body) -> None:
@@ -58,7 +54,7 @@ def rough(a: pymunk.Body, b: pymunk.Body) -> None:
 
 
 @pytest.mark.parametrize("concave", [False, True])
-@pytest.mark.parametrize("spoil", [fast, spun, light, rough])
+@pytest.mark.parametrize("spoil", [fast, light, rough])
 @pytest.mark.parametrize("seed", range(3))
 def test_the_rest_goes_on_with_the_same_bits(seed, spoil, concave):
     """Two bodies' numbers overflow where they touch; without them, it is as if that frame had not been."""
