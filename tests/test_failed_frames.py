@@ -1,11 +1,15 @@
 """A frame that fails leaves everything as it has found it: bodies, and what contacts remember of the frame before."""
 
+import functools
 import random
+import sys
 
 import pymunk
 import pytest
 
 import rigidarea as ra
+from rigidarea.compat.interrupts import COURSES, FRAMES, _bits
+
 from tests.test_ownership import places, steps
 
 DT = 1 / 60
@@ -73,3 +77,40 @@ def test_the_rest_goes_on_with_the_same_bits(seed, spoil, concave):
             assert [joint.impulse for joint in one.constraints] == impulses
         one.remove(a, b, *a.shapes, *b.shapes)
     assert steps(space, 30) == steps(untouched, 30)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_frames_that_fail_while_callbacks_are_asked(seed, monkeypatch):
+    """Python is interrupted when machine code asks it for something: what touches by a hair goes on touching."""
+    expected = undisturbed_callbacks()
+    course, draw = COURSES["callbacks"](False), random.Random(seed)
+    serve, left = sys.modules["rigidarea.contact.attach"]._serve, draw.randrange(1, 300)
+
+    def serve_or_fail(own, request):
+        nonlocal left
+        left -= 1
+        if left == 0:
+            left = draw.randrange(1, 300)
+            raise KeyboardInterrupt
+        serve(own, request)
+
+    monkeypatch.setattr(sys.modules["rigidarea.contact.attach"], "_serve", serve_or_fail)
+    bits, done, failed = [], 0, 0
+    while done < FRAMES:
+        try:
+            course.step(1)
+            done += 1
+            bits.append(_bits(course.space))
+        except KeyboardInterrupt:
+            failed += 1
+    assert failed > 0
+    assert bits == expected
+
+
+@functools.cache
+def undisturbed_callbacks() -> list[bytes]:
+    course, bits = COURSES["callbacks"](False), []
+    for _ in range(FRAMES):
+        course.step(1)
+        bits.append(_bits(course.space))
+    return bits

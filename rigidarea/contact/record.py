@@ -22,6 +22,7 @@ from ..kernel.place import place, shift
 from ..kernel.tables import (
     AWAKE,
     BOXED,
+    COUNTED,
     DRIFTS,
     FIXED,
     FREE_PAIRS,
@@ -576,6 +577,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         tables.told[tables.counters[TOLD]] = p
         tables.counters[TOLD] += 1
     pair.stamp = now
+    if pair.waiting >= tables.counters[COUNTED]:  # frames between have failed
+        pair.waiting = now - 1
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1
     pair.verdict = 1 if solid and array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0

@@ -41,7 +41,7 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
         return bool(pair.verdict)
     if _heard(tables, pair):
         # friction and elasticity as they were set then
-        return bool(pair.verdict) and (pair.stamp == tables.counters[COUNTED] or pair.lasting == frame)
+        return bool(pair.verdict) and (pair.stamp >= tables.counters[COUNTED] or pair.lasting == frame)
     sa = tables.shapes[pair.a]
     sb = tables.shapes[pair.b]
     pair.friction = sa.friction * sb.friction
@@ -60,8 +60,8 @@ def lasts(tables: Tables, pair: Any, dt: float) -> bool:
     And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be
     heard to separate and begin anew.
     """
-    before = tables.counters[COUNTED]
-    if not pair.verdict or (pair.stamp != before and pair.lasting != before) or not _heard(tables, pair):
+    before = tables.counters[COUNTED]  # frames after it have failed: what touched as they began touched as it ended
+    if not pair.verdict or (pair.stamp < before and pair.lasting < before) or not _heard(tables, pair):
         return False
     a = tables.bodies[tables.shapes[pair.a].body]
     b = tables.bodies[tables.shapes[pair.b].body]
