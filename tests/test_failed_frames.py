@@ -9,7 +9,6 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.compat.interrupts import COURSES, FRAMES, _bits
-
 from tests.test_ownership import places, steps
 
 DT = 1 / 60

@@ -153,13 +153,16 @@ def _keep_if_fragile(s: Any, space: int, dt: float) -> bool:
 def _start(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
 
-    What those did is spread over the frame (`gain`). Whether all that follows can be relied on to be finite, and to find
-    the room that it needs, is noted (`fragile`).
+    What those did is spread over the frame (`gain`). Whether numbers may overflow in it, or room run out, is noted
+    (`fragile`).
 
     False: the state of one (`broken`) is not finite. Later that would have spread to others.
     """
     s.broken = -1
-    s.fragile = 1 if tables.counters[CONCAVE] > 0 else 0
+    s.fragile = 0
+    concave = (
+        tables.counters[CONCAVE] > 0
+    )  # two may overlap in any number of places: who is at rest keeps its own
     dt = time_step(space)
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
@@ -175,7 +178,7 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
             s.broken = i if s.broken < 0 else s.broken
             continue
-        if _is_extreme(body, dt):
+        if _is_extreme(body, dt) or (concave and body.mobile and not body.was_calm):
             s.fragile = 1
         body.thrust = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
         function = words(address + s.body_velocity_func, 1)[0]
