@@ -21,6 +21,7 @@ from .kernel.pool import HEAD, Pool
 from .kernel.row import ROW
 from .kernel.tables import (
     ANEW,
+    BODIES,
     BODY,
     COUNTERS,
     MORE_PAIRS,
@@ -87,6 +88,7 @@ STATE = record(
         ("failed", "i8"),  # 1: Python could not do what it was asked for
         ("begun", "i8"),  # 1: the frame has changed regions; where it ends too soon they are forgotten, but
         ("kept", "i8"),  # 1: it was kept what it started from
+        ("fragile", "i8"),  # 1: it may fail: it is kept from the beginning what it starts from
         ("asked_arbiter", "u8"),  # the arbiter whose normal Chipmunk is to find again, and what it is
         ("asked_x", "f8"),
         ("asked_y", "f8"),
@@ -139,12 +141,25 @@ def clear(at: int, size: int) -> None:
 
 @kernel
 def keep_tables(s: Any) -> None:
-    """Take down what a frame that may have to be run again starts from."""
+    """Take down what a frame that may have to be run again starts from: rows in use; of the others, their lists."""
     s.kept = 1
-    _copy(s.kept_bodies_at, s.bodies_at, s.bodies_n * BODY_WORDS)
-    _copy(s.kept_pairs_at, s.pairs_at, s.pairs_n * PAIR_WORDS)
-    _copy(s.kept_regions_at, s.regions_at, s.regions_n * REGION_WORDS)
+    tables = load_tables(s)
     _copy(s.kept_counters_at, s.counters_at, s.counters_n)
+    _copy(s.kept_bodies_at, s.bodies_at, tables.counters[BODIES] * BODY_WORDS)
+    kept_pairs = array_at(s.kept_pairs_at, (s.pairs_n,), PAIR)
+    for p in range(s.pairs_n):
+        if tables.pairs[p].a >= 0:
+            _copy(s.kept_pairs_at + 8 * PAIR_WORDS * p, s.pairs_at + 8 * PAIR_WORDS * p, PAIR_WORDS)
+        else:
+            kept_pairs[p].a = -1
+            kept_pairs[p].next = tables.pairs[p].next
+    kept_regions = array_at(s.kept_regions_at, (s.regions_n,), REGION)
+    for r in range(s.regions_n):
+        if tables.regions[r].stamp >= 0:
+            _copy(s.kept_regions_at + 8 * REGION_WORDS * r, s.regions_at + 8 * REGION_WORDS * r, REGION_WORDS)
+        else:
+            kept_regions[r].stamp = -1
+            kept_regions[r].next = tables.regions[r].next
 
 
 @kernel
@@ -154,10 +169,24 @@ def put_tables_back(s: Any, tables: Tables) -> None:
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
     for i in range(len(wanted)):
         kept[MORE_PAIRS + i] = wanted[i]
-    _copy(s.bodies_at, s.kept_bodies_at, s.bodies_n * BODY_WORDS)
-    _copy(s.pairs_at, s.kept_pairs_at, s.pairs_n * PAIR_WORDS)
-    _copy(s.regions_at, s.kept_regions_at, s.regions_n * REGION_WORDS)
     _copy(s.counters_at, s.kept_counters_at, s.counters_n)
+    _copy(s.bodies_at, s.kept_bodies_at, tables.counters[BODIES] * BODY_WORDS)
+    kept_pairs = array_at(s.kept_pairs_at, (s.pairs_n,), PAIR)
+    for p in range(s.pairs_n):
+        if kept_pairs[p].a >= 0:
+            _copy(s.pairs_at + 8 * PAIR_WORDS * p, s.kept_pairs_at + 8 * PAIR_WORDS * p, PAIR_WORDS)
+        else:
+            tables.pairs[p].a = -1
+            tables.pairs[p].b = -1
+            tables.pairs[p].head = -1
+            tables.pairs[p].next = kept_pairs[p].next
+    kept_regions = array_at(s.kept_regions_at, (s.regions_n,), REGION)
+    for r in range(s.regions_n):
+        if kept_regions[r].stamp >= 0:
+            _copy(s.regions_at + 8 * REGION_WORDS * r, s.kept_regions_at + 8 * REGION_WORDS * r, REGION_WORDS)
+        else:
+            tables.regions[r].stamp = -1
+            tables.regions[r].next = kept_regions[r].next
     tables.counters[ANEW] = 1
     rehash(tables)
 

@@ -232,13 +232,12 @@ class Store:
         _append_free(new["next"], counters, FREE_REGION, len(old))
         counters[FREE_REGIONS] += len(new) - len(old)
         self.tables = self.tables._replace(regions=new)
-        self._grow_rows()
+        self.renew_rows()
 
-    def _grow_rows(self) -> None:
-        """A row for every region and every joint."""
+    def renew_rows(self) -> None:
+        """A row for every region and every joint: no frame remembers them."""
         size = len(self.tables.regions) + len(self.tables.joints)
         rows = np.zeros(size, ROW)
-        rows[: len(self.tables.rows)] = self.tables.rows
         self.tables = self.tables._replace(rows=rows, factors=np.zeros(size, FACTOR))
 
     def grow_joints(self, n: int) -> None:
@@ -246,7 +245,7 @@ class Store:
         if n > len(self.tables.joints):
             apart = _longer(self.tables.apart, 2 * n)
             self.tables = self.tables._replace(apart=apart, joints=_longer(self.tables.joints, 2 * n))
-            self._grow_rows()
+            self.renew_rows()
 
     def grow_work(self) -> None:
         """Twice the room for crossings."""

@@ -45,6 +45,7 @@ from ..kernel.stiffness import adapt_stiffness
 from ..kernel.tables import (
     ANEW,
     AWAKE,
+    CONCAVE,
     COUNTED,
     DRIFTS,
     LED,
@@ -83,6 +84,11 @@ from .record import (
 )
 from .substep import find_contacts, near_pairs, substeps
 
+#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
+EXTREME = 1e30
+#: A body that goes so many of its sizes in a frame may come near more others than has been made room for.
+FAST = 30.0
+
 _cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
 _step = function("cpSpaceStep", types.void(types.uintp, types.float64))
 
@@ -110,15 +116,54 @@ def silence(constraint: int, dt: float) -> None:
             count[0] = 0
 
 
+@kernel(forceinline=True)
+def _is_extreme(body: Any, dt: float) -> bool:
+    """Whether a frame of dt may take a body's numbers beyond what is finite, or it past a crowd of others."""
+    place = abs(body.x) + abs(body.y) + abs(body.angle)
+    speed = abs(body.vx) + abs(body.vy)
+    most = place + speed + abs(body.w) + body.inverse_mass + body.inverse_moment
+    light = min(body.inverse_mass, body.inverse_moment)
+    return bool(
+        most > EXTREME
+        or (light > 0.0 and light * EXTREME < 1.0)
+        or (body.extent > 0.0 and dt * speed > FAST * body.extent)
+    )
+
+
+@kernel
+def _keep_if_fragile(s: Any, space: int, dt: float) -> bool:
+    """Where a frame may fail, take down what it starts from. Whether there was room to list who is near in it."""
+    tables = load_tables(s)
+    for k in range(tables.counters[TOLD]):
+        pair = tables.pairs[tables.told[k]]
+        most = pair.friction + pair.elasticity + abs(pair.surface_x) + abs(pair.surface_y) + pair.stiffness
+        s.fragile |= most > EXTREME
+    for joint in joints_of(s):
+        for i in range(len(joint.p)):
+            s.fragile |= abs(joint.p[i]) > EXTREME
+    if s.fragile:
+        tables.counters[TURN] = 0
+        if not near_pairs(s, space, dt, dt):
+            return False
+        keep_tables(s)
+    return True
+
+
 @kernel
 def _start(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
 
-    What those did is spread over the frame (`gain`).
+    What those did is spread over the frame (`gain`). Whether numbers may overflow in it, or room run out, is noted
+    (`fragile`).
 
     False: the state of one (`broken`) is not finite. Later that would have spread to others.
     """
     s.broken = -1
+    s.fragile = 0
+    concave = (
+        tables.counters[CONCAVE] > 0
+    )  # two may overlap in any number of places: who is at rest keeps its own
+    dt = time_step(space)
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0:
@@ -133,6 +178,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
         if not math.isfinite(state + body.inverse_mass + body.inverse_moment):
             s.broken = i if s.broken < 0 else s.broken
             continue
+        if _is_extreme(body, dt) or (concave and body.mobile and not body.was_calm):
+            s.fragile = 1
         body.thrust = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
         function = words(address + s.body_velocity_func, 1)[0]
         whole = (function != s.velocity_func and function != s.velocity_func_again) or s.explicit
@@ -164,6 +211,8 @@ def _everybody(s: Any, space: int) -> None:
 def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
     if not _start(s, space, load_tables(s)):
+        return False
+    if not _keep_if_fragile(s, space, dt):
         return False
     _everybody(s, space)
     share_kicks(load_tables(s), 1)
@@ -299,6 +348,8 @@ def _frame(s: Any, space: int, dt: float) -> bool:
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
             return False
+    if not _keep_if_fragile(s, space, dt):
+        return False
     lap(s, WATCHING)
     n = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
@@ -448,7 +499,8 @@ def report(constraint: int, space: int) -> None:
     start(s)
     for joint in joints_of(s):
         give_back(s, joint)
-    s.before = time_step(space)
+    if load_tables(s).counters[COUNTED] == s.frame:
+        s.before = time_step(space)
     s.joint_count = 0  # of a frame that cannot begin there are none: those of this one may be gone by then
     tables = load_tables(s)
     for k in range(tables.counters[TOLD]):

@@ -128,11 +128,15 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     used = pairs["a"] >= 0
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
-    store.tables = tables = store.tables._replace(
+    # as many of each as there, which may be fewer than here: what goes with them is of their size
+    store.tables = store.tables._replace(
         pairs=pairs,
         regions=regions,
         near=memory.near.copy(),
+        told=np.zeros(len(pairs), np.int32),
     )
+    store.renew_rows()
+    tables = store.tables
     store.sync()
     for i in mine[known]:
         put_in_tree(tables, int(i), int(tables.shapes[i]["tree"]))

@@ -22,6 +22,7 @@ from ..kernel.place import place, shift
 from ..kernel.tables import (
     AWAKE,
     BOXED,
+    COUNTED,
     DRIFTS,
     FIXED,
     FREE_PAIRS,
@@ -432,7 +433,7 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if lasts(tables, pair, dt):
+        if pair.a >= 0 and lasts(tables, pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
@@ -576,6 +577,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         tables.told[tables.counters[TOLD]] = p
         tables.counters[TOLD] += 1
     pair.stamp = now
+    if pair.waiting >= tables.counters[COUNTED]:  # frames between have failed
+        pair.waiting = now - 1
     pair.arbiter = arbiter
     pair.swapped = 0 if pair.a == a else 1
     pair.verdict = 1 if solid and array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0
