@@ -274,7 +274,6 @@ def disc_convex(
     ky = place.c * dy - place.s * dx
     mine = B_EDGE if own == A_EDGE else A_EDGE
     reach = r + 2.0 * noise
-    close2 = (NEARBY * r) ** 2
     near = 2.0 * r * (noise + ROUND * r)  # radius squared less distance squared: undecided below
     v = 0
     crossed = 0
@@ -311,14 +310,16 @@ def disc_convex(
                     wy = ky - py
                     turn = ux * wy - uy * wx
                     length2 = ux * ux + uy * uy
-                    deep = r * r * length2 - turn * turn
-                    if turn < 0.0 and deep <= near * length2 and not (p_in or q_in):
-                        return 0  # the whole disc lies beyond this edge, or what does not is rounding
                     cuts = p_in or q_in
-                    if not cuts and 0.0 < ux * wx + uy * wy < length2:
-                        if abs(deep) <= near * length2:
-                            return TANGLED
-                        cuts = deep > 0.0
+                    if not cuts:
+                        deep = r * r * length2 - turn * turn
+                        room = near * length2
+                        if turn < 0.0 and deep <= room:
+                            return 0  # the whole disc lies beyond this edge, or what does not is rounding
+                        if 0.0 < ux * wx + uy * wy < length2:
+                            if deep <= room and deep >= -room:
+                                return TANGLED
+                            cuts = deep > 0.0
                     if cuts:
                         inverse = 1.0 / math.sqrt(length2)
                         ux *= inverse
@@ -359,7 +360,7 @@ def disc_convex(
             if enters:
                 crossed += 1
                 if open_:
-                    if (x1 - out_x) ** 2 + (y1 - out_y) ** 2 < close2:
+                    if (x1 - out_x) ** 2 + (y1 - out_y) ** 2 < (NEARBY * r) ** 2:
                         return OTHERWISE
                     v = _close_between(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
                     open_ = False
@@ -389,7 +390,7 @@ def disc_convex(
         v = 0
         n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance, noise)
     elif open_:
-        if (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < close2:
+        if (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < (NEARBY * r) ** 2:
             return OTHERWISE
         v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
     if v > 0:
