@@ -150,9 +150,10 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
                 pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + 1, rel,
                 work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-        if n > 0:  # one region: `checked`, in its place
-            most = min(ha.area, hb.area) * (1.0 + 1e-9) + 8.0 * noise * min(ha.radius, hb.radius)
-            return n if 0.0 < work.loops[0].area <= most else CAUGHT
+        if n == 1 and 0.0 < work.loops[0].area <= min(ha.area, hb.area):  # nearly always: as `checked` has it
+            return 1
+        if n > 0:
+            return checked(pa.heads, ia, pb.heads, ib, rel, work.loops, n)
         if n != OTHERWISE:
             return n
     n = general(pa, ia, pb, ib, rel, work)
