@@ -17,7 +17,19 @@ import numpy as np
 from .arc import ROUND, across, circle_circle, distance2, on_arc, segment
 from .jit import kernel
 from .pool import LEAF
-from .work import A_EDGE, B_EDGE, NEARBY, NO_AREA, OTHERWISE, TANGLED, Relative, measure, placed, put
+from .work import (
+    A_EDGE,
+    B_EDGE,
+    NEARBY,
+    NO_AREA,
+    OTHERWISE,
+    TANGLED,
+    Relative,
+    measure,
+    noise_of,
+    placed,
+    put,
+)
 
 #: A depth below this, over the radii, is computed from the exact difference of squares.
 SHALLOW = 1e-3
@@ -96,7 +108,7 @@ def disc_disc(
     depth = ra + rb - d
     if abs(depth) < SHALLOW * (ra + rb):
         depth = _shallow(ra, rb, dx, dy, d)
-    if depth <= 0.0:
+    if depth <= noise_of(ra, rb, rel):  # what rounding makes is no region
         return 0
     if d <= abs(ra - rb):
         if ra <= rb:
