@@ -161,7 +161,8 @@ class Posed(NamedTuple):
 
 
 def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Posed:
-    """At angle 0 and turned (round ones each their own way), moved by 0 and 1e-17 to 1e-9 of the size, at the origin and up to 1e9 sizes off it."""
+    """At angle 0 and turned (round ones each their own way), moved by 0 and 1e-17 to 1e-9 of the size, at the origin
+    and up to 1e9 sizes off it."""
     wide = np.longdouble
     angle = rng.uniform(-7, 7, count) * (rng.random(count) < 0.6)
     angle = np.where(rng.random(count) < 0.15, rng.integers(-4, 5, count) * (math.pi / 4), angle)

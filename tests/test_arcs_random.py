@@ -17,7 +17,7 @@ import pytest
 import tangent_families
 import tangent_pairs
 import wide_overlap
-from conftest import PURE_PYTHON, kernel_module
+from conftest import PURE_PYTHON
 
 import rigidarea as ra
 from rigidarea import shapes
@@ -360,42 +360,6 @@ def test_tangent_pairs_against_exact_sums(kernel: Any, family: Any) -> None:
         if not abs(area[i] - want) <= 1e-9 * min(pair.a.area, pair.b.area):
             wrong.append(f"{k}: {area[i]} instead of {want}, {pair.a!r} {a[i]} {pair.b!r} {b[i]}")
     assert not wrong, "\n".join([f"{len(wrong)} wrong of {len(first)}", *wrong[:20]])
-
-
-@pytest.mark.slow
-def test_impossible_results_do_not_arise(kernel: Any) -> None:
-    """Undecided pairs are plenty here; a result that no two outlines allow is none of them."""
-    posed = [tangent(family, 7, 300, 20) for family in tangent_families.FAMILIES]
-    outlines = [outline for p in posed for outline in p.outlines]
-    start = np.repeat(np.cumsum([0, *(len(p.outlines) for p in posed[:-1])]), [len(p.first) for p in posed])
-    first = start + np.concatenate([p.first for p in posed])
-    a, b = np.concatenate([p.a for p in posed]), np.concatenate([p.b for p in posed])
-    undecided, caught = kernel.refused(outlines, first, first + 1, a, b)
-    assert undecided > 0.1 * len(first)
-    assert caught == 0
-
-
-def test_impossible_results_are_told(kernel: Any) -> None:
-    """More area than the smaller outline has, or a region of none; entries and exits that do not alternate."""
-    work = kernel.overlap.new_work()
-    for areas, most, impossible in (
-        ((0.5, 0.4), 1.0, False),
-        ((0.5, 0.6), 1.0, True),
-        ((0.5, -0.1), 1.0, True),
-    ):
-        work.loops["area"][:2] = areas
-        assert kernel.overlap.impossible(work.loops, 2, most) == impossible
-    alternate = kernel_module("sequence").alternate
-    cross = np.array([[0, 0, 1], [0, 1, 1], [0, 2, -1], [0, 3, -1]], np.int32)
-    for spots, near, wanted, want in (
-        ([0, 1, 2, 3], 0.5, 1, None),  # in, in, out, out, and apart
-        ([0, 1, 1.1, 3], 0.5, 1, [0, 2, 1, 3]),  # two in the middle as good as in one point
-        ([0, 1, 1.1, 3], 0.5, -1, None),  # but that is no way out of it, if it starts inside
-    ):
-        order = np.arange(4, dtype=np.int32)
-        spot = np.array([(x, 0.0) for x in spots])
-        assert alternate(cross, spot, order, 0, wanted, near) == (want is not None)
-        assert want is None or order.tolist() == want
 
 
 def check_lattice(kernel: Any, seed: int, count: int) -> None:
