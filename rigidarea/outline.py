@@ -110,7 +110,9 @@ class Outline:
         """From sampled curves, or rings with arcs, known to make an outline (unchecked).
 
         `resample(tolerance=...)` makes a sampled outline anew; a functools.partial of a module's function, so
-        that it can be pickled. See `sample`. arcs: as the attribute, for all rings or none.
+        that it can be pickled. See `sample`. arcs: as the attribute, for all rings or none; both ends of each on its
+        circle to a few roundings, as doubles of centre and radius leave them (8 times 2^-52 of the largest of radius
+        and coordinates): an overlap's signs allow for that, and for no more.
         """
         self = cls.__new__(cls)
         self._set(

@@ -152,190 +152,6 @@ def any_shape(rng: np.random.Generator, size: float) -> ra.Outline:
     return crescent(rng, size) if kind == 3 else gear(rng, size, False)[0]
 
 
-def pin_in_slot(rng: np.random.Generator, size: float) -> Pair:
-    r, length = size * rng.uniform(0.05, 1), size * rng.uniform(0.1, 3)
-    pin = ra.Outline.circle(r)
-    where = float(rng.choice([-1, -1 + 2 * rng.random(), 0, 1]))
-    end = pieces_of(pin, lambda arcs: arcs[:, 2] != 0)
-    against = NONE
-    if abs(where) == 1:  # the slot's round end
-        top, bottom = np.array([0, r]), np.array([0, -r])
-        p, q = (bottom, top) if where > 0 else (top, bottom)
-        against = (p[None], q[None], end[2][:1])
-    return Pair(
-        "pin in slot",
-        plate(shapes.capsule(length, r)),
-        pin,
-        (where * (length / 2), 0.0),
-        0.0,
-        np.zeros(2),
-        against,
-        NONE,
-        (0,),
-        r,
-    )
-
-
-def capsule_over_bore(rng: np.random.Generator, size: float) -> Pair:
-    r, length = size * rng.uniform(0.05, 1), size * rng.uniform(0.1, 1)
-    w = 3 * (length + r)
-    square = np.array([(-w, -w), (w, -w), (w, w), (-w, w)])
-    hole = ra.arcs.circle_ring((0.0, 0.0), r)
-    bored = ra.Outline.from_curve([square, hole[0]], arcs=[np.zeros((4, 3)), hole[1]])
-    return Pair(
-        "capsule over bore",
-        bored,
-        shapes.capsule(length, r),
-        (0.0, 0.0),
-        2 * r * length,
-        np.zeros(2),
-        NONE,
-        NONE,
-        (1, 2),
-        r,
-    )
-
-
-def plug(rng: np.random.Generator, size: float) -> Pair:
-    shape = any_shape(rng, size)
-    flat = max(float(np.abs(arc[:, 2]).max()) for arc in shape.arcs)
-    return Pair("plug", plate(shape), shape, (0.0, 0.0), 0.0, np.zeros(2), pieces_of(shape), NONE, (0,), flat)
-
-
-def twins(rng: np.random.Generator, size: float) -> Pair:
-    shape = any_shape(rng, size) if rng.random() < 0.7 else gear(rng, size, True)[0]
-    flat = max(float(np.abs(arc[:, 2]).max()) for arc in shape.arcs)
-    return Pair(
-        "twins", shape, shape, (0.0, 0.0), shape.area, np.zeros(2), NONE, pieces_of(shape), (1,), flat
-    )
-
-
-def disc_outside(rng: np.random.Generator, size: float) -> Pair:
-    """A disc that touches a face, where the face is, at its very end (which is an arc's), or on a round end."""
-    disc = ra.Outline.circle(size * rng.uniform(0.05, 1))
-    r = disc.arcs[0][0, 2]
-    if rng.random() < 0.5:
-        half, thick = size * rng.uniform(0.05, 1), size * rng.uniform(0.05, 1)
-        body: ra.Outline = shapes.capsule(2 * half, thick)
-        face, top = half, thick
-    else:
-        body, w, top, bend = rounded(rng, size)
-        face = w - bend
-    x = face * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1]))
-    place = (x, (top + r) * float(rng.choice([-1, 1])))
-    return Pair("disc outside", body, disc, place, 0.0, np.zeros(2), NONE, NONE, (0,), 4 * size)
-
-
-def disc_inside(rng: np.random.Generator, size: float) -> Pair:
-    """A disc in a capsule, at its side, between both sides, or in its end."""
-    half, r = size * rng.uniform(0.05, 1), size * rng.uniform(0.05, 1)
-    body = shapes.capsule(2 * half, r)
-    how = rng.integers(3)
-    small = r * rng.uniform(0.1, 0.95) if how == 0 else r
-    disc = ra.Outline.circle(small)
-    x = (
-        half
-        if how == 2
-        else half * float(rng.choice([-1, rng.uniform(-1, 1), 0, 1])) * (1 if how == 0 else 0.9)
-    )
-    along = NONE
-    if how == 2:
-        along = (np.array([[0, -r]]), np.array([[0, r]]), np.array([[0, 0, r]]))
-    return Pair(
-        "disc inside",
-        body,
-        disc,
-        (x, r - small),
-        math.pi * small**2,
-        -chord(along),
-        NONE,
-        along,
-        (1,),
-        20 * r,
-    )
-
-
-def slid_capsules(rng: np.random.Generator, size: float) -> Pair:
-    length, r = size * rng.uniform(0.2, 2), size * rng.uniform(0.05, 1)
-    body = shapes.capsule(length, r)
-    a = length * rng.uniform(0.05, 0.95)
-    low, high = -length / 2, length / 2 - a  # of B's faces on A's
-    along = line((low, -r), (high, -r), (high, r), (low, r))
-    inside = np.array([0.0, -2 * r])  # B's left end
-    return Pair(
-        "slid capsules",
-        body,
-        body,
-        (a, 0.0),
-        2 * r * (length - a) + math.pi * r * r,
-        inside,
-        NONE,
-        along,
-        (1,),
-        4 * r,
-    )
-
-
-def stacked_boxes(rng: np.random.Generator, size: float) -> Pair:
-    body, w, h, r = rounded(rng, size)
-    half = w - r
-    x = float(rng.choice([0.0, 2 * half * rng.uniform(-1, 1), 2 * half, 2 * w]))
-    low, high = max(-half, -half - x), min(half, half - x)  # of B's lower face on A's upper
-    against = line((low, -h), (high, -h)) if high > low else NONE
-    return Pair("stacked boxes", body, body, (x, 2 * h), 0.0, np.zeros(2), against, NONE, (0,), 4 * r)
-
-
-def disc_in_crescent(rng: np.random.Generator, size: float) -> Pair:
-    moon = crescent(rng, size)
-    p, q, arcs = pieces_of(moon, lambda arcs: arcs[:, 2] < 0)
-    x, y, r = arcs[0]
-    disc = ra.Outline.circle(-r)
-    against = (q - (x, y), p - (x, y), np.array([[0, 0, -r]] * len(p)))
-    return Pair(
-        "disc in crescent", moon, disc, (float(x), float(y)), 0.0, np.zeros(2), against, NONE, (0,), -r
-    )
-
-
-def gear_in_bore(rng: np.random.Generator, size: float) -> Pair:
-    wheel, tip, _ = gear(rng, size, False)
-    tips = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] > 0.97 * tip))
-    return Pair(
-        "gear in bore",
-        plate(ra.Outline.circle(tip)),
-        wheel,
-        (0.0, 0.0),
-        0.0,
-        np.zeros(2),
-        tips,
-        NONE,
-        (0,),
-        tip,
-    )
-
-
-def disc_in_gear(rng: np.random.Generator, size: float) -> Pair:
-    wheel, tip, root = gear(rng, size, False)
-    along = pieces_of(wheel, lambda arcs: (arcs[:, 2] > 0) & (arcs[:, 2] < 0.97 * tip))
-    return Pair(
-        "disc in gear",
-        wheel,
-        ra.Outline.circle(root),
-        (0.0, 0.0),
-        math.pi * root**2,
-        -chord(along),
-        NONE,
-        along,
-        (1,),
-        root,
-    )
-
-
-FAMILIES = (
-    pin_in_slot, capsule_over_bore, plug, twins, disc_outside, disc_inside, slid_capsules, stacked_boxes,
-    disc_in_crescent, gear_in_bore, disc_in_gear,
-)  # fmt: skip
-
-
 class Posed(NamedTuple):
     """Poses (n, 4) of A and of B (x, y, cosine, sine), and how far B really is from its place, in A's frame (n, 2)."""
 
@@ -344,52 +160,9 @@ class Posed(NamedTuple):
     s: np.ndarray
 
 
-def lattice(rng: np.random.Generator, size: float) -> tuple[ra.Outline, ra.Outline, Posed]:
-    """Two outlines of three lengths and their sums, at places of such sums, turned by eighths: whatever can touch,
-    conform or coincide does, somewhere."""
-    u, v, w = size * rng.uniform(0.2, 1, 3)
-    shapes_of: list[Callable[[], ra.Outline]] = [
-        lambda: ra.Outline.circle(u),
-        lambda: ra.Outline.circle(v),
-        lambda: shapes.capsule(2 * u, v),
-        lambda: shapes.capsule(2 * v, u),
-        lambda: shapes.box(2 * (u + v), 2 * v),
-        lambda: shapes.rounded_polygon(
-            [(-u - w, -v - u), (u + w, -v - u), (u + w, v + u), (-u - w, v + u)], u
-        ),
-        lambda: shapes.ring(u, u + v),
-        lambda: plate(ra.Outline.circle(u)),
-        lambda: plate(shapes.capsule(2 * v, u)),
-        lambda: ra.Outline.from_bulges(
-            [
-                (-u - w, -v, 0),
-                (u + w, -v, 0),
-                (u + w, u + v, 0),
-                (u, u + v, -1),
-                (-u, u + v, 0),
-                (-u - w, u + v, 0),
-            ]
-        ),
-    ]
-    a, b = (shapes_of[k]() for k in rng.integers(0, len(shapes_of), 2))
-    sums = [
-        k * p + m * q for k in (-1, 0, 1) for m in (-1, 0, 1) for p, q in ((u, v), (v, w), (u, w), (2 * u, v))
-    ]
-    angle = float(rng.uniform(-7, 7)) if rng.random() < 0.5 else 0.0
-    turn = float(rng.integers(0, 8)) * math.pi / 4 if rng.random() < 0.6 else 0.0
-    x, y = rng.choice(sums, 2) + (
-        0 if rng.random() < 0.5 else size * 10 ** rng.uniform(-17, -9)
-    ) * rng.normal(size=2)
-    home = size * 10 ** rng.uniform(-2, 9) * rng.uniform(-1, 1, 2) * (rng.random() < 0.3)
-    c, s = math.cos(angle), math.sin(angle)
-    there = home + (c * x - s * y, s * x + c * y)
-    pose_a = np.array([[*home, c, s]])
-    pose_b = np.array([[*there, math.cos(angle + turn), math.sin(angle + turn)]])
-    return a, b, Posed(pose_a, pose_b, np.zeros((1, 2)))
-
-
 def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Posed:
-    """At angle 0 and turned, moved by 0 and 1e-17 to 1e-9 of the size, at the origin and up to 1e9 sizes off it."""
+    """At angle 0 and turned (round ones each their own way), moved by 0 and 1e-17 to 1e-9 of the size, at the origin
+    and up to 1e9 sizes off it."""
     wide = np.longdouble
     angle = rng.uniform(-7, 7, count) * (rng.random(count) < 0.6)
     angle = np.where(rng.random(count) < 0.15, rng.integers(-4, 5, count) * (math.pi / 4), angle)
@@ -408,4 +181,9 @@ def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Pose
     )
     s_real = (real - np.array(pair.place, wide)).astype(float)
     turn = np.stack([c, s], 1)
+    if len(pair.b.rings) == 1 and pair.b.arcs and ra.arcs.is_circle(pair.b.arcs[0]):  # round: turned anyhow
+        more = angle + rng.uniform(-7, 7, count) * (rng.random(count) < 0.5)
+        return Posed(
+            np.hstack([home, turn]), np.hstack([there, np.stack([np.cos(more), np.sin(more)], 1)]), s_real
+        )
     return Posed(np.hstack([home, turn]), np.hstack([there, turn]), s_real)

@@ -76,6 +76,14 @@ def segment(half: float, apothem: float, radius: float) -> tuple[float, float]:
 
 
 @kernel(forceinline=True)
+def distance2(ax: float, ay: float, bx: float, by: float) -> float:
+    """Squared distance of two points (length^2). (A power `x ** 2` is a loop in machine code.)"""
+    dx = ax - bx
+    dy = ay - by
+    return dx * dx + dy * dy
+
+
+@kernel(forceinline=True)
 def inside(x: float, y: float, cx: float, cy: float, r: float) -> float:
     """Radius squared less distance squared of a point from the centre: positive inside the circle."""
     dx = x - cx
@@ -195,7 +203,7 @@ def line_arc(
     if p_left == q_left and a_in == b_in:
         least = max(0.0, abs(r) - room)
         if turn * turn >= least * least * length2:  # a tangent, or passing by
-            tangent = turn * turn <= (abs(r) + room) ** 2 * length2 and 0.0 < ux * wx + uy * wy < length2
+            tangent = turn * turn <= far * far * length2 and 0.0 < ux * wx + uy * wy < length2
             foot = turn / length2
             if tangent and on_arc(px, py, qx, qy, r, cx + foot * uy, cy - foot * ux):
                 return UNSURE, 0.0, 0.0, 0.0, 0.0

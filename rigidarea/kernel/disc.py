@@ -14,10 +14,22 @@ import math
 
 import numpy as np
 
-from .arc import ROUND, across, circle_circle, inside, on_arc, segment
+from .arc import ROUND, across, circle_circle, distance2, on_arc, segment
 from .jit import kernel
 from .pool import LEAF
-from .work import A_EDGE, B_EDGE, NEARBY, NO_AREA, OTHERWISE, TANGLED, Relative, measure, placed, put
+from .work import (
+    A_EDGE,
+    B_EDGE,
+    NEARBY,
+    NO_AREA,
+    OTHERWISE,
+    TANGLED,
+    Relative,
+    measure,
+    noise_of,
+    placed,
+    put,
+)
 
 #: A depth below this, over the radii, is computed from the exact difference of squares.
 SHALLOW = 1e-3
@@ -96,7 +108,7 @@ def disc_disc(
     depth = ra + rb - d
     if abs(depth) < SHALLOW * (ra + rb):
         depth = _shallow(ra, rb, dx, dy, d)
-    if depth <= 0.0:
+    if depth <= noise_of(ra, rb, rel):  # what rounding makes is no region
         return 0
     if d <= abs(ra - rb):
         if ra <= rb:
@@ -197,7 +209,7 @@ def _cut_by_arc(
     """Where the arc p -> q, counter-clockwise, enters the disc and leaves it: (whether it touches it within `room`,
     whether it enters, whether it leaves, entry, exit)."""
     if p_in == q_in:
-        d = math.sqrt((cx - ax) ** 2 + (cy - ay) ** 2)
+        d = math.sqrt(distance2(cx, cy, ax, ay))
         reach = (-a if p_in else a) / d if d > 0.0 else 0.0
         if not on_arc(px, py, qx, qy, a, ax + reach * (cx - ax), ay + reach * (cy - ay)):
             return False, False, False, 0.0, 0.0, 0.0, 0.0
@@ -273,8 +285,8 @@ def disc_convex(
     kx = place.c * dx + place.s * dy
     ky = place.c * dy - place.s * dx
     mine = B_EDGE if own == A_EDGE else A_EDGE
+    r2 = r * r
     reach = r + 2.0 * noise
-    close2 = (NEARBY * r) ** 2
     near = 2.0 * r * (noise + ROUND * r)  # radius squared less distance squared: undecided below
     v = 0
     crossed = 0
@@ -289,12 +301,16 @@ def disc_convex(
             continue
         px = points[begin + first, 0]
         py = points[begin + first, 1]
-        p_in = inside(px, py, kx, ky, r) > 0.0
+        wx = kx - px
+        wy = ky - py
+        p_in = r2 - (wx * wx + wy * wy) > 0.0
         for e in range(begin + first, begin + min(first + LEAF, count)):
             k = e + 1 if e + 1 < begin + count else begin
             qx = points[k, 0]
             qy = points[k, 1]
-            deep = inside(qx, qy, kx, ky, r)
+            vx = kx - qx
+            vy = ky - qy
+            deep = r2 - (vx * vx + vy * vy)
             if abs(deep) <= near:
                 return TANGLED
             q_in = deep > 0.0
@@ -307,18 +323,18 @@ def disc_convex(
                 if not (p_in and q_in):
                     ux = qx - px
                     uy = qy - py
-                    wx = kx - px
-                    wy = ky - py
                     turn = ux * wy - uy * wx
                     length2 = ux * ux + uy * uy
-                    deep = r * r * length2 - turn * turn
-                    if turn < 0.0 and deep <= near * length2 and not (p_in or q_in):
-                        return 0  # the whole disc lies beyond this edge, or what does not is rounding
                     cuts = p_in or q_in
-                    if not cuts and 0.0 < ux * wx + uy * wy < length2:
-                        if abs(deep) <= near * length2:
-                            return TANGLED
-                        cuts = deep > 0.0
+                    if not cuts:
+                        deep = r2 * length2 - turn * turn
+                        room = near * length2
+                        if turn < 0.0 and deep <= room:
+                            return 0  # the whole disc lies beyond this edge, or what does not is rounding
+                        if 0.0 < ux * wx + uy * wy < length2:
+                            if deep <= room and deep >= -room:
+                                return TANGLED
+                            cuts = deep > 0.0
                     if cuts:
                         inverse = 1.0 / math.sqrt(length2)
                         ux *= inverse
@@ -340,10 +356,10 @@ def disc_convex(
             else:
                 ax = arcs[e, 0]
                 ay = arcs[e, 1]
-                d2 = (kx - ax) ** 2 + (ky - ay) ** 2
+                d2 = distance2(kx, ky, ax, ay)
                 room = noise + ROUND * (a + r)
                 least = max(0.0, abs(a - r) - room)
-                if p_in != q_in or least * least <= d2 <= (a + r + room) ** 2:
+                if p_in != q_in or least * least <= d2 <= (a + r + room) * (a + r + room):
                     touches, enters, leaves, x1, y1, x2, y2 = _cut_by_arc(
                         px, py, qx, qy, ax, ay, a, p_in, q_in, kx, ky, r, room
                     )
@@ -359,7 +375,7 @@ def disc_convex(
             if enters:
                 crossed += 1
                 if open_:
-                    if (x1 - out_x) ** 2 + (y1 - out_y) ** 2 < close2:
+                    if distance2(x1, y1, out_x, out_y) < NEARBY * NEARBY * r2:
                         return OTHERWISE
                     v = _close_between(p, label, bows, v, mine, out_x, out_y, x1, y1, kx, ky, r)
                     open_ = False
@@ -378,6 +394,8 @@ def disc_convex(
                     open_ = True
             px = qx
             py = qy
+            wx = vx
+            wy = vy
             p_in = q_in
     n = 0
     if crossed == 0:
@@ -389,7 +407,7 @@ def disc_convex(
         v = 0
         n = _cut_off(p, label, bows, loops, own, kx, ky, r, edge_x, edge_y, edge_half, -edge_distance, noise)
     elif open_:
-        if (out_x - in_x) ** 2 + (out_y - in_y) ** 2 < close2:
+        if distance2(out_x, out_y, in_x, in_y) < NEARBY * NEARBY * r2:
             return OTHERWISE
         v = _close(p, label, bows, v, mine, out_x, out_y, in_x, in_y, kx, ky, r)
     if v > 0:
@@ -439,13 +457,13 @@ def _nested(
         ay = arcs[e, 1]
         a = arcs[e, 2]
         v = put(p, label, bows, v, own, px, py, qx, qy, ax, ay, a)
-        farthest = max(farthest, (px - cx) ** 2 + (py - cy) ** 2)
+        farthest = max(farthest, distance2(px, py, cx, cy))
         if (qx - px) * (cy - py) - (qy - py) * (cx - px) < 0.0 and not (
             a > 0.0 and across(cx, cy, ax, ay, a)
         ):
             inside = False
     for k in range(v):
-        farthest = max(farthest, (p[k, 0] - cx) ** 2 + (p[k, 1] - cy) ** 2)
+        farthest = max(farthest, distance2(p[k, 0], p[k, 1], cx, cy))
     if farthest <= r * r * (1.0 + 1e-9):  # a corner may touch the circle
         return v
     return WHOLE if inside else 0

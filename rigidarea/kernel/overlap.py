@@ -96,6 +96,22 @@ def impossible(loops: np.ndarray, n: int, most: float) -> bool:
 
 
 @kernel
+def checked(
+    heads_a: np.ndarray, ia: int, heads_b: np.ndarray, ib: int, rel: Relative, loops: np.ndarray, n: int
+) -> int:
+    """n, the number of regions of two outlines one of which has arcs; or CAUGHT, if they are `impossible`.
+
+    (Called where it is needed, and from its own arguments: what it needs would else be kept all the while.)
+    """
+    a = heads_a[ia]
+    b = heads_b[ib]
+    # rounding moves the smaller's boundary by the noise
+    noise = noise_of(a.radius, b.radius, rel)
+    most = min(a.area, b.area) * (1.0 + 1e-9) + 8.0 * noise * min(a.radius, b.radius)
+    return CAUGHT if impossible(loops, n, most) else n
+
+
+@kernel
 def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> int:
     """Regions of A and B placed by `rel`: their number, work.loops[:number]; or OVERFLOW, TANGLED, CAUGHT.
 
@@ -103,12 +119,11 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
     """
     ha = pa.heads[ia]
     hb = pb.heads[ib]
-    arcs = ha.arcs + hb.arcs > 0
-    noise = noise_of(ha.radius, hb.radius, rel)
-    n = OTHERWISE
     if ha.convex and hb.convex:
         if ha.disc and hb.disc:
             return disc_disc(ha.radius, hb.radius, rel, work.polygon, work.label, work.bows, work.loops)
+        noise = noise_of(ha.radius, hb.radius, rel)
+        n = OTHERWISE
         if ha.disc or hb.disc:
             pool, head, own, place = pa, ha, A_EDGE, Relative(1.0, 0.0, 0.0, 0.0)
             x = rel.tx
@@ -123,22 +138,25 @@ def overlap_kernel(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Wo
                 x, y, radius, pool.points, pool.arcs, pool.boxes, head.point, head.count, head.box + head.leaves, place,
                 own, work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-        elif not arcs and ha.count * hb.count <= CLIP_PAIRS:
-            return clip(
-                pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel,
-                work.polygon, work.label, work.bows, work.loops, noise,
-            )  # fmt: skip
-        elif arcs and ha.count * hb.count <= WALKED_PAIRS:
+        elif ha.arcs + hb.arcs == 0:
+            if ha.count * hb.count <= CLIP_PAIRS:
+                return clip(
+                    pa.points, ha.point, ha.count, pb.points, hb.point, hb.count, rel,
+                    work.polygon, work.label, work.bows, work.loops, noise,
+                )  # fmt: skip
+        elif ha.count * hb.count <= WALKED_PAIRS:
             n = convex_pair(
                 pa.points, pa.arcs, pa.boxes, ha.point, ha.count, ha.box + 1,
                 pb.points, pb.arcs, pb.boxes, hb.point, hb.count, hb.box + 1, rel,
                 work.polygon, work.label, work.bows, work.loops, noise,
             )  # fmt: skip
-    if n == OTHERWISE:
-        n = general(pa, ia, pb, ib, rel, work)
-    if arcs and n > 0:
-        # rounding moves the smaller's boundary by the noise
-        most = min(ha.area, hb.area) * (1.0 + 1e-9) + 8.0 * noise * min(ha.radius, hb.radius)
-        if not 0.0 < work.loops[0].area <= most or (n > 1 and impossible(work.loops, n, most)):
-            return CAUGHT
+        if n == 1 and 0.0 < work.loops[0].area <= min(ha.area, hb.area):  # nearly always: as `checked` has it
+            return 1
+        if n > 0:
+            return checked(pa.heads, ia, pb.heads, ib, rel, work.loops, n)
+        if n != OTHERWISE:
+            return n
+    n = general(pa, ia, pb, ib, rel, work)
+    if n > 0 and ha.arcs + hb.arcs > 0:
+        return checked(pa.heads, ia, pb.heads, ib, rel, work.loops, n)
     return n

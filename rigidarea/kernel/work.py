@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .arc import FLAT, flat_segment, top
+from .arc import FLAT, distance2, flat_segment, top
 from .jit import kernel
 from .memory import record
 
@@ -258,7 +258,7 @@ def measure(
                 run_of = own
             run_dx = dx
             run_dy = dy
-            reach = (vx - run_x) ** 2 + (vy - run_y) ** 2
+            reach = distance2(vx, vy, run_x, run_y)
             if own == A_EDGE:
                 flat_a = max(flat_a, reach)
             else:
@@ -279,7 +279,7 @@ def measure(
     if not leading and run_of == first_of and run_of != 2:  # does the last stretch go on in the first?
         room = noise * (abs(run_dx) + abs(run_dy) + abs(first_dx) + abs(first_dy))
         if abs(run_dx * first_dy - run_dy * first_dx) <= room and run_dx * first_dx + run_dy * first_dy > 0.0:
-            reach = (first_x - run_x) ** 2 + (first_y - run_y) ** 2
+            reach = distance2(first_x, first_y, run_x, run_y)
             if run_of == A_EDGE:
                 flat_a = max(flat_a, reach)
             else:
