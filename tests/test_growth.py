@@ -130,7 +130,9 @@ def test_what_is_raised_while_tables_grow(error, every):
 
     def make():
         space = crowd(80)
-        for i, body in enumerate(space.bodies):  # row by row from on high: near one another only once they fall
+        for i, body in enumerate(
+            space.bodies
+        ):  # row by row from on high: near one another only once they fall
             body.position += 0, 0.8 * (i // 8)
         return space
 
