@@ -7,9 +7,11 @@ views without reference counting, which alone would cost as much as clipping two
 
 from __future__ import annotations
 
+import ctypes
 from typing import Any
 
 import numpy as np
+from numba import config, types
 
 from .kernel.conjugate import FACTOR, MOBILITY
 from .kernel.jit import entry, kernel
@@ -23,12 +25,15 @@ from .kernel.tables import (
     ANEW,
     BODIES,
     BODY,
-    COUNTERS,
+    COUNTED,
+    MORE_KEPT,
     MORE_PAIRS,
     NEIGHBOURS,
     PAIR,
     REGION,
     SHAPE,
+    USED_PAIRS,
+    USED_REGIONS,
     Law,
     Tables,
     rehash,
@@ -122,13 +127,21 @@ STATE = record(
 )
 
 
+def _interpreted(to: int, source: int, size: int) -> int:
+    return int(ctypes.memmove(int(to), int(source), int(size)))
+
+
+_memcpy: Any = (
+    _interpreted
+    if config.DISABLE_JIT
+    else types.ExternalFunction("memcpy", types.uintp(types.uintp, types.uintp, types.uintp))
+)
+
+
 @kernel
 def _copy(to: int, source: int, size: int) -> None:
     """Copy so many words."""
-    there = array_at(to, (size,), np.uint64)
-    here = array_at(source, (size,), np.uint64)
-    for i in range(size):
-        there[i] = here[i]
+    _memcpy(to, source, np.uint64(8 * size))
 
 
 @kernel
@@ -140,53 +153,39 @@ def clear(at: int, size: int) -> None:
 
 
 @kernel
-def keep_tables(s: Any) -> None:
-    """Take down what a frame that may have to be run again starts from: rows in use; of the others, their lists."""
+def keep_tables(s: Any) -> bool:
+    """Take down what a frame that may have to be run again starts from. Whether there was room for it."""
+    counters = array_at(s.counters_at, (s.counters_n,), np.int64)
+    if s.kept_bodies_n < s.bodies_n or s.kept_pairs_n < s.pairs_n or s.kept_regions_n < s.regions_n:
+        counters[MORE_KEPT] = 1
+        return False
     s.kept = 1
-    tables = load_tables(s)
+    _copy(s.kept_bodies_at, s.bodies_at, counters[BODIES] * BODY_WORDS)
+    _copy(s.kept_pairs_at, s.pairs_at, counters[USED_PAIRS] * PAIR_WORDS)
+    _copy(s.kept_regions_at, s.regions_at, counters[USED_REGIONS] * REGION_WORDS)
     _copy(s.kept_counters_at, s.counters_at, s.counters_n)
-    _copy(s.kept_bodies_at, s.bodies_at, tables.counters[BODIES] * BODY_WORDS)
-    kept_pairs = array_at(s.kept_pairs_at, (s.pairs_n,), PAIR)
-    for p in range(s.pairs_n):
-        if tables.pairs[p].a >= 0:
-            _copy(s.kept_pairs_at + 8 * PAIR_WORDS * p, s.pairs_at + 8 * PAIR_WORDS * p, PAIR_WORDS)
-        else:
-            kept_pairs[p].a = -1
-            kept_pairs[p].next = tables.pairs[p].next
-    kept_regions = array_at(s.kept_regions_at, (s.regions_n,), REGION)
-    for r in range(s.regions_n):
-        if tables.regions[r].stamp >= 0:
-            _copy(s.kept_regions_at + 8 * REGION_WORDS * r, s.regions_at + 8 * REGION_WORDS * r, REGION_WORDS)
-        else:
-            kept_regions[r].stamp = -1
-            kept_regions[r].next = tables.regions[r].next
+    return True
 
 
 @kernel
 def put_tables_back(s: Any, tables: Tables) -> None:
     """The tables as they were kept, but for how much more room the frame has wanted; pairs are listed anew."""
-    wanted = tables.counters[MORE_PAIRS:COUNTERS]
+    counters = tables.counters
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
-    for i in range(len(wanted)):
-        kept[MORE_PAIRS + i] = wanted[i]
+    for i in range(MORE_PAIRS, COUNTED + 1):
+        kept[i] = counters[i]
+    for p in range(kept[USED_PAIRS], counters[USED_PAIRS]):
+        tables.pairs[p].a = -1
+        tables.pairs[p].b = -1
+        tables.pairs[p].head = -1
+        tables.pairs[p].next = p + 1 if p + 1 < len(tables.pairs) else -1
+    for r in range(kept[USED_REGIONS], counters[USED_REGIONS]):
+        tables.regions[r].stamp = -1
+        tables.regions[r].next = r + 1 if r + 1 < len(tables.regions) else -1
+    _copy(s.bodies_at, s.kept_bodies_at, kept[BODIES] * BODY_WORDS)
+    _copy(s.pairs_at, s.kept_pairs_at, kept[USED_PAIRS] * PAIR_WORDS)
+    _copy(s.regions_at, s.kept_regions_at, kept[USED_REGIONS] * REGION_WORDS)
     _copy(s.counters_at, s.kept_counters_at, s.counters_n)
-    _copy(s.bodies_at, s.kept_bodies_at, tables.counters[BODIES] * BODY_WORDS)
-    kept_pairs = array_at(s.kept_pairs_at, (s.pairs_n,), PAIR)
-    for p in range(s.pairs_n):
-        if kept_pairs[p].a >= 0:
-            _copy(s.pairs_at + 8 * PAIR_WORDS * p, s.kept_pairs_at + 8 * PAIR_WORDS * p, PAIR_WORDS)
-        else:
-            tables.pairs[p].a = -1
-            tables.pairs[p].b = -1
-            tables.pairs[p].head = -1
-            tables.pairs[p].next = kept_pairs[p].next
-    kept_regions = array_at(s.kept_regions_at, (s.regions_n,), REGION)
-    for r in range(s.regions_n):
-        if kept_regions[r].stamp >= 0:
-            _copy(s.regions_at + 8 * REGION_WORDS * r, s.kept_regions_at + 8 * REGION_WORDS * r, REGION_WORDS)
-        else:
-            tables.regions[r].stamp = -1
-            tables.regions[r].next = kept_regions[r].next
     tables.counters[ANEW] = 1
     rehash(tables)
 

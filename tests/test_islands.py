@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Iterable
 
 import numpy as np
@@ -159,3 +160,36 @@ def test_only_bodies_of_the_space_may_ask() -> None:
     for wrong in (0, 2.5, 2000):
         with pytest.raises(ValueError, match="steps"):
             contact.ask(bodies["balls"][0], wrong)  # type: ignore[arg-type]
+
+
+def test_who_hardly_moves_takes_one_substep_whoever_else_takes_more() -> None:
+    """A pile at rest goes, bit by bit, as it would without the ball that is thrown elsewhere, and comes to rest."""
+    contact, bodies = level("pile")
+    contact.step(FRAME, 120)
+    assert contact.step(FRAME) == 1  # all of it is calm
+    alone = pickle.loads(pickle.dumps(contact.space))
+    for _ in range(2):
+        ball = pymunk.Body(1, 1 / 8)
+        ball.position, ball.velocity = (40, 3), (-3, 0)
+        shape = pymunk.Circle(ball, 0.5)
+        shape.elasticity = 0.8
+        contact.space.add(ball, shape)
+        for _ in range(30):
+            assert contact.step(FRAME) == 2
+            alone.step(FRAME)
+        assert np.array_equal(state(bodies["pile"]), state(alone.bodies))
+        contact.space.remove(ball, shape)
+
+
+def test_a_ball_wakes_the_calm_pile_that_it_meets() -> None:
+    """Nothing is missed where an island of two substeps comes to one that took one: momentum is passed on."""
+    contact, bodies = level("pile")
+    contact.step(FRAME, 120)
+    ball = pymunk.Body(1, 1 / 8)
+    ball.position, ball.velocity = (-4, 1.5), (-30, 0)
+    contact.space.add(ball, pymunk.Circle(ball, 0.5))
+    for _ in range(12):  # it is there after eight
+        contact.step(FRAME)
+    # it had 30, and is as heavy as one box; the pile's friction takes 0.6 * 4 * 10 / 60 a frame at most
+    assert ball.velocity.x > -20
+    assert sum(body.velocity.x for body in bodies["pile"]) < -6

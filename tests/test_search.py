@@ -122,6 +122,7 @@ def test_what_may_not_touch_is_not_near(kernel: Any) -> None:
                 t.apart[0] = j, i
                 t.counters[tables.APART] = 1
             searched(store, 0.0, 0.0)
+            order.sieve(t)
             order.arrange(t, 0.0, -1.0)
             near = t.pairs[t.near["pair"][: t.counters[tables.NEAR]]]
             assert len(near) == (what == "none"), (what, still)
@@ -160,7 +161,7 @@ def test_the_hash_table_is_a_dictionary() -> None:
         if key not in known:
             if store.tables.counters[tables.FREE_PAIRS] == 0:
                 assert tables.new_pair(store.tables, a, b) == -1
-                store.grow_pairs()
+                store.grow_pairs(2 * len(store.tables.pairs))
                 for (p, q), number in known.items():  # numbers stay
                     assert tables.find_pair(store.tables, p, q) == number
             known[key] = tables.new_pair(store.tables, a, b)
@@ -176,7 +177,7 @@ def test_regions_grow_and_keep_what_they_hold() -> None:
     store = Store()
     store.tables.regions["area"] = np.arange(len(store.tables.regions))
     before = len(store.tables.regions)
-    store.grow_regions()
+    store.grow_regions(2 * len(store.tables.regions))
     store.sync()
     t = store.tables
     assert len(t.regions) == 2 * before and len(t.rows) == len(t.regions) + len(t.joints)

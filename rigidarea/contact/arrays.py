@@ -31,6 +31,7 @@ from ..kernel.tables import (
     FREE_REGIONS,
     FREE_SHAPE,
     MORE_JOINTS,
+    MORE_KEPT,
     MORE_PAIRS,
     MORE_REGIONS,
     MORE_WORK,
@@ -74,7 +75,7 @@ class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
     def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64) -> None:
-        """For how many there is room from the start; pairs: of regions too."""
+        """For how many there is room from the start; regions: half as many as pairs."""
         self.state = np.zeros(1, STATE)
         self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
         self._listed: Sequence[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
@@ -126,14 +127,16 @@ class Store:
         self.body_rows = np.zeros(size, np.int32)
         self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
         self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
-        self._kept: dict[str, np.ndarray] = {}  # room for a copy of what a frame changes, and for places
+        # room for a copy of what a frame changes, and for places: made when a frame asks for it (`MORE_KEPT`)
+        self._kept = {name: np.zeros(0) for name in (*(f"kept_{name}" for name in KEPT), "seen")}
+        self._keeps = False
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
         self._grow_nodes(shapes)
         self.grow_pairs(pairs)
-        self.grow_regions(pairs)
+        self.grow_regions(pairs // 2)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
@@ -169,10 +172,10 @@ class Store:
     def _record(self) -> np.ndarray:
         """The words of the state record of these arrays."""
         tables = self.tables._asdict()
-        for name in KEPT:
-            if len(self._kept.get(f"kept_{name}", ())) != len(tables[name]):
+        for name in KEPT if self._keeps else ():
+            if len(self._kept[f"kept_{name}"]) != len(tables[name]):
                 self._kept = {**self._kept, f"kept_{name}": np.zeros(len(tables[name]), tables[name].dtype)}
-        if len(self._kept.get("seen", ())) != len(self.tables.bodies):
+        if self._keeps and len(self._kept["seen"]) != len(self.tables.bodies):
             self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
         own = {name: getattr(self, name) for name in _OWN}
         own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
@@ -185,27 +188,29 @@ class Store:
         return words
 
     def grow(self) -> None:
-        """Make the room that machine code has asked for (counters MORE_...), all of it or none."""
+        """Make the room that machine code has asked for (counters MORE_...), all of it or none; of pairs and regions
+        a quarter more."""
         new = self.draft()
         counters = new.tables.counters
-        pairs, regions, joints, work = (
-            int(counters[k]) for k in (MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK)
+        pairs, regions, joints, work, kept = (
+            int(counters[k]) for k in (MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT)
         )
-        counters[[MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK]] = 0
+        counters[[MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT]] = 0
+        new._keeps = self._keeps or kept > 0
         if pairs > 0:
-            new.grow_pairs(len(new.tables.pairs) + pairs)
+            new.grow_pairs((len(new.tables.pairs) + pairs) * 5 // 4)
         if regions > 0:
-            new.grow_regions(len(new.tables.regions) + regions)
+            new.grow_regions((len(new.tables.regions) + regions) * 5 // 4)
         if joints > 0:
             new.grow_joints(len(new.tables.joints) + joints)
         if work > 0:
             new.grow_work()
         self.publish(new)
 
-    def grow_pairs(self, least: int = 0) -> None:
-        """Twice the pairs (at least `least`), the new ones free and the last to be taken."""
+    def grow_pairs(self, n: int) -> None:
+        """Room for n pairs, the new ones free and the last to be taken."""
         old, counters = self.tables.pairs, self.tables.counters
-        new = np.zeros(max(least, 2 * len(old)), PAIR)
+        new = np.zeros(n, PAIR)
         new[: len(old)] = old
         new["a"][len(old) :] = -1
         _append_free(new["next"], counters, FREE_PAIR, len(old))
@@ -223,10 +228,10 @@ class Store:
         if len(old):  # (handing all tables over takes longer than making them)
             rehash(self.tables)
 
-    def grow_regions(self, least: int = 0) -> None:
-        """Twice the regions (at least `least`), the new ones free and the last to be taken."""
+    def grow_regions(self, n: int) -> None:
+        """Room for n regions, the new ones free and the last to be taken."""
         old, counters = self.tables.regions, self.tables.counters
-        new = np.zeros(max(least, 2 * len(old)), REGION)
+        new = np.zeros(n, REGION)
         new[: len(old)] = old
         new["stamp"][len(old) :] = -1
         _append_free(new["next"], counters, FREE_REGION, len(old))

@@ -71,7 +71,7 @@ class AreaContact:
         self._stepping = False
         bodies = max(16, len(space._bodies) + 1)
         # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
-        pairs = 4 * bodies if self._memory is None else 64
+        pairs = 2 * bodies if self._memory is None else 2
         self._store = Store(bodies, max(16, len(space._shapes)), pairs)
         self._state = state = self._store.state[0]
         settings = self._settings

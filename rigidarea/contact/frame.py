@@ -132,7 +132,7 @@ def _is_extreme(body: Any, dt: float) -> bool:
 
 @kernel
 def _keep_if_fragile(s: Any, space: int, dt: float) -> bool:
-    """Where a frame may fail, take down what it starts from. Whether there was room to list who is near in it."""
+    """Where a frame may fail, take down what it starts from. Whether there was room for that and who is near in it."""
     tables = load_tables(s)
     for k in range(tables.counters[TOLD]):
         pair = tables.pairs[tables.told[k]]
@@ -145,7 +145,7 @@ def _keep_if_fragile(s: Any, space: int, dt: float) -> bool:
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):
             return False
-        keep_tables(s)
+        return bool(keep_tables(s))
     return True
 
 
@@ -201,20 +201,13 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
 
 
 @kernel
-def _everybody(s: Any, space: int) -> None:
-    """All bodies go through the substeps together."""
-    g = floats(space + s.space_gravity, 2)
-    everybody(load_tables(s), g[0], g[1])
-
-
-@kernel
 def _explicit_frame(s: Any, space: int, dt: float) -> bool:
     """The paper's step: F = k A where Chipmunk has moved the bodies to (symplectic Euler), joints after it."""
     if not _start(s, space, load_tables(s)):
         return False
     if not _keep_if_fragile(s, space, dt):
         return False
-    _everybody(s, space)
+    everybody(load_tables(s))
     share_kicks(load_tables(s), 1)
     if not find_contacts(s, space, dt, dt, False):
         return False
@@ -275,18 +268,19 @@ def _see(s: Any) -> None:
 
 
 @kernel
-def _turns(s: Any, space: int, dt: float, n: int) -> int:
-    """A frame in which some bodies want more substeps than others, n at the most.
+def _turns(s: Any, space: int, dt: float) -> int:
+    """A frame in which some bodies want more substeps than others.
 
     Returns how many the finest took; 0: there was no room for it.
     """
     g = floats(space + s.space_gravity, 2)
     tables = load_tables(s)
     tables.counters[TURN] = 0
-    if not near_pairs(s, space, dt, dt):
+    if not near_pairs(s, space, dt, dt, False):
         return 0
-    if s.steps_given == 0:  # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
-        company(tables, s.substeps if n == s.substeps else 1)
+    # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
+    if s.steps_given == 0 and s.joint_count > 0:
+        company(tables)
         for joint in joints_of(s):
             if joint.taken:
                 spare(tables, joint.a, s.substeps)
@@ -295,14 +289,15 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
-    numbers = number(tables, g[0], g[1])
-    turn = next_turn(tables, FINEST)
-    taken = turn if turn > 0 else s.substeps
-    if numbers < 2:
-        _everybody(s, space)
+    if number(tables, g[0], g[1]) < 2:
+        everybody(load_tables(s))
+        taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
         return int(taken) if substeps(s, space, dt, taken) else 0
+    turn = next_turn(tables, FINEST)
+    taken = turn
     most = max(turn, s.substeps)
-    keep_tables(s)
+    if not keep_tables(s):
+        return 0
     last = tables.counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
     while turn > 0:
         tables.counters[SUBSTEP] = last - turn
@@ -312,7 +307,7 @@ def _turns(s: Any, space: int, dt: float, n: int) -> int:
     if tables.counters[MET]:
         _again(s)
         s.contacts = 0
-        _everybody(s, space)
+        everybody(load_tables(s))
         if not substeps(s, space, dt, most):
             return 0
         taken = most
@@ -351,16 +346,15 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     if not _keep_if_fragile(s, space, dt):
         return False
     lap(s, WATCHING)
-    n = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
+    n, least = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
     # What hangs in a joint is never calm: it is held the better the shorter the step.
     for joint in joints_of(s):
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0 and tables.bodies[i].mobile:
                 tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
-        _everybody(s, space)
-        keep_tables(s)
-        if not substeps(s, space, dt, n):
+        everybody(load_tables(s))
+        if not keep_tables(s) or not substeps(s, space, dt, n):
             return False
         while 2 * n <= MOST_SUBSTEPS:
             _see(s)
@@ -371,10 +365,10 @@ def _frame(s: Any, space: int, dt: float) -> bool:
                 return False
             if _difference(s) <= s.tolerance:
                 break
-    elif n > s.substeps or (n > 1 and s.joint_count > 0 and s.steps_given == 0):
-        n = _turns(s, space, dt, n)
+    elif n > least or n > s.substeps or (n > 1 and s.joint_count > 0 and s.steps_given == 0):
+        n = _turns(s, space, dt)
     else:
-        _everybody(s, space)
+        everybody(load_tables(s))
         if not substeps(s, space, dt, n):
             return False
     if n == 0:

@@ -29,6 +29,8 @@ from ..kernel.tables import (
     SUBSTEP,
     TURNED,
     UNSORTED,
+    USED_PAIRS,
+    USED_REGIONS,
     end_pair,
     rehash,
 )
@@ -64,7 +66,7 @@ class Memory(NamedTuple):
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
-_COUNTERS += [UNSORTED, TURNED, COUNTED]
+_COUNTERS += [UNSORTED, TURNED, COUNTED, USED_PAIRS, USED_REGIONS]
 #: What a body keeps.
 _BODY = ("asked", "taken", "pushed", "calm", "since")
 #: What a shape keeps.

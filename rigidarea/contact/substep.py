@@ -11,7 +11,7 @@ from ..kernel.islands import note, share_kicks
 from ..kernel.jit import kernel
 from ..kernel.join import gather, has_room, join, nobody_comes_near, somebody_touches
 from ..kernel.joint import free_turning, geometric_stiffness
-from ..kernel.order import arrange, find_near
+from ..kernel.order import arrange, find_near, sieve
 from ..kernel.relax import begin_to_relax, end_relaxing
 from ..kernel.solve import (
     common,
@@ -34,15 +34,17 @@ from .record import floats, look_at_partners
 
 
 @kernel
-def near_pairs(s: Any, space: int, h: float, time: float) -> bool:
-    """Find the pairs that are near. Whether there was room for them."""
+def near_pairs(s: Any, space: int, h: float, time: float, ordered: bool = True) -> bool:
+    """Find the pairs that are near, and order them unless `number` is about to. Whether there was room for them."""
     tables = load_tables(s)
     if not find_near(load_pool(s), tables, s.frame, h, time):
         return False
     if tables.counters[UNSORTED]:
         look_at_partners(s, tables)
-        g = floats(space + s.space_gravity, 2)
-        arrange(tables, g[0], g[1])
+        sieve(tables)
+        if ordered:
+            g = floats(space + s.space_gravity, 2)
+            arrange(tables, g[0], g[1])
     lap(s, PAIRS)
     return bool(s.begun or has_room(tables))
 

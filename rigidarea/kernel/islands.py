@@ -22,7 +22,21 @@ from .order import arrange, bound, enlist, turn_of
 from .place import seen_from
 from .pool import Pool
 from .sides import shown_sides
-from .tables import AWAKE, FIRST, FIXED, LAST, LIVE, MET, NEAR, TOOTHED, TURN, TURNED, Law, Tables
+from .tables import (
+    AWAKE,
+    FIRST,
+    FIXED,
+    LAST,
+    LIVE,
+    MET,
+    NEAR,
+    TOOTHED,
+    TURN,
+    TURNED,
+    UNSORTED,
+    Law,
+    Tables,
+)
 from .work import Work
 
 #: More substeps than any turn has.
@@ -73,14 +87,17 @@ def _past_teeth(pool: Pool, tables: Tables, work: Work, pair: Any, dt: float) ->
 
 
 @kernel
-def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, free: bool) -> int:
-    """How many substeps each body wants in a frame of dt; the most that any does.
+def demand(
+    pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, free: bool
+) -> tuple[int, int]:
+    """How many substeps each body wants in a frame of dt; the most and the least that any does.
 
     n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
     and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
     (`meet`); teeth, slots and hooks move under a contact that is there already.
     """
     most = 1 if free else n
+    least = FINEST
     slow = CALM * law.gravity * dt
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
@@ -90,8 +107,9 @@ def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, 
         )
         body.wants = max(1 if free and before and body.calm else n, body.asked)
         most = max(most, body.wants)
+        least = min(least, body.wants)
     if not free or tables.counters[TOOTHED] == 0:
-        return most
+        return most, min(most, least)
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]
         wants = _past_teeth(pool, tables, work, pair, dt)
@@ -100,30 +118,27 @@ def demand(pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, 
                 body = tables.bodies[tables.shapes[shape].body]
                 body.wants = max(body.wants, wants)
             most = max(most, wants)
-    return most
+    return most, min(most, least)
 
 
 @kernel
-def everybody(tables: Tables, gx: float, gy: float) -> None:
-    """All bodies and pairs in one turn; (gx, gy) gravity, by which pairs are sorted."""
+def everybody(tables: Tables) -> None:
+    """All bodies and pairs in one turn."""
     counters = tables.counters
     counters[TURN] = 0
     if counters[TURNED]:
         counters[TURNED] = 0
-        arrange(tables, gx, gy)
-    else:
-        enlist(tables)
+        counters[UNSORTED] = 1
+    enlist(tables)
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
 
 
 @kernel
-def company(tables: Tables, least: int) -> None:
-    """Note in `steps` who is near somebody, and have everybody want so many substeps at least."""
+def company(tables: Tables) -> None:
+    """Note in `steps` who is near somebody."""
     for k in range(tables.counters[AWAKE]):
-        body = tables.bodies[tables.awake[k]]
-        body.steps = 0
-        body.wants = max(body.wants, least)
+        tables.bodies[tables.awake[k]].steps = 0
     for k in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[k].pair]
         tables.bodies[tables.shapes[pair.a].body].steps = 1
@@ -174,7 +189,7 @@ def part(tables: Tables) -> None:
 def number(tables: Tables, gx: float, gy: float) -> int:
     """Each island takes as many substeps as the body of it that wants most; how many numbers: 0, 1, or 2 for more.
 
-    After `part` and `connect`. Leaves the near pairs turn by turn.
+    After `part` and `connect`. Where there are two or more, leaves the near pairs turn by turn.
     """
     counters = tables.counters
     bodies = tables.bodies
@@ -194,12 +209,16 @@ def number(tables: Tables, gx: float, gy: float) -> int:
             numbers = 1
         elif body.steps != first:
             numbers = 2
-    moved = counters[TURNED] == 0
+    moved = counters[TURNED] == 0 or counters[UNSORTED] == 1
     for k in range(counters[NEAR]):
+        if moved:
+            break
         pair = tables.pairs[tables.near[k].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
-        moved |= tables.near[k].turn != turn_of(a, b)
+        moved = tables.near[k].turn != turn_of(a, b)
+    if numbers < 2:
+        return numbers
     counters[TURNED] = 1
     if moved:
         arrange(tables, gx, gy)

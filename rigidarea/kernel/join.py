@@ -41,7 +41,8 @@ from .tables import (
 from .verdict import allowed
 from .work import Work
 
-#: Rows to spare, of pairs and of regions, beside one of each a shape that moves and a near pair; regions a concave one.
+#: Rows to spare, of pairs and of regions, beside a pair for each shape that moves, a region for every other one and for
+#: each near pair that has none; regions for each concave shape too.
 SPARE = 24
 
 
@@ -205,7 +206,9 @@ def has_room(tables: Tables) -> bool:
     """
     counters = tables.counters
     pairs = counters[MOVERS] + SPARE - counters[FREE_PAIRS]
-    regions = counters[NEAR] + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
+    regions = counters[MOVERS] // 2 + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
+    for i in range(counters[NEAR]):
+        regions += tables.pairs[tables.near[i].pair].head < 0
     counters[MORE_PAIRS] = max(0, pairs)
     counters[MORE_REGIONS] = max(0, regions)
     return bool(pairs <= 0 and regions <= 0)

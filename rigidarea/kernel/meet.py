@@ -47,6 +47,7 @@ from .tables import (
     REST,
     STRUCK,
     SUBSTEP,
+    USED_REGIONS,
     Law,
     Tables,
     free_regions,
@@ -162,6 +163,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             r = counters[FREE_REGION]
             counters[FREE_REGION] = regions[r].next
             counters[FREE_REGIONS] -= 1
+            counters[USED_REGIONS] = max(counters[USED_REGIONS], r + 1)
         else:  # unhook
             if old == r:
                 old = regions[r].next
@@ -379,6 +381,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         counters[FREE_REGION] = region.next
         counters[FREE_REGIONS] -= 1
+        counters[USED_REGIONS] = max(counters[USED_REGIONS], r + 1)
         region.next = kept
         kept = r
         region.pair = p

@@ -58,19 +58,26 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 
 @kernel
-def arrange(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the near pairs that may collide from the bottom to the top, before all others: by places alone, so that
-    nothing depends on who came first. Where a frame is made of turns (`islands`), turn by turn.
-    """
-    ux, uy = up(gx, gy)
+def sieve(tables: Tables) -> None:
+    """The near pairs that may collide before all others."""
     near = tables.near
-    last = len(near) - 1  # room for one
     n = 0
     for i in range(tables.counters[BOXED]):
         if may_collide(tables, tables.pairs[near[i].pair]):
             near[i].pair, near[n].pair = near[n].pair, near[i].pair
             n += 1
     tables.counters[NEAR] = n
+
+
+@kernel
+def arrange(tables: Tables, gx: float, gy: float) -> None:
+    """Sort the near pairs (after `sieve`) from the bottom to the top: by places alone, so that nothing depends on who
+    came first. Where a frame is made of turns (`islands`), turn by turn.
+    """
+    ux, uy = up(gx, gy)
+    near = tables.near
+    last = len(near) - 1  # room for one
+    n = tables.counters[NEAR]
     sorted_already = True
     for i in range(n):
         one = near[i]

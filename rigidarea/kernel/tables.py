@@ -282,15 +282,18 @@ REGION = record(
 #: `awake`, pairs in `told`; which list `live` is;
 #: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
 #: other ones than in the last frame. How many pairs, regions and joints more than there is room for a frame wants at
-#: least, and 1 where the scratch is too small; looks left (`motion.afford`);
-#: the last frame that did not fail.
+#: least, and 1 where the scratch is too small, or there is none for
+#: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
+#: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
+#: as they were made.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
 BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
 JOINTS, REJOINED, GONE = range(30, 33)
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, LOOKS_LEFT, COUNTED = range(33, 39)
-COUNTERS = 39
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(33, 40)
+USED_PAIRS, USED_REGIONS = range(40, 42)
+COUNTERS = 42
 
 
 class Law(NamedTuple):
@@ -448,6 +451,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair = tables.pairs[p]
         counters[FREE_PAIR] = pair.next
         counters[FREE_PAIRS] -= 1
+        counters[USED_PAIRS] = max(counters[USED_PAIRS], p + 1)
         first = comes_first(tables, a, b)
         pair.a = a if first else b
         pair.b = b if first else a
