@@ -160,9 +160,8 @@ def _start(s: Any, space: int, tables: Tables) -> bool:
     """
     s.broken = -1
     s.fragile = 0
-    concave = (
-        tables.counters[CONCAVE] > 0
-    )  # two may overlap in any number of places: who is at rest keeps its own
+    # two that are concave may overlap in any number of places: who is at rest keeps its own
+    concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)

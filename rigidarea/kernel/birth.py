@@ -11,12 +11,41 @@ from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
 from .exposed import exposed_patch
 from .jit import kernel
 from .motion import centre_of, earlier, since_of, unseen_for
-from .place import overlap_of_outlines
+from .place import Pose, overlap_of_outlines
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, turn_to
 from .stiffness import depth_for
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
 from .work import Work
+
+
+@kernel
+def _nearest(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    n: int,
+    ia: int,
+    ib: int,
+    pose: Pose,
+    facing: float,
+) -> int:
+    """Which of the work's n loops is nearest to a region, of those turned to its direction by more than `facing`.
+
+    -1: none.
+    """
+    least = np.inf
+    best = -1
+    for k in range(n):
+        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
+        far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+        if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > facing and far < least:
+            least = far
+            best = k
+    return best
 
 
 @kernel
@@ -69,14 +98,7 @@ def touch(
             pose = earlier(a, then)
             other = earlier(b, then)
             n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
-            least = np.inf
-            for k in range(n):
-                patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
-                far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-                along = patch.nx * region.nx + patch.ny * region.ny
-                if not patch.blind and patch.area > 0.0 and along > 0.0 and far < least:
-                    least = far
-                    best = k
+            best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, 0.0)
             if best >= 0:
                 break
         if best < 0:
@@ -220,14 +242,7 @@ def goes_over(
         return False  # too slow to be seen there: what gravity adds on the way, and somebody carries, would be more
     pose = earlier(a, -ahead)
     n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
-    least = np.inf
-    best = -1
-    for k in range(n):
-        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
-        far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-        if not patch.blind and patch.area > 0.0 and far < least:
-            least = far
-            best = k
+    best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, -np.inf)
     if best < 0:
         return False
     patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)

@@ -93,7 +93,7 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
         0.0,
         patch.depth if face else reach,
         reach,
-        False,
+        area == 0.0,
         patch.radial,
     )
 
@@ -104,7 +104,7 @@ def exposed_patch(
 ) -> Patch:
     """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges.
 
-    Its area is 0 where a disc is only within a round end that nothing of is exposed.
+    It is blind and of no area where a disc is only within a round end of which nothing is exposed.
     """
     patch = patch_of(pool, work, law, k, ia, ib, pose)
     a = tables.bodies[tables.shapes[pair.a].body]

@@ -371,7 +371,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
             continue
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
-        if patch.blind or patch.area == 0.0 or patch.reach <= deepest:
+        if patch.blind or patch.reach <= deepest:
             continue
         r = counters[FREE_REGION]
         region = regions[r]

@@ -393,10 +393,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
         row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
+        # a step longer than an edge's own time opens it all by itself: no trace of speed is left
         if phase2 >= 1.0 and r.curve_a == 0.0 and r.curve_b == 0.0:
-            row.theta = (
-                1.0  # a step longer than an edge's own time opens it all by itself: no trace of speed is left
-            )
+            row.theta = 1.0
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness

@@ -193,13 +193,14 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.pushed = 0
-        if body.stamp == frame:
-            least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
-            if abs(body.vx) < least:
-                body.vx = 0.0
-            if abs(body.vy) < least:
-                body.vy = 0.0
-        if body.stamp == frame and (body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0):
+        if body.stamp != frame:
+            continue
+        least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
+        if abs(body.vx) < least:
+            body.vx = 0.0
+        if abs(body.vy) < least:
+            body.vy = 0.0
+        if body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0:
             if body.kind == DRIFTS:
                 body.x += body.shift_x
                 body.y += body.shift_y
