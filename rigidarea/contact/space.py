@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import pymunk
 
+from ..debug_draw import true_outlines
+
 if TYPE_CHECKING:
     from .attach import AreaContact
 
@@ -66,9 +68,13 @@ def attached_class(plain: Any) -> type:
             if not self._locked:
                 self.__dict__[KEY]._register.forget()
 
+        def debug_draw(self: Any, options: pymunk.SpaceDebugDrawOptions) -> None:
+            with true_outlines(options):
+                plain.debug_draw(self, options)
+
         own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
         own |= {method.__name__: method for method in (_add_shape, _remove_shape, _add_body, _remove_body)}
-        for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
+        for method in (step, debug_draw, reindex_static, reindex_shape, reindex_shapes_for_body):
             method.__doc__ = getattr(plain, method.__name__).__doc__
             own[method.__name__] = method
         _classes[plain] = type(plain.__name__, (plain,), own)
