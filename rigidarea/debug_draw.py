@@ -20,7 +20,7 @@ import pymunk
 import shapely
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .arcs import Points, is_circle
+from .arcs import Points
 from .outline import Outline
 from .overlap import overlap
 
@@ -51,14 +51,6 @@ def _triangles(rings: Sequence[Points]) -> Points:
     return corners
 
 
-def is_proxy(shape: pymunk.Shape) -> bool:
-    """Whether what pymunk sees of a shape is another thing than its outline: all but discs and bare segments."""
-    outline = getattr(shape, "outline", None)
-    if not isinstance(outline, Outline) or outline.two_sided:
-        return False
-    return not (outline.arcs and len(outline.rings) == 1 and is_circle(outline.arcs[0]))
-
-
 class OutlineOptions(pymunk.SpaceDebugDrawOptions):
     """pymunk's drawing options, for outlines: to be inherited before a class that draws.
 
@@ -76,7 +68,8 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
 
     def color_for_shape(self, shape: pymunk.Shape) -> SpaceDebugColor:
         """The colour of a shape: Chipmunk asks for it before it draws the shape."""
-        self._shape = shape if is_proxy(shape) else None
+        outline = getattr(shape, "outline", None)
+        self._shape = shape if isinstance(outline, Outline) and outline.proxied else None
         return super().color_for_shape(shape)
 
     def draw_circle(

@@ -40,7 +40,7 @@ from .gate import (
     positive,
 )
 from .simple import check_simple
-from .stand_in import hull_of, stand_in, width_of
+from .stand_in import MAX_VERTICES, hull_of, stand_in, width_of
 
 DEFAULT_TOLERANCE = 5e-5
 """Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
@@ -398,6 +398,15 @@ class Outline:
             setattr(shape, name, value)
         shape.outline = self
         return shape
+
+    @cached_property
+    def proxied(self) -> bool:
+        """Whether pymunk's broad phase sees another shape (`add_to`): not of a disc, a convex polygon of at the most
+        8 points, a segment.
+        """
+        if self.arcs:
+            return len(self.rings) > 1 or not curves.is_circle(self.arcs[0])
+        return not self.two_sided and (len(self.rings[0]) > MAX_VERTICES or not self.convex)
 
     @cached_property
     def smallest_extent(self) -> float:

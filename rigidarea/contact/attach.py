@@ -262,7 +262,10 @@ class AreaContact:
         space = self.space
         flexible = self._settings["flexible"] is not None
         asleep = bool(self._state["asleep"])
-        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible or asleep)
+        proxies = bool(self._register.proxies)
+        return bool(
+            space.threaded or space._bodies_to_check or space._handlers or flexible or asleep or proxies
+        )
 
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
@@ -275,13 +278,24 @@ class AreaContact:
         self._stepping = True
         try:
             if flexible is None:
-                rest()
+                self._exactly(rest)
             else:
-                flexible.step(dt, rest, int(self._state["idle_kind"]))
+                flexible.step(dt, lambda: self._exactly(rest), int(self._state["idle_kind"]))
         finally:
             self._stepping = False
             if self._error is not None:
                 self._raise()
+
+    def _exactly(self, rest: Callable[[], None]) -> None:
+        """A step of pymunk's, which hears of outlines where they touch, not where their proxies do."""
+        if not self._register.proxies or self.space._locked:
+            rest()
+            return
+        self._hook.spy.come(self.space)
+        try:
+            rest()
+        finally:
+            self._hook.spy.go(self.space)
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""

@@ -22,6 +22,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of
 from . import frame, joints, record
 from .arrays import Store
+from .proxies import Spy
 
 
 class Hook:
@@ -59,6 +60,7 @@ class Hook:
         state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
         state["hold_at"] = record.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
+        self.spy = Spy(state)
         self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
         own = joint, body, pivot

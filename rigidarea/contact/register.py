@@ -47,6 +47,7 @@ class Register:
             )
         }
         self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
         self._new: dict[pymunk.Shape, None] = {}  # not entered yet
         self._gone: list[int] = []  # ids of shapes that are entered still
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
@@ -158,6 +159,7 @@ class Register:
             self._call("shapes_go", self._gone)
             for ident in self._gone:
                 self.shapes.pop(ident, None)
+                self.proxies.discard(ident)
             self._gone.clear()
             self._store.tidy()
         if self._left:
@@ -221,6 +223,9 @@ class Register:
         addresses = _words(address_of(shape._shape) for shape in shapes)
         self._calls["shapes_come"](self._at, addresses.ctypes.data, heads.ctypes.data, len(shapes))
         self.shapes.update(zip(idents, shapes))
+        proxies = [s._hashid for s in shapes if _given(s) and Outline.from_pymunk(s).proxied]
+        self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
+        self.proxies.update(proxies)
 
     def _call(self, name: str, values: Iterable[int], *more: int) -> None:
         words = ffi.new("uintptr_t[]", list(values))  # (numpy takes ten times as long for one)
