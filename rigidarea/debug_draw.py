@@ -86,14 +86,15 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
 
     def draw_polygon(
         self,
-        verts: Sequence[pymunk.Vec2d],
+        verts: Sequence[tuple[float, float]],
         radius: float,
         outline_color: SpaceDebugColor,
         fill_color: SpaceDebugColor,
     ) -> None:
         """A convex polygon, or the outline whose proxy it is."""
         if not self._draw_outline(outline_color, fill_color):
-            super().draw_polygon(verts, radius, outline_color, fill_color)
+            corners = [pymunk.Vec2d(*corner) for corner in verts]
+            super().draw_polygon(corners, radius, outline_color, fill_color)
 
     def _draw_outline(self, outline_color: SpaceDebugColor, fill_color: SpaceDebugColor) -> bool:
         """Draw the outline of the shape that is being drawn; False: it has none but what pymunk sees."""

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, lru_cache, partial
-from typing import Any
+from typing import Any, Literal, Unpack
 
 import numpy as np
 import pymunk
@@ -29,6 +29,7 @@ from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
 from .gate import (
     LARGEST,
+    ShapeAttributes,
     check_valid,
     checked_attribute,
     checked_bulges,
@@ -221,7 +222,7 @@ class Outline:
         shape: pymunk.Shape,
         tolerance: float | None = None,
         *,
-        side: str = "both",
+        side: Literal["both", "left", "right"] = "both",
         thickness: float | None = None,
     ) -> Outline:
         """The solid that a pymunk shape stands for, in its body's coordinates.
@@ -369,7 +370,7 @@ class Outline:
 
     # --- into a pymunk space ---
 
-    def add_to(self, body: pymunk.Body, **shape_attrs: Any) -> pymunk.Shape:
+    def add_to(self, body: pymunk.Body, **shape_attrs: Unpack[ShapeAttributes]) -> pymunk.Shape:
         """Put the outline on a body, behind a pymunk stand-in shape that contains it; returns that shape,
         to add to the space.
 
@@ -386,7 +387,7 @@ class Outline:
         """
         if not isinstance(body, pymunk.Body):
             raise ValueError(f"body must be a pymunk.Body, got {type(body).__name__}")
-        known = ("friction", "elasticity", "collision_type", "filter", "sensor", "surface_velocity")
+        known = ShapeAttributes.__annotations__
         unknown = sorted(set(shape_attrs) - set(known))
         if unknown:
             raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")

@@ -48,8 +48,8 @@ class Rings(OutlineOptions):
         edge = inside.copy()
         edge[1:-1, 1:-1] &= ~(inside[:-2, 1:-1] & inside[2:, 1:-1] & inside[1:-1, :-2] & inside[1:-1, 2:])
         colors = np.array([(0, 0, 0, 0), fill_color.as_int(), outline_color.as_int()], np.uint8)
-        pixels = np.ascontiguousarray(colors[inside.astype(np.intp) + edge])
-        image = pygame.image.frombuffer(pixels, inside.shape[::-1], "RGBA")
+        pixels = colors[inside.astype(np.intp) + edge]
+        image = pygame.image.frombuffer(pixels.tobytes(), inside.shape[::-1], "RGBA")
         self.surface.blit(image, at)
 
 

@@ -26,8 +26,11 @@ class _Mesh(pyglet.shapes.ShapeBase):
     """Triangles (m, 3, 2) of one colour, as one vertex list of the batch."""
 
     _draw_mode = pyglet.gl.GL_TRIANGLES
+    _vertex_list: Any
+    _batch: Any
+    _group: Any
 
-    def __init__(self, triangles: Points, color: tuple[int, ...], batch: Any) -> None:
+    def __init__(self, triangles: Points, color: tuple[int, int, int, int], batch: Any) -> None:
         self._corners = triangles.reshape(-1, 2)
         self._rotation = 0
         self._x = self._y = 0

@@ -62,9 +62,7 @@ def scene(name: str, angle: float, *, attach: bool = True) -> tuple[pymunk.Space
 def covered(outline: ra.Outline, body: pymunk.Body, offset: float, flip: bool) -> np.ndarray:
     """(SIZE, SIZE) bool: rows from the top; pixel i stands for the coordinate i + offset."""
     c, s = body.rotation_vector
-    rings = [
-        ring @ np.array([[c, s], [-s, c]]) + tuple(body.position) for ring in outline.sample(1e-3).rings
-    ]
+    rings = [ring @ np.array([[c, s], [-s, c]]) + tuple(body.position) for ring in outline.sample(1e-3).rings]
     polygon = shapely.Polygon(rings[0], rings[1:])
     x, y = np.meshgrid(np.arange(SIZE) + offset, np.arange(SIZE) + offset)
     return shapely.contains_xy(polygon, x, y)[:: -1 if flip else 1]
@@ -191,7 +189,9 @@ def test_transform_and_colour():
     options = DrawOptions(surface)
     options.transform = pymunk.Transform(a=0.5, d=0.5, tx=40, ty=-10)
     space.debug_draw(options)
-    assert surface.get_at((round(40 + 0.5 * body.position.x), round(-10 + 0.5 * (body.position.y - 70))))[0] in (
+    assert surface.get_at((round(40 + 0.5 * body.position.x), round(-10 + 0.5 * (body.position.y - 70))))[
+        0
+    ] in (
         200,
         44,
     )

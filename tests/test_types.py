@@ -92,7 +92,9 @@ def said(tmp_path_factory):
     files = [str(folder / f"{name}.py") for name in ("good", "bad")]
     out, error, _ = api.run(["--strict", "--no-error-summary", "--cache-dir", str(folder / "cache"), *files])
     assert not error, error
-    return {name: re.findall(rf"{name}\.py:(\d+): error: (.*)", out) for name in ("good", "bad")} | {"all": out}
+    return {name: re.findall(rf"{name}\.py:(\d+): error: (.*)", out) for name in ("good", "bad")} | {
+        "all": out
+    }
 
 
 def test_a_users_file_is_strictly_typed(said):

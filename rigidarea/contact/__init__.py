@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .attach import AreaContact, SimulationError, attach
+from .attach import AreaContact, Settings, SimulationError, attach
 from .report import REGIONS
 from .space import attached
 

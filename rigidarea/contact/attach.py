@@ -8,7 +8,7 @@ import time
 import weakref
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 import pymunk
@@ -25,6 +25,9 @@ from .memory import Memory, recall, remember
 from .register import Register
 from .report import regions_of, total_energy
 from .space import KEY, attached, attached_class
+
+if TYPE_CHECKING:
+    from ..flexible import Assembly
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
@@ -424,18 +427,32 @@ def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
 # --- settings ---
 
 
+class Settings(TypedDict, total=False):
+    """What `attach` takes besides the space."""
+
+    stiffness: float | None
+    penetration: float
+    law: Literal["area", "energy"]
+    length: float | None
+    direction: Literal["chord", "nodal"]
+    exponent: float
+    rest_speed: float | None
+    integration: Literal["implicit", "explicit"]
+    flexible: Assembly | None
+
+
 def attach(
     space: pymunk.Space,
     stiffness: float | None = None,
     *,
     penetration: float = PENETRATION,
-    law: str = "area",
+    law: Literal["area", "energy"] = "area",
     length: float | None = None,
-    direction: str = "chord",
+    direction: Literal["chord", "nodal"] = "chord",
     exponent: float = 1.0,
     rest_speed: float | None = None,
-    integration: str = "implicit",
-    flexible: Any = None,
+    integration: Literal["implicit", "explicit"] = "implicit",
+    flexible: Assembly | None = None,
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 

@@ -55,7 +55,9 @@ def _side(s: Any, tables: Tables, i: int, pose: Pose, j: int, other_pose: Pose) 
         side = pair.side_a if pair.a == i else pair.side_b
         kept = pair.kept_a if pair.a == i else pair.kept_b
         if pair.head < 0:
-            side = faces(load_pool(s), shape.outline, pose, tables.shapes[j].outline, other_pose, side, kept, 0.0)
+            side = faces(
+                load_pool(s), shape.outline, pose, tables.shapes[j].outline, other_pose, side, kept, 0.0
+            )
     if side == 0:
         side = faces(load_pool(s), shape.outline, pose, tables.shapes[j].outline, other_pose, 0, kept, 0.0)
     return int(shape.outline if side > 0 else shape.mirror)
@@ -187,7 +189,9 @@ class Spy:
         shown = self._shown[0]
         if shown["class_at"] != int(index[0]):
             shown["class_at"] = int(index[0])
-            self._class[:] = np.frombuffer(ffi.buffer(ffi.cast("void *", int(index[0])), 8 * FUNCTIONS), np.uint64)
+            self._class[:] = np.frombuffer(
+                ffi.buffer(ffi.cast("void *", int(index[0])), 8 * FUNCTIONS), np.uint64
+            )
             shown["reindex_at"] = self._class[REINDEX_QUERY]
             self._class[REINDEX_QUERY] = self._reindex
         index[0] = self._class.ctypes.data
@@ -204,5 +208,7 @@ class Spy:
     def _swap(self, space: pymunk.Space, others: dict[int, int]) -> None:
         for key, handler in space._handlers.items():
             functions = ffi.cast("uintptr_t *", address_of(handler._handler) + self._begin)
-            for k in range(1 if key == (None, None) else 2):  # the global pre_solve is called by `record.pre_solve`
+            for k in range(
+                1 if key == (None, None) else 2
+            ):  # the global pre_solve is called by `record.pre_solve`
                 functions[k] = others.get(int(functions[k]), int(functions[k]))

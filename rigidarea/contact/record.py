@@ -38,7 +38,7 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import MOVING
 from ..kernel.verdict import lasts
-from ..store import STATE, load_pool, load_tables, row_of_body
+from ..store import STATE, load_pool, load_tables, load_work, row_of_body
 from .joints import joints_of, partners_known, take_joints
 from .phases import WATCHING, lap, start
 from .shown import show, shown_of
@@ -434,7 +434,7 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and lasts(tables, pair, s.frame, dt):
+        if pair.a >= 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 

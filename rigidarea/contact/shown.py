@@ -30,8 +30,11 @@ SHOWN = record(
         ("nx", "f8"),  # direction of the largest, A to B
         ("ny", "f8"),
     ]
-    + [(f"{which}{axis}{i}", "f8") for i in range(2) for which in "ab" for axis in "xy"]  # points, world (length)
+    + [
+        (f"{which}{axis}{i}", "f8") for i in range(2) for which in "ab" for axis in "xy"
+    ]  # points, world (length)
 )
+
 
 @kernel(inline="always")
 def shown_of(s: Any) -> Any:
