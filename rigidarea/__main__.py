@@ -28,7 +28,6 @@ COMMANDS = {
     "compare": "rigid, compliant and modal beside each other",
     "plan": "the cheapest model and settings within a tolerance, and how often that is right",
     "run": "an existing pymunk program, area contact attached to every space it makes",
-    "reference": "the API reference, written from the docstrings",
     "compat": "pymunk's own examples and tests with area contact attached",
 }
 #: Where they are: each module has `add_arguments(parser)` and `run(arguments)`.
@@ -37,7 +36,6 @@ MODULES = {
     "case": "cases",
     "plan": "plan.command",
     "run": "compat.run",
-    "reference": "reference",
     "compat": "compat.command",
 }
 STUDIES = ("bench", "chart", "atlas", "compare")

@@ -37,7 +37,7 @@ def _edges(outline: Outline, body: pymunk.Body) -> _Edges:
 
 
 def _crossings(a: Points, b: Points, edges: _Edges) -> tuple[Points, Points]:
-    """Where the way from a to b, both (2,), crosses edges: fractions of it (m,), and normals (m, 2) out of the solid."""
+    """Where the way from a to b, both (2,), crosses edges: fractions of it (m,), normals (m, 2) out of the solid."""
     way = b - a
     found: list[tuple[float, Points]] = []
     straight = edges.arcs[:, 2] == 0
@@ -48,7 +48,9 @@ def _crossings(a: Points, b: Points, edges: _Edges) -> tuple[Points, Points]:
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0]) / cross
         u = (off[:, 0] * way[1] - off[:, 1] * way[0]) / cross
-    for i in np.flatnonzero((t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)):  # NaN and infinity, parallel, are neither
+    for i in np.flatnonzero(
+        (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)
+    ):  # NaN and infinity, parallel, are neither
         found.append((float(t[i]), np.array((along[i, 1], -along[i, 0])) / math.hypot(*along[i])))
     for i in np.flatnonzero(~straight):
         x, y, r = edges.arcs[i]
@@ -102,7 +104,12 @@ def segment_query(
     found = []
     for hit in space.segment_query(tuple(a.tolist()), tuple(b.tolist()), 0, shape_filter):
         outline = getattr(hit.shape, "outline", None)
-        if not isinstance(outline, Outline) or outline.two_sided or hit.shape is None or hit.shape.body is None:
+        if (
+            not isinstance(outline, Outline)
+            or outline.two_sided
+            or hit.shape is None
+            or hit.shape.body is None
+        ):
             found.append(hit)
             continue
         if _covers(hit.shape, (float(a[0]), float(a[1]))):

@@ -30,7 +30,10 @@ def scene(name, seed):
     shape = outline.add_to(body)
     space.add(body, shape)
     c, s = body.rotation_vector
-    rings = [r @ np.array([[c, s], [-s, c]]) + tuple(body.position) for r in (outline.sample(1e-4) if outline.arcs else outline).rings]
+    rings = [
+        r @ np.array([[c, s], [-s, c]]) + tuple(body.position)
+        for r in (outline.sample(1e-4) if outline.arcs else outline).rings
+    ]
     return space, shape, shapely.Polygon(rings[0], rings[1:]), draw
 
 

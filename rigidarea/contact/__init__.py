@@ -6,4 +6,4 @@ from .attach import AreaContact, Settings, SimulationError, attach
 from .report import REGIONS
 from .space import attached
 
-__all__ = ["REGIONS", "AreaContact", "SimulationError", "attach", "attached"]
+__all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]

@@ -18,7 +18,7 @@ from ..chipmunk import address_of
 from ..kernel.direction import chord_direction
 from ..kernel.extent import extent
 from ..kernel.jit import callback, kernel
-from ..kernel.memory import array_at, caller
+from ..kernel.memory import caller
 from ..kernel.place import Pose, overlap_of_outlines, push_out
 from ..kernel.sides import faces
 from ..kernel.tables import MORE_WORK, Tables, find_pair
@@ -158,7 +158,7 @@ def first_pre_solve(arbiter: int, space: int, data: int) -> None:
 
 @callback(types.void(types.uintp, types.uintp, types.uintp))
 def reindex(index: int, each: int, space: int) -> None:
-    """What Chipmunk asks its index for in a step: all pairs whose boxes meet. The index is its own again, and asks us."""
+    """What Chipmunk asks its index for in a step: all pairs whose boxes meet. The index has its class again."""
     t = shown_of(state_of(space))
     words(index, 1)[0] = t.class_at
     t.collide_at = each

@@ -13,7 +13,6 @@ from ..kernel.tables import SUBSTEP
 from ..store import load_law
 from .arrays import Store
 
-#: One row a contact region, as `AreaContact.regions` gives them.
 REGIONS = np.dtype(
     [
         ("shape_a", "O"),
@@ -31,6 +30,7 @@ REGIONS = np.dtype(
         ("slip", "f8"),  # tangential speed of A relative to B, surface velocity included (length/time)
     ]
 )
+"""One row a contact region, as `AreaContact.regions` gives them."""
 
 
 def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:

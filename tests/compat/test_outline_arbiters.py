@@ -164,12 +164,11 @@ def test_begin_and_separate_are_those_of_the_outlines():
         space.add(own, body, ball)
         ra.attach(space)
         heard: list[str] = []
-        space.on_collision(
-            1,
-            2,
-            begin=lambda *_: heard.append("begin"),
-            separate=lambda *_: heard.append("separate"),
-        )
+
+        def hear(what, heard=heard):
+            return lambda *_: heard.append(what)
+
+        space.on_collision(1, 2, begin=hear("begin"), separate=hear("separate"))
         touched = False
         for _ in range(35):  # as far as x = 3: within the hoop, and back at no bar yet
             space.step(DT)
@@ -232,7 +231,7 @@ def test_what_a_callback_sets_is_what_counts():
 
 
 def test_copies_and_detaching_leave_pymunks_handlers_as_they_were():
-    space, a, b = thrown_together(1)
+    space, *_ = thrown_together(1)
     space.on_collision(begin=lambda *_: None, pre_solve=lambda *_: None)
     handler = space._handlers[None, None]._handler
     before = handler.beginFunc
