@@ -38,6 +38,12 @@ MODULES = {
     "run": "compat.run",
     "compat": "compat.command",
 }
+#: The extra that brings a module which commands need (README, "Set up").
+EXTRAS = {
+    **dict.fromkeys(("pygame", "imageio", "imageio_ffmpeg"), "demos"),
+    **dict.fromkeys(("scipy", "threadpoolctl"), "flexible"),
+    **dict.fromkeys(("matplotlib", "b2d", "pyb2d3", "distributed"), "studies"),
+}
 STUDIES = ("bench", "chart", "atlas", "compare")
 
 
@@ -99,9 +105,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] == "rigidarea":
             raise
-        top.exit(
-            2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[demos,studies,flexible]'\n"
-        )
+        extra = EXTRAS.get((error.name or "").split(".")[0], "demos,studies,flexible")
+        top.exit(2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[{extra}]'\n")
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
     except KeyboardInterrupt:

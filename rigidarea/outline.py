@@ -40,6 +40,7 @@ from .gate import (
     numbers,
     positive,
 )
+from .pictures import FILL, figure, path_data, svg
 from .simple import check_simple
 from .stand_in import MAX_VERTICES, hull_of, stand_in, width_of
 
@@ -371,16 +372,17 @@ class Outline:
     # --- into a pymunk space ---
 
     def add_to(self, body: pymunk.Body, **shape_attrs: Unpack[ShapeAttributes]) -> pymunk.Shape:
-        """Put the outline on a body, behind a pymunk stand-in shape that contains it; returns that shape,
+        """Put the outline on a body, behind a proxy shape of pymunk's that contains it; returns that shape,
         to add to the space.
 
-        The stand-in only tells the broad phase where to look; contact is computed with the exact outline,
-        which hangs on it as `shape.outline` and survives copying and pickling. The stand-in is the
+        The proxy only tells the broad phase where to look; contact is computed with the exact outline,
+        which hangs on it as `shape.outline` and survives copying and pickling. The proxy is the
         circle itself for a disc, its convex hull where that has no more than 8 vertices, else the tighter of
-        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). Hence pymunk's
-        own queries and drawing see the stand-in: `point_query`, `segment_query`, `shapes_collide` and
-        `debug_draw` report a slot, a hole or the gap between two teeth as solid. It has no mass: give the
-        body its mass and moment (`moment`, or `body`).
+        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). In an attached
+        space callbacks and `debug_draw` see the outline. pymunk's own queries see the proxy: `point_query`,
+        `segment_query` and `shapes_collide` report a slot, a hole or the gap between two teeth as solid;
+        `rigidarea.point_query` and `rigidarea.segment_query` do not. The proxy has no mass: give the body its mass
+        and moment (`moment`, or `body`).
 
         shape_attrs: friction, elasticity, collision_type, filter, sensor, surface_velocity, as in pymunk.
         Raises ValueError for other names (mass and density among them), and for values that pymunk could not take.
@@ -456,6 +458,13 @@ class Outline:
     def __reduce__(self) -> tuple[Any, ...]:
         mirror = None if self.mirror is None else self.mirror.rings
         return _restore, (self.rings, self._resample, mirror, self.arcs)
+
+    def _repr_svg_(self) -> str:
+        """A notebook's picture of it."""
+        return svg([(path_data(self.rings, self.arcs), "", FILL)], self.bounds)
+
+    def _repr_html_(self) -> str:
+        return figure(self._repr_svg_(), repr(self))
 
     def __repr__(self) -> str:
         points = " + ".join(str(len(ring)) for ring in self.rings)

@@ -151,7 +151,7 @@ def test_docs_refresh():
     assert body.position.y == pytest.approx(17, abs=0.2)  # 5 of the segment, 12 of the disc
 
 
-def test_docs_queries_see_the_stand_in():
+def test_docs_queries_see_the_proxy():
     space = pymunk.Space()
     ell = ra.Outline([(0, 0), (4, 0), (4, 1), (1, 1), (1, 4), (0, 4)])
     body = ell.body(density=1)

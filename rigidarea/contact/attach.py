@@ -376,6 +376,16 @@ class AreaContact:
                 f"{lib.cpSpaceGetTimestamp(space._space)} of the space: all bodies are as they were before it"
             )
 
+    def __repr__(self) -> str:
+        if self._space is None:
+            return "<AreaContact, detached>"
+        bodies, shapes = len(self._space.bodies), len(self._space.shapes)
+        regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
+        firm = (
+            f"penetration {self.penetration:g}" if self.stiffness is None else f"stiffness {self.stiffness:g}"
+        )
+        return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{firm}>"
+
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:

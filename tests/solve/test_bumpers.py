@@ -38,7 +38,14 @@ def meeting(kind: str) -> tuple[pymunk.Space, pymunk.Body, pymunk.Shape, pymunk.
     return space, body, shape, wall
 
 
-KINDS = ("disc on wall", "disc on disc", "box on wall", "disc on outline", "outline on line", "disc on a free disc")
+KINDS = (
+    "disc on wall",
+    "disc on disc",
+    "box on wall",
+    "disc on outline",
+    "outline on line",
+    "disc on a free disc",
+)
 
 
 @pytest.mark.parametrize("kind", KINDS)
