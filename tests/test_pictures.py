@@ -68,7 +68,7 @@ def test_a_space():
         middles = [np.concatenate(rings).mean(axis=0) for rings, _ in found]
         heights = [y for _, y in middles]
         assert (heights[4] > max(heights[:4])) == (g < 0)  # pixels run down
-        assert all(a[0] < b[0] for a, b in zip(middles[:3], middles[1:4]))
+        assert middles[0][0] < middles[1][0] < middles[2][0] < middles[3][0]
         assert "4 bodies" in space._repr_html_() and "5 shapes" in repr(contact)
         contact.detach()
         assert repr(contact) == "<AreaContact, detached>" and not hasattr(space, "_repr_svg_")

@@ -147,8 +147,8 @@ def everyday(
     last second, the seeds' worst; likewise native_1_speed_left ...), contacts (pairs a frame), native_contacts (of
     native_1, whose frame is the measure), native_4_contacts, inside (whether every body of every seed stayed in the
     room; native_1_inside ...), shift (sideways, over a body's side), moving_ms and moving_worst_ms (of the first
-    `MOVING_S`: the mean frame, and the mean of the slowest tenth; native_1_moving_ms ...). `runs`: a row a scene, seed and engine. `summary`:
-    median and worst ratio of the judged scenes, and which fell short in what.
+    `MOVING_S`: the mean frame, and the mean of the slowest tenth; native_1_moving_ms ...). `runs`: a row a scene, seed
+    and engine. `summary`: median and worst ratio of the judged scenes, and which fell short in what.
     """
     chosen = list(names) or list(EVERYDAY)
     for name in chosen:

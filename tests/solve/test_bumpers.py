@@ -1,4 +1,4 @@
-"""A product of elasticities above 1 gives back so much more speed, whatever the shapes, the steps, the way it is set."""
+"""A product of elasticities above 1 gives back so much more speed: any shapes, any steps, set in any way."""
 
 from __future__ import annotations
 
