@@ -10,13 +10,14 @@ from contextlib import contextmanager
 from typing import Any, NamedTuple, Unpack
 from xml.parsers import expat
 
+import numpy as np
 import pymunk
 import shapely
 
 from ..gate import ShapeAttributes, size, truth
 from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read, shown, text
-from .rings import outlines_of_polygons, polygons_of_rings
+from .rings import outlines_of_polygons, overlapping_boxes, polygons_of_rings
 from .svg_path import NUMBER, Matrix, Segments, finite_numbers, numbers
 from .values import Ring
 
@@ -54,8 +55,8 @@ _INK = {
 }
 _SHAPES = ("path", "rect", "circle", "ellipse", "polyline", "polygon", "line")
 _CLOSED = ("rect", "circle", "ellipse", "polygon")
-#: Points of the strokes of one element: where they cross, each pair of crossings costs.
-STROKED = 1_000
+#: Points of the strokes of one element, and pairs of their edges whose boxes overlap: GEOS pays for every crossing.
+STROKED, CROSSING = 1_000, 50_000
 LABEL = "http://www.inkscape.org/namespaces/inkscape label"
 HREF = "http://www.w3.org/1999/xlink href"
 
@@ -352,6 +353,9 @@ class _Drawing:
 def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> list[shapely.Polygon]:
     """What a pen covers on its way along rings, (n, 2) each."""
     check(sum(map(len, rings)), STROKED, "points of a stroke")
+    ends = [(ring[:-1], ring[1:]) for ring in rings]
+    low, high = (np.concatenate([how(a, b) for a, b in ends]) for how in (np.minimum, np.maximum))
+    overlapping_boxes(shapely.box(*low.T, *high.T), CROSSING, "edges of a stroke", keep=False)
     half = pen.width / 2
     sagitta = min(1e-3 * pen.width if tolerance is None else tolerance, half)
     quarter = min(64, max(1, math.ceil(math.pi / 4 / math.acos(1 - sagitta / half))))

@@ -77,6 +77,12 @@ def test_finer_tolerance_is_closer(tmp_path):
             "at most 50 elements",
         ),
         ('\n<rect/>\n<path id="spawn" d="M0,0 L10,10 L10,0 L0,10 Z"/>', "line 3, <path id='spawn'>: ring 0"),
+        (
+            '<polyline fill="none" stroke="red" points="'
+            + " ".join(f"{math.cos(i * 3.138):.5f},{math.sin(i * 3.138):.5f}" for i in range(400))
+            + '"/>',
+            "pairs of edges of a stroke",
+        ),
         ('<g fill="none" stroke="red"><path d="M0,0' + "h1v1" * 600 + '"/></g>', "at most"),
         ("<script>alert(1)</script>", "expected a plain drawing"),
         ("<rect width='1' height='1'>", "expected an SVG drawing"),
