@@ -433,7 +433,7 @@ class Outline:
         return stand_in(hull_of(curves.around(self.rings[0], self.arcs[0])) if self.arcs else self._hull)
 
     def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
-        """A dynamic pymunk body with this outline's mass, moment and centre of gravity (no shape on it yet).
+        """A dynamic pymunk body at the origin with this outline's mass, moment, centre of gravity (no shape on it yet).
 
         Give either density (mass/length²) or mass. Raises ValueError unless exactly one is given, positive
         and finite.
@@ -445,6 +445,7 @@ class Outline:
         mass = positive(mass, "mass")
         body = pymunk.Body(mass, mass * self._gyration)
         body.center_of_gravity = self.centroid
+        body.position = 0, 0  # which pymunk moves with the centre of gravity
         return body
 
     # --- immutable: copies share it ---

@@ -353,6 +353,8 @@ class _Drawing:
 def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> list[shapely.Polygon]:
     """What a pen covers on its way along rings, (n, 2) each."""
     check(sum(map(len, rings)), STROKED, "points of a stroke")
+    if not rings:
+        return []
     ends = [(ring[:-1], ring[1:]) for ring in rings]
     low, high = (np.concatenate([how(a, b) for a, b in ends]) for how in (np.minimum, np.maximum))
     overlapping_boxes(shapely.box(*low.T, *high.T), CROSSING, "edges of a stroke", keep=False)
