@@ -353,6 +353,10 @@ class _Drawing:
 def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> list[shapely.Polygon]:
     """What a pen covers on its way along rings, (n, 2) each."""
     check(sum(map(len, rings)), STROKED, "points of a stroke")
+    ways = ((r, np.append(True, (r[1:] != r[:-1]).any(axis=1))) for r in rings)
+    rings = [
+        ring[new] for ring, new in ways if np.count_nonzero(new) > 1
+    ]  # a pen that does not move draws nothing
     if not rings:
         return []
     ends = [(ring[:-1], ring[1:]) for ring in rings]
@@ -365,16 +369,17 @@ def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> li
     for ring in rings:
         closed = pen.closed or (len(ring) > 2 and bool((ring[0] == ring[-1]).all()))
         way = shapely.LinearRing(ring) if closed and len(ring) > 2 else shapely.LineString(ring)
-        covered.append(
-            shapely.buffer(
-                way,
-                half,
-                quad_segs=quarter,
-                cap_style={"round": "round", "square": "square"}.get(pen.cap, "flat"),
-                join_style={"round": "round", "bevel": "bevel"}.get(pen.join, "mitre"),
-                mitre_limit=4.0,
+        with np.errstate(invalid="ignore"):  # of numbers near the largest; what is not finite is refused
+            covered.append(
+                shapely.buffer(
+                    way,
+                    half,
+                    quad_segs=quarter,
+                    cap_style={"round": "round", "square": "square"}.get(pen.cap, "flat"),
+                    join_style={"round": "round", "bevel": "bevel"}.get(pen.join, "mitre"),
+                    mitre_limit=4.0,
+                )
             )
-        )
     parts = shapely.get_parts(shapely.union_all(covered))
     return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
 
