@@ -1,8 +1,8 @@
 """The tables of one attached space: numpy arrays that grow by doubling, and the record by which they are found.
 
-Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are addresses.
+Nothing here knows pymunk's objects: shapes are Chipmunk's integer ids, bodies are addresses.
 
-Tables grow by transactions: a copy (`draft`, or new arrays in a copy of this) is changed, then put in their place
+Tables grow by transactions: new arrays in a copy of the store are filled, then put in the place of the old ones
 (`publish`) by two stores between which Python calls nothing. What is raised on the way, a MemoryError or an interrupt,
 leaves the old ones as they were.
 """
@@ -14,7 +14,9 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from pymunk._chipmunk_cffi import ffi
 
+from ..chipmunk import address_of
 from ..kernel.conjugate import FACTOR, MOBILITY
 from ..kernel.joint import JOINT
 from ..kernel.overlap import enlarged, fits, new_work
@@ -76,8 +78,8 @@ _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
-    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64) -> None:
-        """For how many there is room from the start; regions: half as many as pairs."""
+    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64, regions: int = 32) -> None:
+        """For how many there is room from the start."""
         self.state = np.zeros(1, STATE)
         self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
         self.at = int(self.state.ctypes.data)
@@ -137,7 +139,7 @@ class Store:
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
         self._grow_nodes(shapes)
         self.grow_pairs(pairs)
-        self.grow_regions(pairs // 2)
+        self.grow_regions(regions)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
@@ -148,13 +150,6 @@ class Store:
 
     def _named_forms(self) -> dict[str, np.ndarray]:
         return {f"form_{name}": array for name, array in self.forms._asdict().items()}
-
-    def draft(self) -> Store:
-        """A copy, to be changed and published. Of what only grows at its end, and of scratch, there is one."""
-        new = copy.copy(self)
-        new.tables = Tables(*(array.copy() for array in self.tables))
-        new._outlines = self._outlines.copy()
-        return new
 
     def note_layout(self, offsets: dict[str, int]) -> None:
         """Write Chipmunk's layout (`chipmunk.layout`) into the state record."""
@@ -185,15 +180,15 @@ class Store:
         words, known = self._words.copy(), self._listed
         self._listed = listed = [arrays[name] for name in ARRAYS]
         for i, (array, before) in enumerate(zip(listed, known)):
-            if array is not before:  # asking numpy takes a microsecond each
-                words[i], words[len(ARRAYS) + i] = array.ctypes.data, len(array)
+            if array is not before:  # (numpy itself takes three times as long to say where an array is)
+                words[i], words[len(ARRAYS) + i] = address_of(ffi.from_buffer(array)), len(array)
         return words
 
     def grow(self) -> None:
         """Make the room that machine code has asked for (counters MORE_...), all of it or none; of pairs and regions
         an eighth more."""
-        new = self.draft()
-        counters = new.tables.counters
+        new, counters = copy.copy(self), self.tables.counters.copy()
+        new.tables = self.tables._replace(counters=counters)  # what grows is a new array
         wanted = [MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT]
         wanted += [MORE_SHAPES, MORE_BODIES, MORE_SLOTS]
         pairs, regions, joints, work, kept, shapes, bodies, slots = counters[wanted].tolist()
