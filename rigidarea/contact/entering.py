@@ -171,7 +171,7 @@ def _has_room(s: Any, tables: Tables, addresses: int, n: int) -> bool:
     counters = tables.counters
     last = 0
     for address in words(addresses, n):
-        last = max(last, np.int64(words(address + s.shape_hashid, 1)[0]))
+        last = max(last, int(np.int64(words(address + s.shape_hashid, 1)[0])))
     free = len(tables.shapes) - counters[SHAPES]
     i = counters[FREE_SHAPE]
     while i >= 0 and free < n:
