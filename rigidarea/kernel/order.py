@@ -5,8 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-import numpy as np
-
 from .broad import drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .jit import kernel
 from .pool import Pool
@@ -233,12 +231,12 @@ def enlist(tables: Tables) -> None:
 
 @kernel(forceinline=True)
 def _above(one: Any, other: Any, ux: float, uy: float) -> bool:
-    here = np.float32(ux * one.x + uy * one.y)  # single, as `NEIGHBOURS` has them
-    there = np.float32(ux * other.x + uy * other.y)
+    here = ux * one.x + uy * one.y
+    there = ux * other.x + uy * other.y
     if here != there:
         return bool(here > there)
-    one_beside = np.float32(ux * one.y - uy * one.x)
-    other_beside = np.float32(ux * other.y - uy * other.x)
+    one_beside = ux * one.y - uy * one.x
+    other_beside = ux * other.y - uy * other.x
     if abs(one_beside) != abs(other_beside):
         return bool(abs(one_beside) > abs(other_beside))
     return bool(one_beside > other_beside)

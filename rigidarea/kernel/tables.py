@@ -182,10 +182,11 @@ NEIGHBOURS = record(
     [
         ("pair", "i4"),
         ("turn", "i4"),  # substeps of the turn that it belongs to; 0: of everybody's; -1: of two
-        # where it comes in a sweep: its height at the last search, then how far off the middle, against gravity's left;
-        # single, so that what rests does not change places by rounding
-        ("order", "f4"),
-        ("beside", "f4"),
+        (
+            "order",
+            "f8",
+        ),  # where it comes in a sweep: its height at the last search, then how far off the middle
+        ("beside", "f8"),  # against gravity's left
         ("a", "u4"),  # rows of the two bodies
         ("b", "u4"),
         (
