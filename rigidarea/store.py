@@ -49,9 +49,9 @@ _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live", "awake"),
-    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "keys", "values", "counters"),
+    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "table", "counters"),
     *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
-    *("users", "mirrors", "extents"),
+    *("form_extent", "form_mirror", "form_users", "form_span", "form_raw", "form_table", "form_fill"),
     *(f"kept_{name}" for name in KEPT),
     "seen",
 ]
@@ -327,8 +327,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.joints_at, (s.joints_n,), JOINT),
-        array_at(s.keys_at, (s.keys_n,), np.int64),
-        array_at(s.values_at, (s.values_n,), np.int32),
+        array_at(s.table_at, (s.table_n,), np.int32),
         array_at(s.counters_at, (s.counters_n,), np.int64),
     )
 

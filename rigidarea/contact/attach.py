@@ -18,6 +18,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
+from ..kernel.join import SPARE
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import positive
 from .arrays import Store
@@ -70,9 +71,10 @@ class AreaContact:
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
         bodies = max(16, len(space._bodies) + 1)
-        # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
-        pairs = 2 * bodies if self._memory is None else 2
-        self._store = Store(bodies, max(16, len(space._shapes)), pairs)
+        # room for a contact of each body, and what a frame wants beyond (`has_room`): where there are more, a frame is
+        # run again (a copy takes its original's tables)
+        pairs, regions = (2 * bodies + SPARE, 3 * bodies // 2 + SPARE) if self._memory is None else (2, 1)
+        self._store = Store(bodies, max(16, len(space._shapes)), pairs, regions)
         self._state = state = self._store.state[0]
         settings = self._settings
         self._store.note_layout(layout())

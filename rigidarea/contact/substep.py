@@ -46,7 +46,7 @@ def near_pairs(s: Any, space: int, h: float, time: float, ordered: bool = True) 
             g = floats(space + s.space_gravity, 2)
             arrange(tables, g[0], g[1])
     lap(s, PAIRS)
-    return bool(s.begun or has_room(tables))
+    return bool(s.begun or has_room(tables, time))
 
 
 @kernel

@@ -53,6 +53,8 @@ FEATURE = 0.15
 MARGIN = 0.1
 #: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every third frame.
 AHEAD = 3.0
+#: A box with more than so many times that room is made smaller: what was fast and lies still is near few.
+HUGE = 2.0
 #: Square of the sine of the angle (8 degrees) up to which the next side of a chain is the same smooth curve for a disc
 #: that lies on it: a plastic corner of that angle would take no more than this part of its energy.
 SMOOTH = 0.02
