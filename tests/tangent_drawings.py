@@ -272,4 +272,45 @@ def _flat_segment(half: float, radius: float) -> float:
     )
 
 
-DRAWINGS = (lenses, stadiums, fillets, kidneys, wedges, rings, flat_arcs)
+def _star(rng: np.random.Generator, size: float) -> list[tuple[float, float, float]]:
+    """A ring of arcs and edges, each its own, about the origin."""
+    n = int(rng.integers(3, 9))
+    angles = (np.arange(n) + rng.uniform(0, 0.6, n)) * (2 * math.pi / n)
+    far = size * rng.uniform(0.5, 1, n)
+    bulges = rng.uniform(-0.4, 0.6, n) * (rng.random(n) < 0.7)
+    return [(*at(r, t), float(b)) for r, t, b in zip(far, angles, bulges)]
+
+
+def cuts(rng: np.random.Generator, size: float) -> Pair:
+    """A ring cut in two between two of its corners: the parts side by side, or one of them in the whole."""
+    while True:
+        ring = _star(rng, size)
+        n = len(ring)
+        k = int(rng.integers(1, n))
+        bulge = float(rng.choice([0, rng.uniform(-0.9, 0.9)]))
+        if k == 1 and abs(bulge - ring[0][2]) < 0.1:
+            continue  # a sliver
+        parts = [
+            [*ring[:k], (*ring[k][:2], -bulge)],
+            [(*ring[0][:2], bulge), *ring[k:]],
+        ]
+        try:
+            whole, one, other = (ra.Outline.from_bulges(r) for r in (ring, *parts))
+        except ValueError:  # it crosses itself
+            continue
+        if (
+            min(one.area, other.area) > 1e-3 * size**2
+            and abs(one.area + other.area - whole.area) < 1e-9 * size**2
+        ):
+            break
+    flat = max(float(np.abs(arcs[:, 2]).max()) for o in (one, other) for arcs in (*o.arcs, np.zeros((1, 3))))
+    p, q, arcs = pieces_of(other)
+    cut = p[:1], q[:1], arcs[:1]  # from corner 0 to corner k
+    if rng.random() < 0.5:
+        return beside("cuts", one, other, (0.0, 0.0), cut, flat)
+    return Pair(
+        "cuts", whole, other, (0.0, 0.0), other.area, chord(cut), NONE, (p[1:], q[1:], arcs[1:]), (1,), flat
+    )  # fmt: skip
+
+
+DRAWINGS = (lenses, stadiums, fillets, kidneys, wedges, rings, flat_arcs, cuts)
