@@ -87,7 +87,6 @@ STATE = record(
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
-        ("held", "i8"),  # the step in which a position function of ours was last called
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for

@@ -138,6 +138,25 @@ def test_a_body_moves_in_its_next_space(how, shapes):
     assert falls_as_natively(following, body)
 
 
+@pytest.mark.parametrize("removed", [0, 1, 2])
+def test_a_body_that_comes_when_another_goes_moves_once(removed):
+    """Chipmunk puts the last in the place of one that goes: it is moved before, or after, the frame begins for us."""
+    space = pymunk.Space()
+    bodies = [pymunk.Body(1, 1) for _ in range(4)]
+    for i, body in enumerate(bodies):
+        body.position, body.velocity = (50 * i, 0), (1, 0)
+    first, last = bodies[:3], bodies[3]
+    space.add(*first, *(pymunk.Circle(body, 0.3) for body in first))
+    ra.attach(space)
+    space.step(0.1)
+    space.add(last, pymunk.Circle(last, 0.3))
+    space.remove(first[removed], *first[removed].shapes)
+    space.step(0.1)
+    assert last.position.x == pytest.approx(150.1, abs=1e-12)  # 1/10 of 1, rounded
+    space.step(0.1)
+    assert last.position.x == pytest.approx(150.2, abs=1e-12)
+
+
 def test_rows_of_what_left_are_cleared_at_once():
     """Bodies without shapes too: their memory is another's as soon as nobody holds them."""
     space = fill(pymunk.Space(), 3)
@@ -264,6 +283,33 @@ PROGRAMS = {
     "a heap explodes": """
         from tests.exploding import dearest
         dearest(4)
+    """,
+    "a body goes in a step, and the next cannot be entered": """
+        class Changing(pymunk.Space):
+            def step(self, dt):
+                body = next(iter(self.bodies))
+                self.remove(body, *body.shapes)
+                del body
+                gc.collect()
+                body = pymunk.Body(1, 1)
+                body.position = 0, 20
+                self.add(body, pymunk.Circle(body, 0.3))
+                super().step(dt)
+        def none(*arguments): raise MemoryError
+        space = fill(Changing())
+        ra.attach(space)
+        steps(space, 3)
+        tables = sys.modules["rigidarea.contact.arrays"].Store
+        before = {body: (*body.position, body.angle, *body.velocity, *body.force) for body in space.bodies}
+        room, tables.room = tables.room, none
+        try:
+            space.step(DT)
+            raise AssertionError
+        except MemoryError:
+            tables.room = room
+        assert all(before.get(b, (0, 20, 0, 0, 0, 0, 0)) == (*b.position, b.angle, *b.velocity, *b.force)
+            for b in space.bodies)
+        steps(space, 3)
     """,
     "sys.exit in a step": """
         space = fill(Level())

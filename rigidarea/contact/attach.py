@@ -87,7 +87,7 @@ class AreaContact:
         state["explicit"] = settings["integration"] == "explicit"
         state["followed"] = math.inf if state["explicit"] else FOLLOWED
         state["substeps"] = SUBSTEPS
-        state["held"] = state["frame"] = state["broken"] = -1
+        state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
         state["pending"] = 2
         self._scratch = np.zeros(8)

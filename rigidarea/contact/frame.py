@@ -393,6 +393,8 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
     """
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame:
+            continue
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
@@ -416,9 +418,11 @@ def _finish_jointed(s: Any, tables: Tables) -> None:
 
 @kernel
 def _undo(s: Any, tables: Tables) -> None:
-    """A frame that failed: every body and joint as it was."""
+    """A frame that failed: every body and joint as it was; if it could not begin, those that it has taken down."""
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame:
+            continue
         body.calm = body.was_calm
         body.x = body.old_x
         body.y = body.old_y

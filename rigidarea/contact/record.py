@@ -316,6 +316,7 @@ def add_to_awake(tables: Tables, i: int, body: Any) -> None:
 def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
     """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
     counters = tables.counters
+    moved = True  # Chipmunk has moved what it has listed before the first that is held: that begins the frame
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0:
@@ -335,10 +336,11 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
             add_to_awake(tables, i, body)
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
+        moved &= body.kind == LED
         if (function[0] == s.position_func or function[0] == s.position_func_again) and s.explicit == 0:
             # Chipmunk's own: a body that is new here. It will have been moved by a whole frame before the solve.
             body.kind = DRIFTS
-            if s.held != s.frame:
+            if moved:
                 _take_back(body, dt)
         if met and body.kind == LED and not math.isfinite(body.x + body.y + body.angle):
             body.old_x = x  # it has been moved before the frame began for us: where the last one has left it
@@ -456,9 +458,9 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.user_pre_solve = np.uint64(0) if hook[0] == s.no_pre_solve else hook[0]
         hook[0] = s.pre_solve_at
         fresh = True
+    load_tables(s).counters[TOLD] = 0
     if (fresh or s.pending) and not ask(s, REGISTER):
         return False
-    load_tables(s).counters[TOLD] = 0
     forget_the_gone(load_tables(s))
     if not _watch(s, load_tables(s), space, dt):  # somebody came on a way of which pymunk has not told
         s.pending = 2
@@ -491,9 +493,7 @@ def hold(body: int, dt: float) -> None:
     if space == 0 or user_data(space) == 0:
         return
     s = state_of(space)
-    now = np.int64(timestamp(space))
-    if s.held != now:
-        s.held = now
+    if s.frame != np.int64(timestamp(space)):
         begin(s, space, dt)
 
 
