@@ -86,6 +86,25 @@ def test_a_class_that_attaches_by_itself(how, made):
     steps(other, 5)
 
 
+def test_a_copy_hears_what_its_original_hears():
+    """Also of what touches still, by a hair: Chipmunk's record of that is the copy's own."""
+    space, heard = fill(pymunk.Space(), 20), []
+
+    def hear(what: str):
+        return lambda arbiter, *rest: heard.append((what, *sorted(shape._hashid for shape in arbiter.shapes)))
+
+    space.on_collision(begin=hear("begin"), separate=hear("separate"))
+    ra.attach(space)
+    steps(space, 20)
+    copies = []  # not collected before the end: that is heard as well
+    for _ in range(60):
+        copies.append(copy.deepcopy(space))
+        heard.clear()
+        expected = steps(space, 2), sorted(heard)
+        heard.clear()
+        assert (steps(copies[-1], 2), sorted(heard)) == expected
+
+
 def test_a_copy_of_what_was_detached_attaches_as_its_class_does():
     space = fill(Level())
     space.contact.detach()

@@ -435,7 +435,7 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and lasts(tables, pair, s.frame, dt):
+        if pair.a >= 0 and pair.arbiter != 0 and lasts(tables, pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
