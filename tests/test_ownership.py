@@ -335,6 +335,35 @@ PROGRAMS = {
             for b in space.bodies)
         steps(space, 3)
     """,
+    "interrupts while machine code is loaded": """
+        import signal
+        from llvmlite.binding import ffi
+        add, count = ffi.lib.LLVMPY_AddModule, 0
+        def adding(*arguments):
+            global count
+            add(*arguments)  # LLVM has it, and llvmlite is yet to note that
+            count += 1
+            if count & count - 1 == 0: signal.raise_signal(signal.SIGINT)
+        ffi.lib._fntab["LLVMPY_AddModule"] = adding
+        caught, space = 0, fill(pymunk.Space(), 5)
+        while True:
+            try:
+                ra.attached(space) or ra.attach(space)
+                space.step(DT)
+                break
+            except KeyboardInterrupt:
+                caught += 1
+        fill(space, 40)
+        while True:
+            try:
+                steps(space, 5)
+                ra.attached(space).energy()
+                break
+            except KeyboardInterrupt:
+                caught += 1
+        assert 4 <= caught <= count.bit_length(), (caught, count)  # two of one time are one
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    """,
     "sys.exit in a step": """
         space = fill(Level())
         class Ends(pymunk.Space):
