@@ -44,6 +44,8 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 SHAPE_WORDS = SHAPE.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
+#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
+EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),

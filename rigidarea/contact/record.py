@@ -38,7 +38,7 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import MOVING
 from ..kernel.verdict import lasts
-from ..store import STATE, load_pool, load_tables, row_of_body
+from ..store import EXTREME, STATE, load_pool, load_tables, row_of_body
 from .joints import joints_of, partners_known, take_joints
 from .phases import WATCHING, lap, start
 
@@ -448,6 +448,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     g = floats(space + s.space_gravity, 2)
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
+    s.fragile = 0
     s.broken = -1
     hook = words(s.global_handler + s.handler_pre_solve, 1)
     heard = words(s.global_handler + s.handler_pre_solve - 8, 4)  # begin, pre_solve, post_solve, separate
@@ -596,4 +597,5 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     sign = -1.0 if pair.swapped else 1.0
     pair.surface_x = sign * x
     pair.surface_y = sign * y
+    s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.stiffness > EXTREME
     _note_normal(s, pair, arbiter)
