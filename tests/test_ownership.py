@@ -335,6 +335,18 @@ PROGRAMS = {
             for b in space.bodies)
         steps(space, 3)
     """,
+    "static shapes come and go without a step": """
+        space = fill(pymunk.Space(), 2)
+        contact = ra.attach(space)
+        for _ in range(1000):
+            shape = pymunk.Segment(space.static_body, (0, -5), (1, -5), 0.1)
+            space.add(shape)
+            space.remove(shape)
+        counters = contact._store.tables.counters
+        tables = sys.modules["rigidarea.kernel.tables"]
+        assert counters[tables.ASKED] <= counters[tables.SHAPES], counters
+        steps(space, 3)
+    """,
     "interrupts while machine code is loaded": """
         import signal
         from llvmlite.binding import ffi
