@@ -44,6 +44,8 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 SHAPE_WORDS = SHAPE.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
+#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
+EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
@@ -87,7 +89,6 @@ STATE = record(
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
-        ("held", "i8"),  # the step in which a position function of ours was last called
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for

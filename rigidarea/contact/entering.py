@@ -136,8 +136,10 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     else:
         i = counters[SHAPES]
         counters[SHAPES] += 1
-    clear(s.shapes_at + i * 8 * SHAPE_WORDS, SHAPE_WORDS)
     shape = tables.shapes[i]
+    asked = shape.asked
+    clear(s.shapes_at + i * 8 * SHAPE_WORDS, SHAPE_WORDS)
+    shape.asked = asked  # the row may be listed still: not twice
     shape.address = address
     shape.ident = np.int64(words(address + s.shape_hashid, 1)[0])
     shape.body = b
