@@ -100,7 +100,7 @@ SETTLED = 5e-3
 ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
-CALM = 0.02
+CALM = 0.05
 #: Of what a solve has taken from a contact's impulse, the next takes this part again before it begins: bodies that
 #: brace one another go on with less in a few substeps, where the sweeps alone would need hundreds.
 OVERTAKE = 0.3
