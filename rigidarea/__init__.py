@@ -8,8 +8,9 @@ space.step(1 / 60)  # as ever
 from . import shapes
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
-from .overlap import OVERLAP, OVERLAPS, overlap, overlaps
+from .overlap import OVERLAP, OVERLAPS, covers, overlap, overlaps
 from .plan import Plan, plan
+from .queries import point_query, segment_query
 
 __version__ = "0.1.0"
 
@@ -23,8 +24,11 @@ __all__ = [
     "SimulationError",
     "attach",
     "attached",
+    "covers",
     "overlap",
     "overlaps",
     "plan",
+    "point_query",
+    "segment_query",
     "shapes",
 ]

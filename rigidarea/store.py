@@ -70,7 +70,7 @@ OFFSETS = [
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_count"),
     *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers", "arbiter_stamp"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
-    *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve"),
+    *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve", "pythons_begin", "space_contacts"),
     *("space_gravity", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
@@ -123,6 +123,7 @@ STATE = record(
         # where the times of a frame's phases are summed up (`contact/phases.py`); 0: nowhere
         ("phases_at", "u8"),
         ("scratch_at", "u8"),  # room for what nobody reads
+        ("shown_at", "u8"),  # what arbiters of outlines are made to say (`contact/shown.py`)
         ("kinds_at", "u8"),  # what `chipmunk.kinds_of_joints` has found
     ],
 )

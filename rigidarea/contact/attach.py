@@ -8,7 +8,7 @@ import time
 import weakref
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 import pymunk
@@ -26,6 +26,9 @@ from .memory import Memory, recall, remember
 from .register import Register
 from .report import regions_of, total_energy
 from .space import KEY, attached, attached_class
+
+if TYPE_CHECKING:
+    from ..flexible import Assembly
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
@@ -265,7 +268,10 @@ class AreaContact:
         space = self.space
         flexible = self._settings["flexible"] is not None
         asleep = bool(self._state["asleep"])
-        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible or asleep)
+        proxies = bool(self._register.proxies)
+        return bool(
+            space.threaded or space._bodies_to_check or space._handlers or flexible or asleep or proxies
+        )
 
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
@@ -278,13 +284,24 @@ class AreaContact:
         self._stepping = True
         try:
             if flexible is None:
-                rest()
+                self._exactly(rest)
             else:
-                flexible.step(dt, rest, int(self._state["idle_kind"]))
+                flexible.step(dt, lambda: self._exactly(rest), int(self._state["idle_kind"]))
         finally:
             self._stepping = False
             if self._error is not None or self._state["failed"]:
                 self._raise()
+
+    def _exactly(self, rest: Callable[[], None]) -> None:
+        """A step of pymunk's, which hears of outlines where they touch, not where their proxies do."""
+        if not self._register.proxies or self.space._locked:
+            rest()
+            return
+        self._hook.spy.come(self.space)
+        try:
+            rest()
+        finally:
+            self._hook.spy.go(self.space)
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
@@ -365,6 +382,16 @@ class AreaContact:
                 f"{lib.cpSpaceGetTimestamp(space._space)} of the space: all bodies are as they were before it"
             )
 
+    def __repr__(self) -> str:
+        if self._space is None:
+            return "<AreaContact, detached>"
+        bodies, shapes = len(self._space.bodies), len(self._space.shapes)
+        regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
+        firm = (
+            f"penetration {self.penetration:g}" if self.stiffness is None else f"stiffness {self.stiffness:g}"
+        )
+        return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{firm}>"
+
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
@@ -416,18 +443,32 @@ def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
 # --- settings ---
 
 
+class Settings(TypedDict, total=False):
+    """What `attach` takes besides the space."""
+
+    stiffness: float | None
+    penetration: float
+    law: Literal["area", "energy"]
+    length: float | None
+    direction: Literal["chord", "nodal"]
+    exponent: float
+    rest_speed: float | None
+    integration: Literal["implicit", "explicit"]
+    flexible: Assembly | None
+
+
 def attach(
     space: pymunk.Space,
     stiffness: float | None = None,
     *,
     penetration: float = PENETRATION,
-    law: str = "area",
+    law: Literal["area", "energy"] = "area",
     length: float | None = None,
-    direction: str = "chord",
+    direction: Literal["chord", "nodal"] = "chord",
     exponent: float = 1.0,
     rest_speed: float | None = None,
-    integration: str = "implicit",
-    flexible: Any = None,
+    integration: Literal["implicit", "explicit"] = "implicit",
+    flexible: Assembly | None = None,
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 

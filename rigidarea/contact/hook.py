@@ -23,6 +23,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of
 from . import frame, joints, record
 from .arrays import Store
+from .proxies import Spy
 
 
 class Hook:
@@ -60,6 +61,7 @@ class Hook:
         state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
         state["hold_at"] = record.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
+        self.spy = Spy(state)
         self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
         names = ("body_position_func", "hold_at", "position_func")
         self._functions_of_bodies = tuple(int(state[name]) for name in names)

@@ -38,9 +38,10 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import MOVING
 from ..kernel.verdict import lasts
-from ..store import EXTREME, STATE, load_pool, load_tables, row_of_body
+from ..store import EXTREME, STATE, load_pool, load_tables, load_work, row_of_body
 from .joints import joints_of, partners_known, take_joints
 from .phases import WATCHING, lap, start
+from .shown import show, shown_of
 
 #: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
 REGISTER, GROW, BROKEN, NORMAL = range(4)
@@ -435,7 +436,7 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and pair.arbiter != 0 and lasts(tables, pair, s.frame, dt):
+        if pair.a >= 0 and pair.arbiter != 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
@@ -521,14 +522,22 @@ def _note_normal(s: Any, pair: Any, arbiter: int) -> None:
     pair.steer_c = 1.0
     pair.steer_s = 0.0
     called = s.user_pre_solve == s.pythons_pre_solve
+    t = shown_of(s)
     for handler in words(arbiter + s.arbiter_handlers, 4):
-        called |= handler != 0 and words(handler + s.handler_pre_solve, 1)[0] == s.pythons_pre_solve
+        if handler != 0:
+            function = words(handler + s.handler_pre_solve, 1)[0]
+            called |= function == s.pythons_pre_solve or function == t.first_at
     if not called:
         return
-    s.asked_arbiter = arbiter
-    if not ask(s, NORMAL):
-        return
     n = floats(arbiter + s.arbiter_normal, 2)
+    if t.arbiter == arbiter:
+        sign = 1.0 if words(arbiter + s.arbiter_shape_a, 1)[0] == t.shape_a else -1.0
+        s.asked_x = sign * t.nx
+        s.asked_y = sign * t.ny
+    else:
+        s.asked_arbiter = arbiter
+        if not ask(s, NORMAL):
+            return
     c = s.asked_x * n[0] + s.asked_y * n[1]
     d = s.asked_x * n[1] - s.asked_y * n[0]
     length = math.hypot(c, d)
@@ -544,6 +553,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         return
     s = state_of(space)
     now = np.int64(timestamp(space))
+    show(s, space, arbiter)
     if s.user_pre_solve != 0:
         _call_hook(s.user_pre_solve, arbiter, space, data)
     if s.frame != now:

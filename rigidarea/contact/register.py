@@ -46,6 +46,7 @@ class Register:
         self._body_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.body_goes.address)
         self._placed_anew = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.placed_anew.address)
         self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
         self._new: dict[pymunk.Shape, None] = {}  # not entered yet
         self._gone: list[int] = []  # ids of shapes that are entered still
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
@@ -152,6 +153,9 @@ class Register:
     def forget(self) -> None:
         """What has gone is not in the tables any more: nothing of it is read or written from now on."""
         for ident in self._gone:
+            if ident in self.proxies:
+                self._store.known_shapes["proxy"][self._store.slots[ident]] = 0
+                self.proxies.discard(ident)
             self._shape_goes(self._store.at, ident)
             self.shapes.pop(ident, None)
         if self._gone:
@@ -217,6 +221,14 @@ class Register:
             if done < n:
                 self._store.grow()
         self.shapes.update((shape._hashid, shape) for shape in shapes)
+        proxies = [
+            shape._hashid
+            for shape in shapes
+            if isinstance(getattr(shape, "outline", None), Outline) and Outline.from_pymunk(shape).proxied
+        ]
+        if proxies:
+            self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
+            self.proxies.update(proxies)
 
     def largest(self) -> float:
         """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""

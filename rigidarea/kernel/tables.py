@@ -128,6 +128,7 @@ SHAPE = record(
         ("low_y", "f8"),
         ("high_x", "f8"),
         ("high_y", "f8"),
+        ("proxy", "i4"),  # 1: Chipmunk sees another shape than the outline
     ],
 )
 
