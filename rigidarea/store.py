@@ -44,14 +44,16 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 SHAPE_WORDS = SHAPE.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
+#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
+EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live", "awake"),
-    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "keys", "values", "counters"),
+    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "table", "counters"),
     *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
-    *("users", "mirrors", "extents"),
+    *("form_extent", "form_mirror", "form_users", "form_span", "form_raw", "form_table", "form_fill"),
     *(f"kept_{name}" for name in KEPT),
     "seen",
 ]
@@ -87,7 +89,6 @@ STATE = record(
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
-        ("held", "i8"),  # the step in which a position function of ours was last called
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
@@ -328,8 +329,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.joints_at, (s.joints_n,), JOINT),
-        array_at(s.keys_at, (s.keys_n,), np.int64),
-        array_at(s.values_at, (s.values_n,), np.int32),
+        array_at(s.table_at, (s.table_n,), np.int32),
         array_at(s.counters_at, (s.counters_n,), np.int64),
     )
 

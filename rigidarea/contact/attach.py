@@ -18,6 +18,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
+from ..kernel.join import SPARE
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import positive
 from .arrays import Store
@@ -66,16 +67,17 @@ class AreaContact:
     # --- attaching ---
 
     def _install(self, space: pymunk.Space) -> None:
-        from . import joints, waking  # the machine code: compiled, or loaded, when first attached
+        from . import joints, record, waking  # the machine code: compiled, or loaded, when first attached
         from .hook import Hook
 
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
         bodies = max(16, len(space._bodies) + 1)
-        # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
-        pairs = 2 * bodies if self._memory is None else 2
-        self._store = Store(bodies, max(16, len(space._shapes)), pairs)
+        # room for a contact of each body, and what a frame wants beyond (`has_room`): where there are more, a frame is
+        # run again (a copy takes its original's tables)
+        pairs, regions = (2 * bodies + SPARE, 3 * bodies // 2 + SPARE) if self._memory is None else (2, 1)
+        self._store = Store(bodies, max(16, len(space._shapes)), pairs, regions)
         self._state = state = self._store.state[0]
         settings = self._settings
         self._store.note_layout(layout())
@@ -90,7 +92,7 @@ class AreaContact:
         state["explicit"] = settings["integration"] == "explicit"
         state["followed"] = math.inf if state["explicit"] else FOLLOWED
         state["substeps"] = SUBSTEPS
-        state["held"] = state["frame"] = state["broken"] = -1
+        state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
         state["pending"] = 2
         self._scratch = np.zeros(8)
@@ -101,7 +103,8 @@ class AreaContact:
         self._ask = ffi.callback(
             "void(uintptr_t)",
             lambda request: _serve(own, request),
-            onerror=lambda kind, error, trace: _note(own, error, trace),  # an interrupt at its first line too
+            # an interrupt at its first line too
+            onerror=lambda kind, error, trace: _note(own, error, trace, record.REGISTER),
         )
         state["ask_at"] = address_of(self._ask)
         self._space = space
@@ -286,7 +289,7 @@ class AreaContact:
                 flexible.step(dt, lambda: self._exactly(rest), int(self._state["idle_kind"]))
         finally:
             self._stepping = False
-            if self._error is not None:
+            if self._error is not None or self._state["failed"]:
                 self._raise()
 
     def _exactly(self, rest: Callable[[], None]) -> None:
@@ -311,7 +314,7 @@ class AreaContact:
             taken = int(advance(space._space, dt, frames))
         finally:
             space._locked = self._stepping = False
-            if self._error is not None:
+            if self._error is not None or self._state["failed"]:
                 self._raise()
         if space._add_later or space._remove_later:
             space.step(0.0)  # what a velocity function added or removed: pymunk's own way
@@ -320,6 +323,9 @@ class AreaContact:
     def _raise(self) -> None:
         """Raise what was noted in the step, once; where it was before a frame had begun, bodies are put back first."""
         error, self._error = self._error, None
+        if self._state["failed"]:
+            self._state["failed"] = 0
+            error = error or RecursionError("a step cannot ask Python: too many calls within one another")
         before, self._before = self._before, []
         for body, (x, y, angle, vx, vy, w, fx, fy, torque) in before:
             if (*body.position, body.angle) != (x, y, angle):
@@ -413,18 +419,18 @@ def _state_of(body: pymunk.Body) -> tuple[float, ...]:
     return (*place, *motion, *body.force, body.torque)
 
 
-def _note(own: weakref.ref[AreaContact], error: BaseException, trace: TracebackType) -> None:
+def _note(
+    own: weakref.ref[AreaContact], error: BaseException, trace: TracebackType, registering: int
+) -> None:
     """Keep what was raised while machine code was at work, to be raised after the step: nothing can be raised in it.
 
     trace: it begins in the function that was called with the `request`. Where that was to register what has come, no
     frame has begun, but Chipmunk goes on with its step: bodies are put back after it.
     """
-    from . import record
-
     contact = own()
     if contact is not None and contact._space is not None:
         contact._error = contact._error or error
-        if trace.tb_frame.f_locals["request"] == record.REGISTER:
+        if trace.tb_frame.f_locals["request"] == registering:
             contact._before = [(body, _state_of(body)) for body in contact._space.bodies]
         if not contact._stepping:  # a step of pymunk's that has gone past the attached space's own
             contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)

@@ -17,6 +17,8 @@ from llvmlite import binding
 from numba.core import config
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
+from .interrupts import put_off
+
 
 class _Part(JITCodeLibrary):  # type: ignore[misc]
     """Code to be linked into other code."""
@@ -66,12 +68,13 @@ class _Codegen(JITCPUCodegen):  # type: ignore[misc]
 
 @contextlib.contextmanager
 def compiling(context: Any, part: bool) -> Iterator[None]:
-    """Within, numba's target context compiles parts, or what runs."""
-    before = context._internal_codegen
-    context._internal_codegen = copy.copy(before)
-    context._internal_codegen.__class__ = _Codegen
-    context._internal_codegen._library_class = _Part if part else _Whole
-    try:
-        yield
-    finally:
-        context._internal_codegen = before
+    """Within, numba's target context compiles parts, or what runs; interrupts wait (`interrupts`)."""
+    with put_off():
+        before = context._internal_codegen
+        context._internal_codegen = copy.copy(before)
+        context._internal_codegen.__class__ = _Codegen
+        context._internal_codegen._library_class = _Part if part else _Whole
+        try:
+            yield
+        finally:
+            context._internal_codegen = before
