@@ -13,6 +13,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
+from rigidarea.compat import lives
 
 DT = 1 / 60
 
@@ -232,13 +233,17 @@ def test_a_body_that_is_collected_while_its_shape_stays():
     space.reindex_static()
 
 
-def run(program: str, seconds: float = 60) -> subprocess.CompletedProcess:
+def run(program: str, seconds: float = 60, **variables: str) -> subprocess.CompletedProcess:
     """A program of its own."""
     text = "import pymunk, rigidarea as ra, sys, os\nfrom tests.test_ownership import *\n" + textwrap.dedent(
         program
     )
     return subprocess.run(
-        [sys.executable, "-c", text], capture_output=True, text=True, timeout=seconds, cwd=os.getcwd()
+        [sys.executable, "-c", text],
+        capture_output=True,
+        text=True,
+        timeout=seconds,
+        env={**os.environ, **variables},
     )
 
 
@@ -401,6 +406,28 @@ def command(*words: str, seconds: float) -> None:
     """It ends well."""
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=seconds)
     assert done.returncode == 0, done.stdout[-800:] + done.stderr[-3000:]
+
+
+def test_pymunk_itself_cannot_be_interrupted_while_it_frees_a_space():
+    """Why `compat lives` counts that as native (`lives.of_pymunk`)."""
+    done = run(
+        """
+        space = fill(pymunk.Space(), 3)
+        shapes = list(space.shapes)
+        def interrupt(frame, event, argument):
+            if frame.f_code.co_name == "ext_cpSpaceShapeIteratorFunc":
+                sys.settrace(None)
+                raise KeyboardInterrupt
+        sys.settrace(interrupt)
+        del space
+        gc.collect()
+        sys.settrace(None)
+        del shapes
+        gc.collect()
+    """,
+        MALLOC_PERTURB_="165",
+    )  # what is freed is overwritten: it is seen at once
+    assert done.returncode < 0 and lives.of_pymunk(done.stderr), done.stderr[-800:]
 
 
 @pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])
