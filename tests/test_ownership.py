@@ -340,6 +340,27 @@ PROGRAMS = {
             for b in space.bodies)
         steps(space, 3)
     """,
+    "no memory for what a callback has added": """
+        def add(arbiter, space, data):
+            body = pymunk.Body(body_type=pymunk.Body.STATIC)
+            space.add(body, pymunk.Circle(body, 0.3))
+        def none(*arguments): raise MemoryError
+        space = fill(pymunk.Space())
+        ra.attach(space)
+        space.on_collision(post_solve=add)
+        while not space.shapes or len(space.bodies) < 10: space.step(DT)
+        tables = sys.modules["rigidarea.contact.arrays"].Store
+        ra.attached(space).energy()  # all is entered
+        room, tables.room = tables.room, none
+        try:
+            steps(space, 3)
+            raise AssertionError
+        except MemoryError:
+            tables.room = room
+        space.on_collision(post_solve=None)
+        steps(space, 3)  # pymunk's list of what is to be added is empty again
+        assert {s._hashid for s in space.shapes} == set(ra.attached(space)._register.shapes)
+    """,
     "static shapes come and go without a step": """
         space = fill(pymunk.Space(), 2)
         contact = ra.attach(space)
@@ -428,6 +449,31 @@ def test_pymunk_itself_cannot_be_interrupted_while_it_frees_a_space():
         MALLOC_PERTURB_="165",
     )  # what is freed is overwritten: it is seen at once
     assert done.returncode < 0 and lives.of_pymunk(done.stderr), done.stderr[-800:]
+
+
+def test_pymunk_itself_cannot_be_interrupted_while_it_adds_what_a_callback_gave_it():
+    """The other one that `lives.of_pymunk` knows."""
+    done = run(
+        """
+        space = fill(pymunk.Space(), 3)
+        def add(arbiter, space, data):
+            body = pymunk.Body(1, 1)
+            space.add(body, pymunk.Circle(body, 0.3))
+        def interrupt(frame, event, argument):
+            if frame.f_code.co_name == "_add_shape":
+                sys.settrace(None)
+                raise KeyboardInterrupt
+        space.on_collision(post_solve=add)
+        sys.settrace(interrupt)
+        try:
+            steps(space, 60)
+            raise LookupError
+        except KeyboardInterrupt:
+            space.on_collision(post_solve=None)
+        steps(space, 2)
+    """
+    )
+    assert done.returncode == 1 and lives.of_pymunk(done.stderr), done.stderr[-800:]
 
 
 @pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])

@@ -66,10 +66,13 @@ class Register:
         if shape.body is not None and shape.body.body_type == _STATIC:
             try:
                 heads = self._outlines([shape])
-            except ValueError:  # said when the space is stepped
+                self.forget()
+                self._enter([shape], heads)
+            except (
+                ValueError,
+                MemoryError,
+            ):  # said when the space is stepped: pymunk is in the midst of adding
                 return
-            self.forget()
-            self._enter([shape], heads)
             del self._new[shape]
 
     def shape_goes(self, shape: pymunk.Shape) -> None:
@@ -159,7 +162,10 @@ class Register:
             for ident in self._gone:
                 self.shapes.pop(ident, None)
             self._gone.clear()
-            self._store.tidy()
+            try:
+                self._store.tidy()
+            except MemoryError:  # another time: pymunk is in the midst of removing
+                pass
         if self._left:
             self._call("bodies_go", self._left)
             self._left.clear()
