@@ -14,6 +14,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
+from rigidarea.compat import lives
 
 DT = 1 / 60
 
@@ -233,13 +234,17 @@ def test_a_body_that_is_collected_while_its_shape_stays():
     space.reindex_static()
 
 
-def run(program: str, seconds: float = 60) -> subprocess.CompletedProcess:
+def run(program: str, seconds: float = 60, **variables: str) -> subprocess.CompletedProcess:
     """A program of its own."""
     text = "import pymunk, rigidarea as ra, sys, os\nfrom tests.test_ownership import *\n" + textwrap.dedent(
         program
     )
     return subprocess.run(
-        [sys.executable, "-c", text], capture_output=True, text=True, timeout=seconds, cwd=os.getcwd()
+        [sys.executable, "-c", text],
+        capture_output=True,
+        text=True,
+        timeout=seconds,
+        env={**os.environ, **variables},
     )
 
 
@@ -324,17 +329,38 @@ PROGRAMS = {
         space = fill(Changing())
         ra.attach(space)
         steps(space, 3)
-        tables = sys.modules["rigidarea.contact.arrays"].Store
+        register = sys.modules["rigidarea.contact.register"].Register
         before = {body: (*body.position, body.angle, *body.velocity, *body.force) for body in space.bodies}
-        room, tables.room = tables.room, none
+        enter, register._enter = register._enter, none
         try:
             space.step(DT)
             raise AssertionError
         except MemoryError:
-            tables.room = room
+            register._enter = enter
         assert all(before.get(b, (0, 20, 0, 0, 0, 0, 0)) == (*b.position, b.angle, *b.velocity, *b.force)
             for b in space.bodies)
         steps(space, 3)
+    """,
+    "no memory for what a callback has added": """
+        def add(arbiter, space, data):
+            body = pymunk.Body(body_type=pymunk.Body.STATIC)
+            space.add(body, pymunk.Circle(body, 0.3))
+        def none(*arguments): raise MemoryError
+        space = fill(pymunk.Space())
+        ra.attach(space)
+        space.on_collision(post_solve=add)
+        while not space.shapes or len(space.bodies) < 10: space.step(DT)
+        register = sys.modules["rigidarea.contact.register"].Register
+        ra.attached(space).energy()  # all is entered
+        enter, register._enter = register._enter, none
+        try:
+            steps(space, 3)
+            raise AssertionError
+        except MemoryError:
+            register._enter = enter
+        space.on_collision(post_solve=None)
+        steps(space, 3)  # pymunk's list of what is to be added is empty again
+        assert {s._hashid for s in space.shapes} == set(ra.attached(space)._register.shapes)
     """,
     "static shapes come and go without a step": """
         space = fill(pymunk.Space(), 2)
@@ -402,6 +428,53 @@ def command(*words: str, seconds: float) -> None:
     """It ends well."""
     done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=seconds)
     assert done.returncode == 0, done.stdout[-800:] + done.stderr[-3000:]
+
+
+def test_pymunk_itself_cannot_be_interrupted_while_it_frees_a_space():
+    """Why `compat lives` counts that as native (`lives.of_pymunk`)."""
+    done = run(
+        """
+        space = fill(pymunk.Space(), 3)
+        shapes = list(space.shapes)
+        def interrupt(frame, event, argument):
+            if frame.f_code.co_name == "ext_cpSpaceShapeIteratorFunc":
+                sys.settrace(None)
+                raise KeyboardInterrupt
+        sys.settrace(interrupt)
+        del space
+        gc.collect()
+        sys.settrace(None)
+        del shapes
+        gc.collect()
+    """,
+        MALLOC_PERTURB_="165",
+    )  # what is freed is overwritten: it is seen at once
+    assert done.returncode < 0 and lives.of_pymunk(done.stderr), done.stderr[-800:]
+
+
+def test_pymunk_itself_cannot_be_interrupted_while_it_adds_what_a_callback_gave_it():
+    """The other one that `lives.of_pymunk` knows."""
+    done = run(
+        """
+        space = fill(pymunk.Space(), 3)
+        def add(arbiter, space, data):
+            body = pymunk.Body(1, 1)
+            space.add(body, pymunk.Circle(body, 0.3))
+        def interrupt(frame, event, argument):
+            if frame.f_code.co_name == "_add_shape":
+                sys.settrace(None)
+                raise KeyboardInterrupt
+        space.on_collision(post_solve=add)
+        sys.settrace(interrupt)
+        try:
+            steps(space, 60)
+            raise LookupError
+        except KeyboardInterrupt:
+            space.on_collision(post_solve=None)
+        steps(space, 2)
+    """
+    )
+    assert done.returncode == 1 and lives.of_pymunk(done.stderr), done.stderr[-800:]
 
 
 @pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])

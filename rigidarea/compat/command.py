@@ -235,7 +235,7 @@ def _lives(arguments: argparse.Namespace) -> int:
     wrong, natively = [], []
     for seed in range(arguments.seed, arguments.seed + arguments.programs):
         text = lives.run(seed)
-        if text and lives.run(seed, native=True):
+        if text and (lives.of_pymunk(text) or lives.run(seed, native=True)):
             natively.append(seed)
         elif text:
             wrong.append({"seed": seed, "wrong": text})

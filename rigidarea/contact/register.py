@@ -66,10 +66,11 @@ class Register:
         if shape.body is not None and shape.body.body_type == _STATIC:
             try:
                 read = self._outlines([shape])
-            except ValueError:  # said when the space is stepped
+                self.forget()
+                self._enter([shape], *read)
+            # said when the space is stepped: pymunk is in the midst of adding
+            except (ValueError, MemoryError):
                 return
-            self.forget()
-            self._enter([shape], *read)
             del self._new[shape]
 
     def shape_goes(self, shape: pymunk.Shape) -> None:
@@ -160,7 +161,10 @@ class Register:
             self.shapes.pop(ident, None)
         if self._gone:
             self._gone.clear()
-            self._store.tidy()
+            try:
+                self._store.tidy()
+            except MemoryError:  # another time: pymunk is in the midst of removing
+                pass
         for address in self._left:
             self._body_goes(self._store.at, address)
         self._left.clear()
