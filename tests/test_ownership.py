@@ -234,6 +234,16 @@ def test_a_body_that_is_collected_while_its_shape_stays():
     space.reindex_static()
 
 
+@pytest.fixture(autouse=True, scope="module")
+def _compiled() -> None:
+    """What the programs call is compiled before: one that compiles says so, and takes its time."""
+    space = fill(pymunk.Space())
+    contact = ra.attach(space)
+    steps(space, 3)
+    contact.energy()
+    len(contact.regions)
+
+
 def run(program: str, seconds: float = 60, **variables: str) -> subprocess.CompletedProcess:
     """A program of its own."""
     text = "import pymunk, rigidarea as ra, sys, os\nfrom tests.test_ownership import *\n" + textwrap.dedent(
