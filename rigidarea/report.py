@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import os
@@ -56,11 +57,19 @@ def machine() -> dict[str, Any]:
     }
 
 
+def solver() -> str:
+    """Twelve digits that say on which solver a result was measured: a hash of the sources of kernels and contact."""
+    package = Path(__file__).parent
+    sources = sorted(path for room in ("kernel", "contact") for path in (package / room).glob("*.py"))
+    return hashlib.sha256(b"\0".join(path.read_bytes() for path in sources)).hexdigest()[:12]
+
+
 def envelope(command: str, settings: Mapping[str, Any], results: Any, **more: Any) -> dict[str, Any]:
-    """The object: `command`, `settings`, `versions`, `machine`, `results`, and what else the command has."""
+    """The object: `command`, `settings`, `solver`, `versions`, `machine`, `results`, and what else the command has."""
     return {
         "command": command,
         "settings": dict(settings),
+        "solver": solver(),
         "versions": versions(),
         "machine": machine(),
         "results": results,
