@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: run test test-all lint studies docs reference constraints clean
+.PHONY: run test test-all lint studies measured cases docs constraints clean
 .DEFAULT_GOAL := run
 
 # A dot a second while a command says nothing for long.
@@ -30,25 +30,35 @@ test: .venv/.installed lint
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
 
-# Redraws all that README.md and docs/study.md show: chart, atlas, game scenes, growth, comparison, stills, into docs/ ($(OUT) has the rest).
-studies: .venv/.installed
+# Measures anew all that README.md and docs/ show, and renews those pages: hours. `make docs` says what is of another
+# solver; one part alone: its line here, without $(OUT).
+studies: .venv/.installed measured cases
 	$(BIN)/python -m rigidarea chart --out $(OUT)/chart --docs docs
 	$(BIN)/python -m rigidarea atlas --out $(OUT)/atlas --docs docs
 	$(BIN)/python -m rigidarea bench everyday --out $(OUT)/bench --docs docs
 	$(BIN)/python -m rigidarea bench growth --out $(OUT)/bench --docs docs
 	$(BIN)/python -m rigidarea compare --out $(OUT)/compare --docs docs
+	$(BIN)/python -m rigidarea plan --validate --out $(OUT)/plan --docs docs
+	$(BIN)/python -m rigidarea compat tests --docs docs
+	$(BIN)/python -m rigidarea compat examples --docs docs
 	$(BIN)/python -m rigidarea demo all --no-film --out $(OUT)/gallery
 	cp $(OUT)/gallery/*.png docs/
 
-# Runs every page's snippets, draws their pictures anew, builds the site without a warning into $(OUT)/site.
+# What tests measure and pages show (SHOWN="shown": the slow ones too).
+SHOWN ?= shown and not slow
+measured: .venv/.installed
+	$(BIN)/python -m pytest -m '$(SHOWN)' --results docs/results/tests.json
+
+# The paper's examples.
+cases: .venv/.installed
+	for name in hertz patch pin-joint geneva gearbox; do \
+	  $(BIN)/python -m rigidarea case $$name --out $(OUT)/case --json docs/results/case-$$name.json || exit 1; done
+
+# Runs every page's snippets, draws their pictures and makes their figures anew, builds the site without a warning
+# into $(OUT)/site.
 docs: .venv/.installed
 	$(BIN)/python tools/pages.py
 	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir $(OUT)/site
-
-# Rewrites the two pages about pymunk's own examples and tests.
-reference: .venv/.installed
-	$(BIN)/python -m rigidarea compat tests --docs docs
-	$(BIN)/python -m rigidarea compat examples --docs docs
 
 # Rewrites constraints.txt from what is installed now (after a deliberate upgrade).
 constraints: .venv/.installed

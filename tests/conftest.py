@@ -7,6 +7,7 @@ Run the kernel tests without compilation by `NUMBA_DISABLE_JIT=1 PAIRS=20 pytest
 from __future__ import annotations
 
 import importlib
+import json
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path
@@ -17,6 +18,8 @@ import numba
 import numpy as np
 import pytest
 from hypothesis import settings
+
+from rigidarea.report import envelope, solver, write_json
 
 
 def kernel_module(name: str) -> ModuleType:
@@ -214,6 +217,38 @@ settings.load_profile("fixed")
 
 #: What the contact solve does not meet yet: one test a line, then what it measured.
 NOT_YET = Path(__file__).with_name("not_yet.txt")
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    parser.addoption("--results", metavar="FILE", help="keep there the figures that tests have measured")
+
+
+class Figures:
+    """What tests have measured by `record_property(name, value)`, whatever came of them, as the file that docs/ shows.
+
+    Of the values of one name the largest is kept, the least of `least_...`, the sum of `count_...`. The file goes on
+    with what it has of the same solver.
+    """
+
+    def __init__(self, file: Path) -> None:
+        before = json.loads(file.read_text()) if file.exists() else {}
+        kept = before.get("results", {}) if before.get("solver") == solver() else {}
+        self.file, self.kept, self.found = file, kept, dict[str, float]()
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        if report.when == "call":
+            for name, value in report.user_properties:
+                how = {"least": min, "count": sum}.get(name.partition("_")[0], max)
+                self.found[name] = how([self.found[name], value]) if name in self.found else value
+
+    def pytest_sessionfinish(self) -> None:
+        write_json(envelope("pytest -m shown", {}, dict(sorted((self.kept | self.found).items()))), self.file)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    file = config.getoption("--results")
+    if file and not hasattr(config, "workerinput"):  # of xdist's processes the one that hears of all tests
+        config.pluginmanager.register(Figures(Path(file)))
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:

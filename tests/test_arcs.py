@@ -83,9 +83,10 @@ def one(kernel: Any, a: ra.Outline, pose_a: Any, b: ra.Outline, pose_b: Any) -> 
 # --- closed forms ---
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e6])
 @pytest.mark.parametrize("far", [0.0, 1e6])
-def test_lens(kernel: Any, size: float, far: float) -> None:
+def test_lens(kernel: Any, size: float, far: float, record_property: Any) -> None:
     """Area to 1e-9 of itself, or what the rounding of the distance allows: 6e-16 r / d of a lens of depth d."""
     rng = np.random.default_rng(7)
     for _ in range(15 if PURE_PYTHON else 300):
@@ -102,6 +103,7 @@ def test_lens(kernel: Any, size: float, far: float) -> None:
         area, x, half = lens(a, b, d)
         assert found.count[0] == 1
         allowed = max(1e-9, 6e-16 * max(a, b) / depth)
+        record_property("lens_of_what_is_allowed", float(abs(found.area[0] / area - 1)) / allowed)
         assert abs(found.area[0] / area - 1) <= allowed
         off = (to - at) / float(d) * float(x) - found.centroid[0]
         assert np.hypot(*off) <= 1e-15 * (a + b) + 1e-9 * min(a, b)

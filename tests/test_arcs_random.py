@@ -104,7 +104,7 @@ def compare(kernel: Any, pairs: list[Pair]) -> Tally:
     return Tally(counted, wrong, worst, worst_centroid)
 
 
-def check(kernel: Any, seed: int, count: int, batch: int = 200) -> None:
+def check(kernel: Any, seed: int, count: int, record: Any, batch: int = 200) -> None:
     rng = np.random.default_rng(seed)
     outlines = bank(seed, 4 if count < 1000 else 30)
     touch = first_touch(kernel)
@@ -116,21 +116,26 @@ def check(kernel: Any, seed: int, count: int, batch: int = 200) -> None:
     area, centroid = max(tally.area for tally in shown), max(tally.centroid for tally in shown)
     told = f"{len(wrong)} wrong of {count} pairs, {counted} counts compared, area off by {area:.1e} at the worst, "
     told += f"a centroid by {centroid:.2f} of what is allowed"
-    print(told)
+    record("arcs_area", area)
+    record("arcs_centroid_of_what_is_allowed", centroid)
+    record("count_arcs_pairs", count)
+    record("count_arcs_wrong", len(wrong))
     assert not wrong, "\n".join([told, *wrong[:20]])
     assert counted > 0.4 * count  # else the test would show little
 
 
 @wide
-def test_a_few_hundred_random_pairs(kernel: Any) -> None:
-    check(kernel, 1, 40 if PURE_PYTHON else 400)
+@pytest.mark.shown
+def test_a_few_hundred_random_pairs(kernel: Any, record_property: Any) -> None:
+    check(kernel, 1, 40 if PURE_PYTHON else 400, record_property)
 
 
 @wide
 @pytest.mark.slow
+@pytest.mark.shown
 @pytest.mark.parametrize("seed", range(10))
-def test_a_hundred_thousand_random_pairs(kernel: Any, seed: int) -> None:
-    check(kernel, 100 + seed, 10_000)
+def test_a_hundred_thousand_random_pairs(kernel: Any, seed: int, record_property: Any) -> None:
+    check(kernel, 100 + seed, 10_000, record_property)
 
 
 # --- tangent or coincident by construction ---
@@ -158,7 +163,7 @@ def tangent(family: Any, seed: int, pairs: int, each: int) -> Posed:
     return Posed(made, sizes, [p.s for p in posed], outlines, np.repeat(2 * np.arange(pairs), each), a, b)
 
 
-def check_tangent(kernel: Any, family: Any, seed: int, pairs: int, each: int) -> None:
+def check_tangent(kernel: Any, record: Any, family: Any, seed: int, pairs: int, each: int) -> None:
     """`pairs` of a family, each at `each` places, asked as (A, B) and as (B, A)."""
     made, sizes, moved, outlines, first, a, b = tangent(family, seed, pairs, each)
     one = kernel.many(outlines, first, first + 1, a, b)
@@ -172,6 +177,8 @@ def check_tangent(kernel: Any, family: Any, seed: int, pairs: int, each: int) ->
         for found in (one, other):
             off = (np.abs(found.total(found.area)[here] - want) - pair.rest(s)) / small
             count = found.count[here]
+            record("tangent_area", float(off.max()))
+            record("count_tangent_pairs", len(off))
             bad = ~(off <= 1e-9) | (count < 0) | (still & ~np.isin(count, pair.counts))
             wrong += [
                 f"{pair.family} {k}, {i}: area off by {off[i]:.2e}, {count[i]} regions, "
@@ -190,18 +197,20 @@ FAMILIES = (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS)
 by_family = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.__name__)
 
 
+@pytest.mark.shown
 @by_family
-def test_tangent_and_coincident_pairs(kernel: Any, family: Any) -> None:
-    check_tangent(kernel, family, 1, 3 if PURE_PYTHON else 100, 3 if PURE_PYTHON else 20)
+def test_tangent_and_coincident_pairs(kernel: Any, family: Any, record_property: Any) -> None:
+    check_tangent(kernel, record_property, family, 1, 3 if PURE_PYTHON else 100, 3 if PURE_PYTHON else 20)
 
 
 @pytest.mark.slow
+@pytest.mark.shown
 @by_family
-def test_a_million_tangent_and_coincident_pairs(kernel: Any, family: Any) -> None:
+def test_a_million_tangent_and_coincident_pairs(kernel: Any, family: Any, record_property: Any) -> None:
     """1,536,000 pairs of all families together, of random sizes each, and as many the other way round."""
     for seed in range(10):
-        check_tangent(kernel, family, 100 + seed, 600, 10)
-        check_tangent(kernel, family, 200 + seed, 20, 20)
+        check_tangent(kernel, record_property, family, 100 + seed, 600, 10)
+        check_tangent(kernel, record_property, family, 200 + seed, 20, 20)
 
 
 def drawn(

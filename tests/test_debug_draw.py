@@ -86,11 +86,14 @@ def with_pygame(space: pymunk.Space, options: object = None) -> np.ndarray:
     return (pygame.surfarray.array3d(surface) != 255).any(axis=2).T
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("angle", [0.0, 0.7])
-def test_pygame(name, angle):
+def test_pygame(name, angle, record_property):
     space, outline, body = scene(name, angle)
-    assert agree(with_pygame(space), covered(outline, body, 0.0, False)) > 0.99
+    same = agree(with_pygame(space), covered(outline, body, 0.0, False))
+    record_property("least_drawn_alike", same)
+    assert same > 0.99
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -103,8 +106,9 @@ def test_pymunks_own_options_in_an_attached_space(name):
     assert agree(with_pygame(space, pymunk.pygame_util.DrawOptions), wanted) < 0.99
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("name", NAMES)
-def test_matplotlib(name):
+def test_matplotlib(name, record_property):
     matplotlib = pytest.importorskip("matplotlib")
     matplotlib.use("Agg")
     from matplotlib.figure import Figure
@@ -124,7 +128,9 @@ def test_matplotlib(name):
     canvas.draw()
     # what is smoothed counts from half on: a pixel's colour is its share of (44, 62, 80) or (52, 152, 219) on white
     drawn = np.asarray(canvas.buffer_rgba())[:, :, 0] < 255 - (255 - 52) / 2
-    assert agree(drawn, covered(outline, body, 0.5, True)) > 0.99
+    same = agree(drawn, covered(outline, body, 0.5, True))
+    record_property("least_drawn_alike", same)
+    assert same > 0.99
 
 
 @pytest.fixture(scope="module")
@@ -141,8 +147,9 @@ def window():
     made.close()
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("name", NAMES)
-def test_pyglet(window, name):
+def test_pyglet(window, name, record_property):
     import pyglet
 
     from rigidarea.pyglet_util import DrawOptions
@@ -153,7 +160,9 @@ def test_pyglet(window, name):
     space.debug_draw(DrawOptions())
     image = pyglet.image.get_buffer_manager().get_color_buffer().get_image_data()
     pixels = np.frombuffer(image.get_data("RGB", SIZE * 3), np.uint8).reshape(SIZE, SIZE, 3)
-    assert agree((pixels != 0).any(axis=2), covered(outline, body, 0.5, False)) > 0.99
+    same = agree((pixels != 0).any(axis=2), covered(outline, body, 0.5, False))
+    record_property("least_drawn_alike", same)
+    assert same > 0.99
 
 
 def test_any_other_options_get_convex_polygons():

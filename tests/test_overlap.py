@@ -565,9 +565,12 @@ def rng_of(kind: str, seed: int) -> np.random.Generator:
     return np.random.default_rng([seed, *kind.encode()])
 
 
-def check(kernel: Any, kind: str, n: int, seed: int) -> None:
+def check(kernel: Any, kind: str, n: int, seed: int, record: Any) -> None:
     report = compared(kernel, KINDS[kind](rng_of(kind, seed), n))
-    print(f"{kind}: {report}")
+    record("overlap_area", report.area_error)
+    record("overlap_moment", report.moment_error)
+    record("count_overlap_pairs", report.pairs)
+    record("count_overlap_wrong", len(report.wrong) + report.undecided)
     assert report.undecided == 0
     assert report.area_error <= AREA_TOLERANCE
     assert report.moment_error <= AREA_TOLERANCE
@@ -576,15 +579,17 @@ def check(kernel: Any, kind: str, n: int, seed: int) -> None:
     assert report.arbitrated <= 2 + 0.002 * report.pairs  # else GEOS is no oracle here
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("kind", KINDS)
-def test_area_centroid_and_count_against_shapely(kernel: Any, kind: str) -> None:
-    check(kernel, kind, PAIRS, 1)
+def test_area_centroid_and_count_against_shapely(kernel: Any, kind: str, record_property: Any) -> None:
+    check(kernel, kind, PAIRS, 1, record_property)
 
 
 @pytest.mark.slow
+@pytest.mark.shown
 @pytest.mark.parametrize("kind", KINDS)
-def test_area_centroid_and_count_of_100_000_pairs(kernel: Any, kind: str) -> None:
-    check(kernel, kind, 8000, 2)
+def test_area_centroid_and_count_of_100_000_pairs(kernel: Any, kind: str, record_property: Any) -> None:
+    check(kernel, kind, 8000, 2, record_property)
 
 
 def test_hole_that_hangs_on_a_vertex_of_its_region(kernel: Any) -> None:

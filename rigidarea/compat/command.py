@@ -30,7 +30,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="some of the examples (default: all)")
     parser.add_argument(
-        "--docs", type=Path, metavar="DIR", help="rewrite pymunk-examples.md or pymunk-tests.md here"
+        "--docs",
+        type=Path,
+        metavar="DIR",
+        help="keep the results here, and renew pages",
     )
     parser.add_argument(
         "--calls", type=int, default=50_000, metavar="N", help="of fuzz (default: %(default)s)"
@@ -91,15 +94,14 @@ def run(arguments: argparse.Namespace) -> int:
     for i, name in enumerate(names):
         print(f"[{i + 1}/{len(names)}] {name}", file=sys.stderr, flush=True)
         rows.append(compare(name))
-    write_json(
-        envelope("compat examples", {"frames": FRAMES, "names": names}, rows, summary=summary(rows)),
-        arguments.json,
-    )
+    told = {"frames": FRAMES, "names": names, "pymunk": pymunk.version, "games": len(GAMES)}
+    report = envelope("compat examples", told, rows, summary=summary(rows))
+    write_json(report, arguments.json)
     if arguments.json != "-":
         print("\n".join(examples_table(rows)))
         print(_sentence(summary(rows)))
     if arguments.docs:
-        _write(arguments.docs / "pymunk-examples.md", examples_page(rows))
+        _keep(arguments.docs, "pymunk-examples", report)
     return int(any(row["native_wrong"] for row in rows))
 
 
@@ -151,12 +153,13 @@ def examples_table(rows: list[dict[str, Any]]) -> list[str]:
     return lines
 
 
-def examples_page(rows: list[dict[str, Any]]) -> str:
-    """docs/pymunk-examples.md."""
+def examples_page(report: dict[str, Any]) -> str:
+    """docs/pymunk-examples.md, of what `compat examples` has measured."""
+    rows, asked = report["results"], report["settings"]
     head = f"""# pymunk's examples, unedited
 
-Each example of pymunk {pymunk.version} is run from where pymunk installed it, headless, for {FRAMES} frames with
-scripted input and seeded `random`: natively, and with `rigidarea.attach` on every space before its first
+Each example of pymunk {asked["pymunk"]} is run from where pymunk installed it, headless, for {asked["frames"]} frames
+with scripted input and seeded `random`: natively, and with `rigidarea.attach` on every space before its first
 `space.step`. The steps are the example's own. `python -m rigidarea compat examples --docs docs` renews this page.
 
 An example behaves *as meant* if two to five facts written down from reading it hold (`rigidarea/compat/facts.py`:
@@ -165,12 +168,12 @@ nothing is raised or printed on standard error, no body is farther out than the 
 none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
 off than twice natively plus a pixel, of the bodies that came two seconds before the end as many rest (up to a
 tenth; who sleeps rests), and callbacks come as often (up to a factor of two). Crowds have no one course: where
-something of that is not so, {len(GAMES)} games count, each with its own random numbers and with the hand a pixel
+something of that is not so, {asked["games"]} games count, each with its own random numbers and with the hand a pixel
 further to the right: the widest and fastest of the native ones, and of both the median share that rests. Facts of
 chance (whether a flipper meets the ball) are to hold in more than half of them, natively and attached. Times are
 processor time, median over frames: `space.step` alone, and the example's whole frame with its drawing.
 
-{_sentence(summary(rows))}
+{_sentence(report["summary"])}
 """
     return head + "\n" + "\n".join(examples_table(rows)) + "\n"
 
@@ -190,12 +193,12 @@ def _tests(arguments: argparse.Namespace) -> int:
         for mode, rows in results.items()
     }
     failed = failures(results)
-    write_json(envelope("compat tests", {}, failed, summary=counts), arguments.json)
-    page = tests_page(counts, failed)
+    report = envelope("compat tests", {"pymunk": pymunk.version}, failed, summary=counts)
+    write_json(report, arguments.json)
     if arguments.json != "-":
-        print(page)
+        print(tests_page(report))
     if arguments.docs:
-        _write(arguments.docs / "pymunk-tests.md", page)
+        _keep(arguments.docs, "pymunk-tests", report)
     return 0
 
 
@@ -322,8 +325,9 @@ def failures(results: dict[str, list[dict[str, Any]]]) -> list[dict[str, Any]]:
     ]
 
 
-def tests_page(counts: dict[str, dict[str, int]], failed: list[dict[str, Any]]) -> str:
-    """docs/pymunk-tests.md."""
+def tests_page(report: dict[str, Any]) -> str:
+    """docs/pymunk-tests.md, of what `compat tests` has measured."""
+    counts, failed = report["summary"], report["results"]
     names = {
         "pymunk": "natively",
         "area": "attached, stepped by `Space.step`",
@@ -332,8 +336,8 @@ def tests_page(counts: dict[str, dict[str, int]], failed: list[dict[str, Any]]) 
     lines = [
         "# pymunk's own tests",
         "",
-        f"The tests of pymunk {pymunk.version} (doctests left out), natively and with area contact attached to every",
-        "space when it is made. `python -m rigidarea compat tests --docs docs` renews this page.",
+        f"The tests of pymunk {report['settings']['pymunk']} (doctests left out), natively and with area contact",
+        "attached to every space when it is made. `python -m rigidarea compat tests --docs docs` renews this page.",
         "",
         "| how | passed | of |",
         "|---|---:|---:|",
@@ -350,7 +354,8 @@ def tests_page(counts: dict[str, dict[str, int]], failed: list[dict[str, Any]]) 
     return "\n".join(lines) + "\n"
 
 
-def _write(path: Path, text: str) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text)
-    print(f"written: {path}", file=sys.stderr)
+def _keep(docs: Path, name: str, report: dict[str, Any]) -> None:
+    from ..study import page
+
+    page.keep(docs, name, report)
+    print(f"written: {docs}", file=sys.stderr)

@@ -156,6 +156,7 @@ def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
 
 
 def _validate(arguments: argparse.Namespace) -> int:
+    from ..study import page
     from ..study.records import write_csv
     from . import picture
     from .validate import validate
@@ -165,7 +166,7 @@ def _validate(arguments: argparse.Namespace) -> int:
     write_csv(arguments.out / "plan-validate.csv", report["rows"])
     shown = picture.costs_and_errors(report["rows"], arguments.out / "plan.png")
     if arguments.docs:
-        picture.renew(arguments.docs, report, shown)
+        page.keep(arguments.docs, "plan", report, {"plan.png": shown})
     write_json(report, arguments.json)
     if arguments.json != "-":
         print("\n".join(lines([{k: row.get(k) for k in TOLD} for row in report["rows"]])))

@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..study import page
 from ..study.draw import pyplot
 from ..study.page import markdown, number
 from ..study.records import Row
@@ -102,12 +101,3 @@ def outside(report: Row) -> str:
     return markdown(
         ("scene", "tolerance", "error", "predicted", "decided by", "planned", "cheapest within"), rows
     )
-
-
-def renew(docs: Path, report: Row, shown: Path) -> None:
-    """Renew the picture and the tables of `docs`/plan.md, each between its markers.
-
-    Raises ValueError for a page without a place for one.
-    """
-    tables = {"summary": summaries(report), "outside": outside(report)}
-    page.renew(docs, tables, {"plan.png": shown}, "plan.md")

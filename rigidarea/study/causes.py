@@ -1,15 +1,15 @@
 """Why rigidarea's front is dominated on a scene: what was found when its front was looked at."""
 
-_STEP = "at coarse errors one step a frame decides, and a frame of ours costs two to three of pymunk's steps"
+_STEP = "at coarse errors one step a frame decides, and a frame of ours costs more"
 _IMPACT = (
-    "impulses are exact in one step a frame, for us too: a frame of ours costs two to three of pymunk's steps, and the "
-    "first one 0.05 ms, half of so short a run"
+    "impulses are exact in one step a frame, for us too: a frame of ours costs more, the first one most, and "
+    "the run is short"
 )
-_REST = "one step a frame holds to 1e-4 with either: a frame of ours costs more"
+_REST = "one step a frame holds with either: a frame of ours costs more"
 _ARC = "; an arc that is stiffer than its substeps bear comes off its path and is struck anew: finer errors want more"
 
 CAUSES: dict[str, str] = {
-    "arch": _STEP + "; the default's bed is too soft (it stands from a penetration of 2e-5 down)",
+    "arch": _STEP + "; the default's bed is too soft (a stiffer one holds)",
     "bar_on_u": _REST,
     "bounce": _STEP,
     "bowl_roll": _STEP + _ARC,
@@ -29,7 +29,7 @@ CAUSES: dict[str, str] = {
     "journal_bounce": _STEP,
     "journal_swing": _STEP + _ARC,
     "ladder": _STEP,
-    "ladder_held": _REST + "; the default's bed is too soft (it stands from a penetration of 2e-5 down)",
+    "ladder_held": _REST + "; the default's bed is too soft (a stiffer one holds)",
     "loop": _STEP,
     "mass_chain": _IMPACT,
     "oblique_bounce": _IMPACT,
@@ -47,10 +47,10 @@ CAUSES: dict[str, str] = {
     "stack": _STEP,
     "standing": _REST
     + "; the default's bed is too soft: a block stands while p <= m³ w/6h, m the part of half its base "
-    "that is left between weight and edge, 8e-5 here",
+    "that is left between weight and edge",
     "superball": _STEP,
     "tiles": _STEP + "; at some settings the box catches at a seam",
-    "tipping": _STEP + "; the bed's depth at the start is magnified by e^(pt) = 15",
+    "tipping": _STEP + "; the bed's depth at the start is magnified by e^(pt)",
     "v_groove_spin": "sliding at constant forces is what impulses do to rounding; ours is off by what it sinks",
     "wedge": _STEP,
 }

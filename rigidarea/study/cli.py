@@ -52,7 +52,7 @@ def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _docs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--docs", type=Path, metavar="DIR", help="renew there what README.md and docs/study.md show of it"
+        "--docs", type=Path, metavar="DIR", help="keep the results there, and renew what pages show of them"
     )
 
 
@@ -131,7 +131,7 @@ def _compare(arguments: argparse.Namespace) -> int:
     _write(arguments, "compare", report)
     picture, *_ = draw_compare.levels(report, traces, arguments.out)
     if arguments.docs:
-        page.renew(arguments.docs, {}, {"compare.png": picture})
+        page.keep(arguments.docs, "compare", report, {"compare.png": picture})
     return _tell(arguments, report, report["results"])
 
 
@@ -144,9 +144,8 @@ def _atlas(arguments: argparse.Namespace) -> int:
     draw_atlas.overview(report, arguments.out)
     pictures = draw_atlas.page(report, arguments.out)
     if arguments.docs:
-        page.renew(
-            arguments.docs, {"maps": page.maps(report)}, {"atlas.png": pictures[0]} if pictures else {}
-        )
+        shown = {"atlas.png": pictures[0]} if pictures else {}
+        page.keep(arguments.docs, "atlas", {**report, "results": atlas.passed(report["results"])}, shown)
     return _tell(arguments, report, atlas.passed(report["results"]))
 
 
@@ -165,9 +164,7 @@ def _bench(arguments: argparse.Namespace) -> int:
         pictures = draw_bench.everyday_times(report, arguments.out)
         if arguments.docs:
             shown = {"everyday.png": pictures[0]} if pictures else {}
-            page.renew(arguments.docs, {"everyday": page.everyday(report)}, shown)
-            page.renew(arguments.docs.parent, {"moving": page.moving(report)}, {}, "README.md")
-            page.keep(arguments.docs, "everyday", report)
+            page.keep(arguments.docs, "everyday", report, shown)
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
         if arguments.json != "-":
             print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
@@ -188,13 +185,13 @@ def _bench(arguments: argparse.Namespace) -> int:
     elif arguments.what == "growth":
         report = growth.growth(arguments.scene, arguments.bodies or (), arguments.peer)
         pictures = draw_bench.growth(report, arguments.out)
-        if arguments.docs and pictures:
-            page.renew(arguments.docs, {}, {"growth.png": pictures[0]})
+        if arguments.docs:
+            page.keep(arguments.docs, "growth", report, {"growth.png": pictures[0]} if pictures else {})
     elif arguments.what == "step":
         report = start.step()
         pictures = draw_bench.phases(report, arguments.out)
         if arguments.docs:
-            page.renew(arguments.docs, {}, {"phases.png": pictures[0]})
+            page.keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
     elif arguments.what == "start":
         report = start.start()
     else:
@@ -225,14 +222,8 @@ def _chart(arguments: argparse.Namespace) -> int:
     pictures = draw.chart_summary(report, arguments.out)
     defaults = draw.chart_defaults(report, arguments.out)
     if arguments.docs and pictures:
-        tables = {
-            "defaults": page.defaults(report),
-            "ratios": page.ratios(report),
-            "dominated": page.dominated(report),
-            "known_well": page.known_well(report),
-        }
         shown = {"chart.png": pictures[0]} | ({"chart-defaults.png": defaults[0]} if defaults else {})
-        page.renew(arguments.docs, tables, shown)
+        page.keep(arguments.docs, "chart", page.concise(report), shown)
     _tell(
         arguments,
         report,

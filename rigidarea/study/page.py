@@ -1,49 +1,129 @@
-"""What README.md and docs/study.md show: pictures copied, tables of the page renewed between their markers.
+"""The figures of README.md and of the pages in docs/: every one is made from a file of results, none is typed.
 
-A table called `name` stands between the lines `<!-- name -->` and `<!-- /name -->`; everything else is written by hand.
+`docs/results/NAME.json` is what a command or a test run has measured (`keep`). A page names what it shows of it:
+
+    <!-- growth -->                              a table or sentences: one of `TABLES`, which says of which results
+    ...
+    <!-- /growth -->
+    <!-- figure tests lens_error .0e -->2e-12<!-- /figure -->    one number: file, place in it, format
+
+`renew` writes all that stands between such marks anew, and nothing else; `make docs` does so before it builds.
 """
 
 from __future__ import annotations
 
+import importlib
+import json
 import math
 import re
 import shutil
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ..report import write_json
-from . import atlas, front
+from ..report import solver, write_json
+from . import front
 from .causes import CAUSES
 from .chart import points
 from .peers import KNOWN_WELL
 from .records import Row
 
-NAME = "study.md"
+TABLES = {
+    "ratios": ("chart", "ratios"),
+    "defaults": ("chart", "defaults"),
+    "counts": ("chart", "counts"),
+    "dominated": ("chart", "dominated"),
+    "known_well": ("chart", "known_well"),
+    "everyday": ("everyday", "everyday"),
+    "everyday_summary": ("everyday", "everyday_summary"),
+    "moving": ("everyday", "moving"),
+    "growth": ("growth", "growth"),
+    "levels": ("growth", "levels"),
+    "maps": ("atlas", "maps"),
+    "levels_compared": ("compare", "levels_compared"),
+    "plan_summary": ("plan", "..plan.picture:summaries"),
+    "plan_outside": ("plan", "..plan.picture:outside"),
+    "pymunk_examples": ("pymunk-examples", "..compat.command:examples_page"),
+    "pymunk_tests": ("pymunk-tests", "..compat.command:tests_page"),
+}
+"""Name in a page: (results, what makes it of them: a function of this module, or of another: `module:function`)."""
+
+MARK = re.compile(
+    r"<!-- (?P<name>\w+)(?P<what>(?: [^\s>]+)*) -->(?P<shown>.*?)<!-- /(?P=name) -->", re.DOTALL
+)
+"""What a page shows of results, between its two marks."""
 
 
-def renew(
-    docs: Path, tables: Mapping[str, str], pictures: Mapping[str, Path], name_of_page: str = NAME
-) -> None:
-    """Put `pictures` (name in `docs`: file) and `tables` (name: Markdown, in that page) into the folder `docs`.
+def renewed(text: str, results: Path) -> str:
+    """The text of a page with everything made anew from the files in the folder `results`.
 
-    Raises ValueError for a table that the page has no place for.
+    What has no file there is left as it is. Raises ValueError for a name that is none of `TABLES`, KeyError for a place
+    that is not in a file.
     """
-    docs.mkdir(parents=True, exist_ok=True)
-    for name, picture in pictures.items():
-        shutil.copyfile(picture, docs / name)
-    if not tables:
-        return
-    target = docs / name_of_page
-    text = (
-        target.read_text() if target.exists() else "".join(f"<!-- {n} -->\n<!-- /{n} -->\n" for n in tables)
+
+    def made(found: re.Match[str]) -> str:
+        name, what = found["name"], found["what"].split()
+        if name != "figure" and name not in TABLES:
+            raise ValueError(f"a page shows {name!r}: expected figure or one of {', '.join(TABLES)}")
+        file = results / f"{what[0] if name == 'figure' else TABLES[name][0]}.json"
+        if not file.exists():
+            return found[0]
+        report = json.loads(file.read_text())
+        shown = figure(report, *what[1:]) if name == "figure" else "\n" + _maker(name)(report)
+        return found[0].replace(f"-->{found['shown']}<!--", f"-->{shown}<!--")
+
+    return MARK.sub(made, text)
+
+
+def _maker(name: str) -> Callable[[Row], str]:
+    module, _, function = TABLES[name][1].rpartition(":")
+    made: Callable[[Row], str] = (
+        getattr(importlib.import_module(module, __package__), function) if module else globals()[function]
     )
-    for name, table in tables.items():
-        marked = re.compile(f"(<!-- {name} -->\n).*?(<!-- /{name} -->)", re.DOTALL)
-        if not marked.search(text):
-            raise ValueError(f"{target} has no place for the table {name!r}: expected a line <!-- {name} -->")
-        text = marked.sub(lambda found, table=table: found[1] + table + found[2], text)  # type: ignore[misc]
-    target.write_text(text)
+    return made
+
+
+def figure(report: Row, place: str, form: str = "") -> str:
+    """The number at `place` (keys, from the outermost, with dots between), in Python's format `form` (else `number`).
+
+    Raises KeyError for a place that is not there.
+    """
+    value: Any = report
+    for key in place.split("."):
+        value = value[int(key) if isinstance(value, list) else key]
+    return format(value, form) if form else number(value)
+
+
+def pages(docs: Path) -> list[Path]:
+    """README.md beside the folder `docs`, and the pages in it."""
+    return [docs.parent / "README.md", *sorted(docs.rglob("*.md"))]
+
+
+def renew(docs: Path) -> list[Path]:
+    """Renew README.md and all pages of the folder `docs` from its `results`; which have changed."""
+    changed = []
+    for page in pages(docs):
+        if page.exists() and (new := renewed(text := page.read_text(), docs / "results")) != text:
+            page.write_text(new)
+            changed.append(page)
+    return changed
+
+
+def keep(docs: Path, name: str, report: Row, pictures: Mapping[str, Path] | None = None) -> None:
+    """Keep what a command has measured as `docs`/results/`name`.json, its pictures (name in `docs`: file); renew the
+    pages.
+    """
+    write_json(report, docs / "results" / f"{name}.json")
+    for shown, picture in (pictures or {}).items():
+        shutil.copyfile(picture, docs / shown)
+    renew(docs)
+
+
+def older(docs: Path) -> list[str]:
+    """The results in `docs` that were measured on another solver than the one that is here."""
+    now = solver()
+    files = sorted((docs / "results").glob("*.json"))
+    return [file.stem for file in files if json.loads(file.read_text()).get("solver") != now]
 
 
 def markdown(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
@@ -113,14 +193,18 @@ def defaults(report: Row) -> str:
     columns = ["scene", "error at our default", "cost (s/s)"]
     for peer in peers:
         columns += [f"{peer}'s default: error", "our cost over its", "our default over its front"]
-    counted = [
+    return markdown(columns, rows)
+
+
+def counts(report: Row) -> str:
+    """On how many scenes we are no dearer than each peer, our front and our default alone: a line a peer."""
+    return "".join(
         f"- {row['peer']}: our whole front is no dearer than its front on {row['front_even']} of {row['scenes']} "
         f"scenes; our default than its front on {row['default_even']} of {row['scenes_default']}, than its default on "
         f"{row['no_dearer']}, no less exact on {row['no_worse']}, both on {row['both']}; ours fails on "
         f"{row['default_failed']}, its own on {row['peer_default_failed']}.\n"
         for row in report["summary_defaults"]
-    ]
-    return markdown(columns, rows) + "\n" + "".join(counted)
+    )
 
 
 def everyday(report: Row) -> str:
@@ -155,9 +239,90 @@ def moving(report: Row) -> str:
     return markdown(["scene", "rigidarea", "pymunk, 1 step", "pymunk, 4", "Box2D v3"], rows)
 
 
-def keep(docs: Path, name: str, report: Row) -> None:
-    """Keep what a command has measured, from which the pages' tables are made: `docs/results/name.json`."""
-    write_json(report, docs / "results" / f"{name}.json")
+def everyday_summary(report: Row) -> str:
+    """What the judged scenes cost over pymunk's step, and which scenes keep moving or cost more than its four steps."""
+    told, rows = report["summary"], report["results"]
+    dear = [
+        row["title"] for row in rows if row["native_4_ms"] and row["frame_ms_median"] > row["native_4_ms"]
+    ]
+    restless = [row["title"] for row in rows if row["scene"] in told["faster_than_native_4"]]
+    worst = max((row for row in rows if row["judged"] and row["ratio"]), key=lambda row: row["ratio"])
+    text = (
+        f"- At the defaults a settled frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
+        f"median of the {len(told['scenes'])} scenes without a star; the worst, {worst['title']}, "
+        f"{number(worst['ratio'])}).\n"
+    )
+    if dear:
+        text += f"- More than pymunk's four steps a frame: {', '.join(dear)}.\n"
+    if restless:
+        text += "- In the last second something still moves faster than at pymunk's four steps in: "
+        text += ", ".join(restless) + ".\n"
+    return text
+
+
+def growth(report: Row) -> str:
+    """Families of scenes at their sizes: mean frames (µs), ours over pymunk's step, and what attaching takes."""
+    from .growth import GROWING
+
+    rows = [
+        [
+            GROWING[row["scene"]].title,
+            f"{row['size']:,}",
+            *(
+                number(row[key])
+                for key in ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth")
+            ),
+            number(row["start_ms"]),
+        ]
+        for row in report["results"]
+        if row["scene"] in GROWING
+    ]
+    columns = ["scene", "size", "pymunk, 1 step", "Box2D", "rigidarea", "ratio", "worst tenth"]
+    return markdown([*columns, "attach and first frame, ms"], rows)
+
+
+def levels(report: Row) -> str:
+    """What a level costs that is merely there: the same boxes on one floor and on the most tiles."""
+    rows = sorted((row for row in report["results"] if row["scene"] == "tiles"), key=lambda row: row["size"])
+    floor, most = rows[0], rows[-1]
+    return (
+        f"100 boxes cost {number(floor['frame_us_mean'])} µs a frame on one floor and {number(most['frame_us_mean'])} "
+        f"on {most['size']:,} tiles (pymunk's step: {number(floor['native_1_us'])} and {number(most['native_1_us'])}); "
+        f"attaching to those tiles takes {number(most['start_ms'] / 1e3)} s.\n"
+    )
+
+
+def levels_compared(report: Row) -> str:
+    """Rigid, compliant and modal on each scene: the error where there is an exact answer, the trace's distance from the
+    modal level's, and the cost."""
+    rows = [
+        [
+            row["scene"] if row["level"] == "rigid" else "",
+            row["level"],
+            "–" if row.get("error") is None else number(row["error"]),
+            row.get("error_name") or "",
+            "–" if row["departure"] is None else number(row["departure"]),
+            number(row["cost_s_per_s"]),
+        ]
+        for row in report["results"]
+    ]
+    return markdown(["scene", "level", "error", "of what", "off modal", "cost (s/s)"], rows)
+
+
+def concise(report: Row) -> Row:
+    """The chart's report with no more of its rows than its tables show: each engine's front on each scene."""
+    kept = []
+    groups: dict[tuple[str, str], list[Row]] = {}
+    for row in report["results"]:
+        if row["error"] is not None:
+            groups.setdefault((row["scene"], row["peer"]), []).append(row)
+    for rows in groups.values():
+        least = math.inf
+        for row in sorted(rows, key=lambda row: (row["cost_s_per_s"], row["error"])):
+            if row["error"] < least:
+                least = row["error"]
+                kept.append(row)
+    return {**report, "results": kept}
 
 
 def dominated(report: Row) -> str:
@@ -208,8 +373,8 @@ def _plain(value: Any) -> str:
 
 
 def maps(report: Row) -> str:
-    """A line a map: what is asked, theory, and the share passed by each engine."""
-    shares = {(row["map"], row["peer"]): row for row in atlas.passed(report["results"])}
+    """A line a map (`atlas.passed` of its results): what is asked, theory, and the share passed by each engine."""
+    shares = {(row["map"], row["peer"]): row for row in report["results"]}
     rows = []
     for described in report["maps"]:
         cells = []

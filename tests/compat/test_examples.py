@@ -229,7 +229,9 @@ def test_the_page_says_what_is_not_as_meant():
         "native_wrong": [], "step_ms": 0.5, "step_over_native": 3.0, "frame_ms": 1.0, "frame_over_native": 1.5,
     }  # fmt: skip
     good = {**row, "example": "arrow", "right": True, "wrong": [], "step_over_native": 1.0}
-    page = command.examples_page([row, good])
+    rows = [row, good]
+    asked = {"pymunk": "7", "frames": 300, "games": 8}
+    page = command.examples_page({"settings": asked, "results": rows, "summary": command.summary(rows)})
     assert "| tower | 3 | no | 0.50 | 3.00 | 1.50 | falls \\| over |" in page
     assert "1 of the 2 that step a space" in page and "median 2.00, worst 3.00" in page
     assert math.isclose(command.summary([row, good])["step_over_native_median"], 2.0)

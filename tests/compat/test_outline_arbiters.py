@@ -89,7 +89,8 @@ def thrown_together(seed: int) -> tuple[pymunk.Space, pymunk.Shape, pymunk.Shape
     return space, *shapes
 
 
-def test_normals_and_points_of_a_thousand_pairs():
+@pytest.mark.shown
+def test_normals_and_points_of_a_thousand_pairs(record_property):
     """In begin and pre_solve, to 1e-9; no call where the outlines are apart; is it both often enough?"""
     touching = apart = two = 0
     for seed in range(1000):
@@ -125,9 +126,13 @@ def test_normals_and_points_of_a_thousand_pairs():
                 left.remove(r)
                 assert wanted["area"][r] == pytest.approx(wanted["area"][k], rel=1e-9), seed
                 if k == 0:
+                    off = np.abs(np.array(normal) - sign * wanted["direction"][r]).max()
+                    record_property("callback_normal", float(off))
                     assert normal == pytest.approx(sign * wanted["direction"][r], abs=1e-9), seed
                 way = np.array(point.point_b) - np.array(point.point_a)
                 assert point.distance == pytest.approx(way @ np.array(normal), abs=1e-9)
+    record_property("count_callback_touching", touching)
+    record_property("count_callback_apart", apart)
     assert touching > 300 and apart > 150 and two > 40, (touching, apart, two)
 
 

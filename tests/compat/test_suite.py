@@ -55,7 +55,13 @@ def test_failures_are_listed_with_their_reasons(monkeypatch):
     assert rows == [
         {"test": "T.test_b", "reason": "because", "pymunk": "", "area": "x | y", "area_frames": "x | y"}
     ]
-    page = command.tests_page({mode: {"tests": 2, "passed": 1} for mode in MODES}, rows)
+    page = command.tests_page(
+        {
+            "settings": {"pymunk": "7"},
+            "results": rows,
+            "summary": {mode: {"tests": 2, "passed": 1} for mode in MODES},
+        }
+    )
     assert "| T.test_b |  | x \\| y | x \\| y | because |" in page
 
 

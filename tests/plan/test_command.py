@@ -129,6 +129,7 @@ def test_the_page_runs():
 
 def test_tables_and_picture_of_the_page(tmp_path):
     from rigidarea.plan import picture
+    from rigidarea.study.page import keep
 
     rows = [
         {
@@ -152,9 +153,11 @@ def test_tables_and_picture_of_the_page(tmp_path):
     assert told["summary"]["scenes"]["within_tolerance_percent"] == 50.0
     assert told["summary"]["scenes"]["cost_ratio_worst"] == 1.5
     shown = picture.costs_and_errors(rows, tmp_path / "plan.png")
-    picture.renew(tmp_path / "docs", told, shown)
-    page = (tmp_path / "docs" / "plan.md").read_text()
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    (docs / "plan.md").write_text(
+        "".join(f"<!-- {n} -->\n<!-- /{n} -->\n" for n in ("plan_summary", "plan_outside"))
+    )
+    keep(docs, "plan", told, {"plan.png": shown})
+    page = (docs / "plan.md").read_text()
     assert "| one | 1 % | 0.02 | 5e-3 | corner |" in page and "50 %" in page
-    (tmp_path / "docs" / "plan.md").write_text("no place")
-    with pytest.raises(ValueError, match="no place for the table 'summary'"):
-        picture.renew(tmp_path / "docs", told, shown)

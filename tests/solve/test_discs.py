@@ -42,10 +42,15 @@ def landing(friction: float, **settings: Any) -> float:
 
 
 @area_only
+@pytest.mark.shown
 @pytest.mark.parametrize("penetration", [1e-3, 2e-4, 1e-5, 1e-6])
 @pytest.mark.parametrize("friction", [0.0, 1000.0])  # the latter rolls to the last
-def test_a_disc_comes_off_a_disc_where_it_should(friction: float, penetration: float) -> None:
-    assert abs(landing(friction, penetration=penetration)) <= 0.005
+def test_a_disc_comes_off_a_disc_where_it_should(
+    friction: float, penetration: float, record_property: Any
+) -> None:
+    off = abs(landing(friction, penetration=penetration))
+    record_property("landing", off)
+    assert off <= 0.005
 
 
 @area_only

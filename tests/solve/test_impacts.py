@@ -67,15 +67,18 @@ def missed(asked):
     return [(e, n, found) for e, n, found in asked if not abs(found - e) <= (NEAR if e else NEAR_ZERO)]
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("stiffness", [None, 1e4, 1e7, 1e9])
 @pytest.mark.parametrize("partner", ["floor", "free"])
 @pytest.mark.parametrize("landing", ["disc", "flat", "corner"])
-def test_restitution_is_as_asked(landing, partner, stiffness):
+def test_restitution_is_as_asked(landing, partner, stiffness, record_property):
     """Newton: separation = e × approach, whether the step follows the contact (1e4: 30 ms) or not (1e9: 0.1 ms)."""
     asked = []
     for e in (0.0, 0.1, 0.5, 0.9, 1.0):
         for steps in STEPS:
             asked.append((e, steps, restitution(landing, partner, e, steps, stiffness)))
+    record_property("restitution", max(abs(found - e) for e, _, found in asked if e))
+    record_property("restitution_of_nothing", max(abs(found) for e, _, found in asked if not e))
     assert not missed(asked)
 
 
@@ -194,13 +197,15 @@ def two_discs(mu, steps, e=0.5, v=4.0, r=0.5):
     return world, before
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("steps", STEPS)
 @pytest.mark.parametrize("mu", [0.1, 0.8])
-def test_two_free_discs_hit_with_friction(mu, steps):
+def test_two_free_discs_hit_with_friction(mu, steps, record_property):
     """J_n = (1 + e) v_n m/2; J_t = v_t/(2/m + 2 r²/I) = v_t m/6 or mu J_n; momenta to rounding (1e-9 of m v r)."""
     e, v, r = 0.5, 4.0, 0.5
     world, before = two_discs(mu, steps, e, v, r)
     a, b = world.bodies
+    record_property("momentum_of_discs", float(np.abs(np.subtract(world.momentum(), before)).max()) / v)
     assert world.momentum() == pytest.approx(before, abs=KEPT * v)
     n = np.array((0.8, 0.6))
     t = np.array((-0.6, 0.8))
@@ -218,9 +223,10 @@ def test_two_free_discs_hit_with_friction(mu, steps):
     assert (a.angular_velocity, b.angular_velocity) == pytest.approx((spin, spin), abs=4 * near)
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("steps", [1, 2, 4, 32, None])
 @pytest.mark.parametrize("stiffness", [1e3, 1e6, 1e9])
-def test_momentum_of_free_bodies_with_friction(stiffness, steps):
+def test_momentum_of_free_bodies_with_friction(stiffness, steps, record_property):
     """Boxes, discs and hexagons that tumble into each other: what no outside force changes, to 1e-9 of Σ m v r."""
     draw = np.random.default_rng(5)
     world = World(stiffness=stiffness, friction=0.7, elasticity=0.4)
@@ -234,13 +240,15 @@ def test_momentum_of_free_bodies_with_friction(stiffness, steps):
             world.disc(at, 0.5, mass=mass, **motion)
     before, energy = world.momentum(), world.kinetic()
     world.step(steps, frames=90)
+    record_property("momentum_of_bodies", float(np.abs(np.subtract(world.momentum(), before)).max()) / 100)
     assert world.momentum() == pytest.approx(before, abs=KEPT * 100)  # Σ m v r
     assert world.kinetic() <= 1.01 * energy
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("mu", [0.3, 0.6, 1.0])
 @pytest.mark.parametrize("angle", [0.3, 0.5, 0.7, 0.9])
-def test_a_bar_that_friction_turns_round_gains_no_energy(angle, mu):
+def test_a_bar_that_friction_turns_round_gains_no_energy(angle, mu, record_property):
     """A slanted bar hits the floor with its corner, sliding. Newton's restitution gave it a fifth more energy.
 
     (Kane's puzzle: where friction turns the slip round, it has work to give back.) 1 %: what a solve is let go on with.
@@ -252,11 +260,13 @@ def test_a_bar_that_friction_turns_round_gains_no_energy(angle, mu):
             world.box((0, 0.7), (1.0, 0.06), angle=angle, velocity=(slide, -1.0))
             before = world.kinetic()
             world.step(None, frames=60)
+            record_property("bar_energy", world.kinetic() / before)
             assert world.kinetic() <= 1.01 * before
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("steps", [1, None])
-def test_a_bar_that_hits_a_free_box_gains_no_energy(steps):
+def test_a_bar_that_hits_a_free_box_gains_no_energy(steps, record_property):
     """The same between two free bodies, in pixels."""
     most = 0.0
     for angle in (0.3, 0.5, 0.7, 0.9):
@@ -268,4 +278,5 @@ def test_a_bar_that_hits_a_free_box_gains_no_energy(steps):
                 before = world.kinetic()
                 world.step(steps, frames=60)
                 most = max(most, world.kinetic() / before)
+    record_property("bar_energy", most)
     assert most <= 1.01

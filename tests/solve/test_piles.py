@@ -131,14 +131,17 @@ def test_a_pile_comes_to_rest(name):
     assert speed_left(world) <= max(min(native, 0.05 * size), 1e-3 * size)
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("name", ["pyramid of 120", "wall of 120"])
-def test_what_shares_its_load_stops_sharing_it_anew(name):
+def test_what_shares_its_load_stops_sharing_it_anew(name, record_property):
     """A box on two is held in many ways. Were each contact as stiff as it bears, none of them would be the last one.
 
     Each change of stiffness moves the bed by a part of its depth, 1e-4 sizes, in a few frames: 1e-4 sizes/s or more.
     """
     world = PILES[name](ENGINE)
-    assert speed_left(world) <= 1e-6 * (30.0 if world.space.gravity.y == -GRAVITY else 1.0)
+    speed = speed_left(world) / (30.0 if world.space.gravity.y == -GRAVITY else 1.0)
+    record_property("shared_load_speed", speed)
+    assert speed <= 1e-6
 
 
 @pytest.mark.parametrize("steps", [1, 2, None])

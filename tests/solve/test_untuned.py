@@ -159,15 +159,17 @@ def thrown(shape, draw, hook):
     return 0 < body.position.y < 60 and body.velocity.length < 20, heard.count(True)
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("hook", ["begin", "pre_solve"])
 @pytest.mark.parametrize("shape", ["box", "card"])
-def test_what_falls_back_on_a_one_way_platform_lies_there(shape, hook):
+def test_what_falls_back_on_a_one_way_platform_lies_there(shape, hook, record_property):
     """As pymunk programs write it: what rises is let through. Of 40 all but 3 (pymunk: 1, and 10 cards).
 
     `pre_solve` is asked in every frame: what lies there must not rise by rounding, or it is let through.
     """
     draw = random.Random(8)
     found = [thrown(shape, draw, hook) for _ in range(40)]
+    record_property("one_way_missing", sum(not on for on, _ in found))
     assert sum(on for on, _ in found) >= 37
 
 
@@ -255,15 +257,19 @@ def swings(sides, radius, mu, count, gravity=900.0):
     return 0.0
 
 
+@pytest.mark.shown
 @pytest.mark.parametrize("radius", [0.0, 3.0])
 @pytest.mark.parametrize("mu", [0.0, 1.0])
 @pytest.mark.parametrize("sides", [360, 720, 1440])
-def test_a_smooth_bowl_of_segments_takes_no_energy(sides, mu, radius):
+def test_a_smooth_bowl_of_segments_takes_no_energy(sides, mu, radius, record_property):
     """Five swings, sliding or rolling: 0.97 of the amplitude, 1 rad, which is 0.945 of the energy. It was 0.1 to 0.2.
 
     (Plastic corners of an angle p take sin(p)^2 each: 0.1 in all at 360 sides; a chain of that many is a curve.)
     """
-    assert 0.945 <= swings(sides, radius, mu, 5) <= 1.005
+    left = swings(sides, radius, mu, 5)
+    record_property("bowl_energy", left)
+    record_property("least_bowl_energy", left)
+    assert 0.945 <= left <= 1.005
 
 
 @pytest.mark.parametrize("degrees, speed", [(20.0, 300.0), (40.0, 500.0)])

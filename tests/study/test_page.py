@@ -2,11 +2,11 @@
 
 import json
 import math
-import re
 from pathlib import Path
 
 import pytest
 
+from rigidarea.report import solver
 from rigidarea.study import atlas, chart, page
 from rigidarea.study.scene import get_scene, scenes
 
@@ -50,7 +50,7 @@ def test_defaults():
     lines = page.defaults(report()).splitlines()
     # twice our front's cost; pymunk does as well at a twentieth
     assert lines[2] == "| box at rest | 0.01 | 2 | – | – | 20 |"
-    assert lines[4].startswith(
+    assert page.counts(report()).startswith(
         "- pymunk: our whole front is no dearer than its front on 1 of 2 scenes; our default"
     )
 
@@ -94,46 +94,71 @@ def test_numbers(value, text):
     assert page.number(value) == text
 
 
-@pytest.mark.parametrize(
-    "name, table, made",
-    [("study.md", "everyday", page.everyday), ("../README.md", "moving", page.moving)],
-)
-def test_tables_are_those_of_their_results(name, table, made):
-    """A page older than its results fails: `python -m rigidarea bench everyday --docs docs`."""
-    docs = Path(__file__).parents[2] / "docs"
-    report = json.loads((docs / "results" / f"{RESULTS[table]}.json").read_text())
-    text = (docs / name).read_text()
-    (shown,) = re.findall(f"<!-- {table} -->\n(.*?)<!-- /{table} -->", text, re.DOTALL)
-    assert shown == made(report)
+DOCS = Path(__file__).parents[2] / "docs"
 
 
-RESULTS = {"everyday": "everyday", "moving": "everyday"}
+@pytest.mark.parametrize("shown", page.pages(DOCS), ids=lambda path: path.stem)
+def test_a_page_shows_its_results(shown):
+    """A page older than its results fails: `make docs` renews it."""
+    text = shown.read_text()
+    assert page.renewed(text, DOCS / "results") == text
 
 
-def test_renewed_between_markers(tmp_path):
-    """Tables replaced, text kept, pictures copied; a page without a place for a table says so."""
-    (tmp_path / "study.md").write_text("before\n<!-- a -->\nold\n<!-- /a -->\nafter\n")
+def test_what_a_page_shows_has_results_and_every_result_is_shown():
+    shown = {
+        found["what"].split()[0] if found["name"] == "figure" else page.TABLES[found["name"]][0]
+        for path in page.pages(DOCS)
+        for found in page.MARK.finditer(path.read_text())
+    }
+    assert shown == {file.stem for file in (DOCS / "results").glob("*.json")}
+
+
+def test_made_anew_between_marks_and_nowhere_else(tmp_path):
+    """A table, a number in a sentence; what has no results stays; names and places that are not there are refused."""
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    here = docs / "here.md"
+    here.write_text(
+        "before\n<!-- levels -->\nold\n<!-- /levels -->\n"
+        "off by <!-- figure tests a.0 .1e -->x<!-- /figure --> at most <!-- maps -->\nkept<!-- /maps -->"
+    )
+    rows = [
+        {"scene": "tiles", "size": size, "frame_us_mean": 2.0 * size, "native_1_us": 1.0, "start_ms": 500.0}
+        for size in (0, 40)
+    ]
     picture = tmp_path / "x.png"
     picture.write_bytes(b"1")
-    docs = tmp_path
     for _ in range(2):
-        page.renew(docs, {"a": "new\\1\n"}, {"y.png": picture})
-    assert (docs / "study.md").read_text() == "before\n<!-- a -->\nnew\\1\n<!-- /a -->\nafter\n"
+        page.keep(docs, "growth", {"results": rows}, {"y.png": picture})
+        page.keep(docs, "tests", {"a": [2.34e-12]})
+    text = here.read_text()
+    assert "before\n<!-- levels -->\n100 boxes cost 0 µs a frame on one floor and 80 on 40 tiles" in text
+    assert "off by <!-- figure tests a.0 .1e -->2.3e-12<!-- /figure --> at most" in text and "\nkept<" in text
     assert (docs / "y.png").read_bytes() == b"1"
-    with pytest.raises(ValueError, match="'b'"):
-        page.renew(docs, {"b": ""}, {})
+    with pytest.raises(KeyError):
+        page.renewed("<!-- figure tests b -->1<!-- /figure -->", docs / "results")
+    with pytest.raises(ValueError, match="a page shows 'nothing': expected figure or one of"):
+        page.renewed("<!-- nothing -->1<!-- /nothing -->", docs / "results")
 
 
-def test_page_has_a_place_for_every_table():
-    """The page in docs/ takes what the commands write."""
-    from pathlib import Path
-
-    text = (Path(__file__).parents[2] / "docs" / "study.md").read_text()
-    for name in ("ratios", "defaults", "dominated", "known_well", "maps", "everyday"):
-        assert f"<!-- {name} -->" in text
+def test_results_of_another_solver_are_told(tmp_path):
+    (tmp_path / "results").mkdir()
+    for name, of in (("now", solver()), ("then", "0")):
+        (tmp_path / "results" / f"{name}.json").write_text(json.dumps({"solver": of}))
+    assert page.older(tmp_path) == ["then"]
 
 
 def test_maps_table(tmp_path):
     """A line a map, with the share passed by each engine."""
     found = atlas.atlas(tmp_path, quick=True, map_names=["crossed"], peer_names=["pymunk"], workers=0)
-    assert "pymunk 6/6" in page.maps(found)
+    assert "pymunk 6/6" in page.maps({**found, "results": atlas.passed(found["results"])})
+
+
+def test_what_is_kept_of_a_chart_makes_the_same_tables():
+    """Its rows on fronts are enough."""
+    whole = report()
+    whole["results"] += [{**row, "cost_s_per_s": 3.0 * row["cost_s_per_s"]} for row in whole["results"]]
+    kept = page.concise(whole)
+    assert len(kept["results"]) < len(whole["results"])
+    for made in (page.ratios, page.defaults, page.counts, page.dominated, page.known_well):
+        assert made(kept) == made(whole)
