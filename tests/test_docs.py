@@ -17,6 +17,7 @@ import shapely
 
 import rigidarea as ra
 from rigidarea.__main__ import COMMANDS
+from rigidarea.study import page
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -58,6 +59,39 @@ def test_every_picture_of_a_page_is_there_and_every_file_is_shown():
     assert all(path.is_file() for path in shown), [path for path in shown if not path.is_file()]
     drawn = {DOCS / "pictures" / f"{b.picture}.png" for page in text for b in pages.blocks(page) if b.picture}
     assert set((DOCS / "pictures").glob("*.png")) == drawn
+
+
+#: Carries digits and is no result: names, the paper's equations, code, addresses, headings, what a picture shows.
+NO_RESULT = re.compile(
+    r"Box2D(?: v3)?|2-D|Python 3\.11|rigidarea 0\.\d|ES-FEM-T3|(?:Eq\.|Alg\.) \d+(?:(?:, | to | and )\d+)*"
+    r"|^#+ .*$|^```[\s\S]*?^```|^ {4}.*$|`[^`]*`|!\[[^\]]*|\]\([^)]*\)",
+    re.MULTILINE,
+)
+#: Derivations, not results: equations, constants of the law.
+DERIVED = {"theory", "architecture"}
+
+
+def typed_figures(text: str) -> list[str]:
+    """Paragraphs, list items and rows with a number that is neither made from results nor marked as given.
+
+    `<!-- given: what -->` in it says what the number is: an input, a setting, what theory says, somebody else's figure.
+    """
+    text = page.MARK.sub("", text)
+    units = re.split(r"\n\s*\n|\n(?=\s*[-|] ?)", NO_RESULT.sub("", text))
+    return [unit.strip() for unit in units if re.search(r"\d", unit) and "<!-- given: " not in unit]
+
+
+def test_a_typed_figure_is_found():
+    """In a paragraph, an item, a row; not in code, a heading, an equation's number, a mark, or where it is given."""
+    text = "# 1\n\nEq. 4 and 7 of `a 3`.\n\nIt takes\n12 ms.\n\n- one\n- 2 of them\n\n| a | 0.5 |\n|---|---|\n"
+    text += "| b | <!-- figure x y -->7<!-- /figure --> |\n\n```python\n5\n```\n\nOf 40 <!-- given: thrown -->\n"
+    assert typed_figures(text) == ["It takes\n12 ms.", "- 2 of them", "| a | 0.5 |"]
+
+
+@pytest.mark.parametrize("shown", page.pages(DOCS), ids=lambda path: path.stem)
+def test_no_figure_is_typed(shown):
+    """All figures come from `docs/results`, or say what they are (`typed_figures`)."""
+    assert shown.stem in DERIVED or typed_figures(shown.read_text()) == []
 
 
 @pytest.fixture(scope="module")
