@@ -239,23 +239,31 @@ def moving(report: Row) -> str:
     return markdown(["scene", "rigidarea", "pymunk, 1 step", "pymunk, 4", "Box2D v3"], rows)
 
 
+SEEN = 0.05
+"""px/s: what is slower moves by less than a pixel in twenty seconds."""
+
+
 def everyday_summary(report: Row) -> str:
     """What the judged scenes cost over pymunk's step, and which scenes keep moving or cost more than its four steps."""
     told, rows = report["summary"], report["results"]
     dear = [
         row["title"] for row in rows if row["native_4_ms"] and row["frame_ms_median"] > row["native_4_ms"]
     ]
-    restless = [row["title"] for row in rows if row["scene"] in told["faster_than_native_4"]]
+    restless = [
+        f"{row['title']} ({number(row['speed_left'])})"
+        for row in rows
+        if row["scene"] in told["faster_than_native_4"] and row["speed_left"] > SEEN
+    ]
     worst = max((row for row in rows if row["judged"] and row["ratio"]), key=lambda row: row["ratio"])
     text = (
-        f"- At the defaults a settled frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
+        f"- At the defaults the median frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
         f"median of the {len(told['scenes'])} scenes without a star; the worst, {worst['title']}, "
         f"{number(worst['ratio'])}).\n"
     )
     if dear:
         text += f"- More than pymunk's four steps a frame: {', '.join(dear)}.\n"
     if restless:
-        text += "- In the last second something still moves faster than at pymunk's four steps in: "
+        text += "- In the last second something still moves, faster than at pymunk's four steps (px/s), in: "
         text += ", ".join(restless) + ".\n"
     return text
 
