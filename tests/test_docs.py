@@ -17,7 +17,7 @@ import shapely
 
 import rigidarea as ra
 from rigidarea.__main__ import COMMANDS
-from rigidarea.study import page
+from rigidarea.study import page as study_page
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -76,19 +76,23 @@ def typed_figures(text: str) -> list[str]:
 
     `<!-- given: what -->` in it says what the number is: an input, a setting, what theory says, somebody else's figure.
     """
-    text = page.MARK.sub("", text)
+    text = study_page.MARK.sub("", text)
     units = re.split(r"\n\s*\n|\n(?=\s*[-|] ?)", NO_RESULT.sub("", text))
     return [unit.strip() for unit in units if re.search(r"\d", unit) and "<!-- given: " not in unit]
 
 
 def test_a_typed_figure_is_found():
     """In a paragraph, an item, a row; not in code, a heading, an equation's number, a mark, or where it is given."""
-    text = "# 1\n\nEq. 4 and 7 of `a 3`.\n\nIt takes\n12 ms.\n\n- one\n- 2 of them\n\n| a | 0.5 |\n|---|---|\n"
-    text += "| b | <!-- figure x y -->7<!-- /figure --> |\n\n```python\n5\n```\n\nOf 40 <!-- given: thrown -->\n"
+    text = (
+        "# 1\n\nEq. 4 and 7 of `a 3`.\n\nIt takes\n12 ms.\n\n- one\n- 2 of them\n\n| a | 0.5 |\n|---|---|\n"
+    )
+    text += (
+        "| b | <!-- figure x y -->7<!-- /figure --> |\n\n```python\n5\n```\n\nOf 40 <!-- given: thrown -->\n"
+    )
     assert typed_figures(text) == ["It takes\n12 ms.", "- 2 of them", "| a | 0.5 |"]
 
 
-@pytest.mark.parametrize("shown", page.pages(DOCS), ids=lambda path: path.stem)
+@pytest.mark.parametrize("shown", study_page.pages(DOCS), ids=lambda path: path.stem)
 def test_no_figure_is_typed(shown):
     """All figures come from `docs/results`, or say what they are (`typed_figures`)."""
     assert shown.stem in DERIVED or typed_figures(shown.read_text()) == []
