@@ -257,8 +257,8 @@ def everyday_summary(report: Row) -> str:
     worst = max((row for row in rows if row["judged"] and row["ratio"]), key=lambda row: row["ratio"])
     text = (
         f"- At the defaults the median frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
-        f"median of the {len(told['scenes'])} scenes without a star; the worst, {worst['title']}, "
-        f"{number(worst['ratio'])}).\n"
+        f"median of {len(told['scenes'])} scenes, those without a star in the study's table; the worst, "
+        f"{worst['title']}, {number(worst['ratio'])}).\n"
     )
     if dear:
         text += f"- More than pymunk's four steps a frame: {', '.join(dear)}.\n"
