@@ -80,7 +80,8 @@ def summaries(report: Row) -> str:
                 f"{found['unreachable_said_percent']:.0f} %" if found["unreachable"] else "–",
             )
         )
-    return markdown(columns, rows)
+    shown = "![predicted and measured errors; costs over the cheapest adequate setting's](plan.png)"
+    return f"{markdown(columns, rows)}\n{shown}\n"
 
 
 def outside(report: Row) -> str:
@@ -98,6 +99,7 @@ def outside(report: Row) -> str:
         for row in report["rows"]
         if row["verdict"].startswith("outside")
     ]
-    return markdown(
+    table = markdown(
         ("scene", "tolerance", "error", "predicted", "decided by", "planned", "cheapest within"), rows
     )
+    return f"Outside their tolerance, though a setting of the sweep is within it:\n\n{table}" if rows else ""

@@ -314,7 +314,8 @@ def levels_compared(report: Row) -> str:
         ]
         for row in report["results"]
     ]
-    return markdown(["scene", "level", "error", "of what", "off modal", "cost (s/s)"], rows)
+    table = markdown(["scene", "level", "error", "of what", "off modal", "cost (s/s)"], rows)
+    return f"![rigid, compliant and modal](compare.png)\n\n{table}"
 
 
 def concise(report: Row) -> Row:
@@ -393,4 +394,5 @@ def maps(report: Row) -> str:
         if cells:
             axes = f"{described['x']} × {described['y']}"
             rows.append([described["title"], axes, described["source"], "; ".join(cells)])
-    return markdown(["map", "knobs", "theory", "passed (how the others failed)"], rows)
+    table = markdown(["map", "knobs", "theory", "passed (how the others failed)"], rows)
+    return f"![maps of where methods fail](atlas.png)\n\n{table}"
