@@ -9,7 +9,7 @@ _REST = "one step a frame holds with either: a frame of ours costs more"
 _ARC = "; an arc that is stiffer than its substeps bear comes off its path and is struck anew: finer errors want more"
 
 CAUSES: dict[str, str] = {
-    "arch": _STEP + "; the default's bed is too soft (a stiffer one holds)",
+    "arch": _STEP + "; the default's penetration is too large (a smaller one holds)",
     "bar_on_u": _REST,
     "bounce": _STEP,
     "bowl_roll": _STEP + _ARC,
@@ -23,13 +23,13 @@ CAUSES: dict[str, str] = {
     "geneva": _STEP,
     "gripping_bounce": _IMPACT,
     "heavy_on_light": _STEP,
-    "incline_hold": _REST + "; friction's spring gives way by what the bed does",
+    "incline_hold": _REST + "; friction's spring gives way as the contact does",
     "incline_slide": _STEP,
     "incline_up": _STEP,
     "journal_bounce": _STEP,
     "journal_swing": _STEP + _ARC,
     "ladder": _STEP,
-    "ladder_held": _REST + "; the default's bed is too soft (a stiffer one holds)",
+    "ladder_held": _REST + "; the default's penetration is too large (a smaller one holds)",
     "loop": _STEP,
     "mass_chain": _IMPACT,
     "oblique_bounce": _IMPACT,
@@ -46,11 +46,11 @@ CAUSES: dict[str, str] = {
     "slip_to_roll": _STEP,
     "stack": _STEP,
     "standing": _REST
-    + "; the default's bed is too soft: a block stands while p <= m³ w/6h, m the part of half its base "
+    + "; the default's penetration is too large: a block stands while p <= m³ w/6h, m the part of half its base "
     "that is left between weight and edge",
     "superball": _STEP,
     "tiles": _STEP + "; at some settings the box catches at a seam",
-    "tipping": _STEP + "; the bed's depth at the start is magnified by e^(pt)",
+    "tipping": _STEP + "; the depth at the start is magnified by e^(pt)",
     "v_groove_spin": "sliding at constant forces is what impulses do to rounding; ours is off by what it sinks",
     "wedge": _STEP,
 }

@@ -272,15 +272,12 @@ def growth(report: Row) -> str:
     """Families of scenes at their sizes: mean frames (µs), ours over pymunk's step, and what attaching takes."""
     from .growth import GROWING
 
+    keys = ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth", "start_ms")
     rows = [
         [
             GROWING[row["scene"]].title,
             f"{row['size']:,}",
-            *(
-                number(row[key])
-                for key in ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth")
-            ),
-            number(row["start_ms"]),
+            *("–" if row[key] is None else number(row[key]) for key in keys),
         ]
         for row in report["results"]
         if row["scene"] in GROWING

@@ -165,3 +165,47 @@ def test_what_is_kept_of_a_chart_makes_the_same_tables():
     assert len(kept["results"]) < len(whole["results"])
     for made in (page.ratios, page.defaults, page.counts, page.dominated, page.known_well):
         assert made(kept) == made(whole)
+
+
+def test_levels_and_growth():
+    """A line a level, the scene named once; a line a family and size."""
+    row = {"scene": "beam", "cost_s_per_s": 2.0, "departure": None, "error": None, "error_name": ""}
+    rows = [
+        {**row, "level": "rigid"},
+        {**row, "level": "modal", "departure": 0.0, "error": 0.01, "error_name": "speed"},
+    ]
+    assert page.levels_compared({"results": rows}).splitlines()[4:] == [
+        "| beam | rigid | – |  | – | 2 |",
+        "|  | modal | 0.01 | speed | 0 | 2 |",
+    ]
+    times = {
+        "native_1_us": 1.0,
+        "box2d_us": None,
+        "frame_us_mean": 2.5,
+        "ratio_mean": 2.5,
+        "ratio_worst_tenth": 3.0,
+    }
+    grown = [
+        {"scene": "tiles", "size": 1000, "start_ms": 7.0, **times},
+        {"scene": "small spaces", "start_ms": 1.0},
+    ]
+    assert page.growth({"results": grown}).splitlines()[2:] == [
+        "| 100 boxes on a level of tiles | 1,000 | 1 | – | 2.5 | 2.5 | 3 | 7 |"
+    ]
+
+
+def test_the_everyday_summary_names_what_is_dear_and_what_still_moves():
+    row = {"judged": True, "ratio": 2.0, "speed_left": 0.01, "native_4_ms": 3.0, "frame_ms_median": 2.0}
+    rows = [
+        {"scene": "a", "title": "A", **row},
+        {"scene": "b", "title": "B", **row, "ratio": 4.0, "speed_left": 7.0},
+    ]
+    rows.append({"scene": "c", "title": "C", **row, "judged": False, "frame_ms_median": 4.0})
+    told = {"ratio_median": 3.0, "scenes": ["a", "b"], "faster_than_native_4": ["a", "b"]}
+    lines = page.everyday_summary({"results": rows, "summary": told}).splitlines()
+    assert lines[0].startswith(
+        "- At the defaults the median frame costs 3 of pymunk's single steps (the median of 2"
+    )
+    assert lines[0].endswith("the worst, B, 4).")
+    assert lines[1] == "- More than pymunk's four steps a frame: C."
+    assert lines[2].endswith("in: B (7).")
