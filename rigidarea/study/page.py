@@ -198,7 +198,8 @@ def defaults(report: Row) -> str:
 
 def counts(report: Row) -> str:
     """On how many scenes we are no dearer than each peer, our front and our default alone: a line a peer."""
-    return "".join(
+    few = "- Few settings of each engine: `--quick`.\n" if report["settings"]["quick"] else ""
+    return few + "".join(
         f"- {row['peer']}: our whole front is no dearer than its front on {row['front_even']} of {row['scenes']} "
         f"scenes; our default than its front on {row['default_even']} of {row['scenes_default']}, than its default on "
         f"{row['no_dearer']}, no less exact on {row['no_worse']}, both on {row['both']}; ours fails on "
