@@ -76,6 +76,10 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         self.action_space = spaces.Box(-1.0, 1.0, (3,), np.float32)
         # the episode ends at the reach, but speed has no bound of its own
         self.observation_space = spaces.Box(-np.inf, np.inf, (7,), np.float32)
+        self._outlines()
+        self._done_steps = 0
+
+    def _outlines(self) -> None:
         half, wide = (PEG[0] + self.clearance) / 2, 2 * REACH
         block = [(-wide, 0), (-wide, -DEPTH - 3), (wide, -DEPTH - 3), (wide, 0)]
         self.slot = Outline([*block, (half, 0), (half, -DEPTH), (-half, -DEPTH), (-half, 0)])
@@ -83,28 +87,32 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         chamfer = 0.1 * w  # without one the corners catch
         tip = [(-w, chamfer - h), (chamfer - w, -h), (w - chamfer, -h), (w, chamfer - h)]
         self.peg = Outline([*tip, (w, h), (-w, h)])
-        self._done_steps = 0
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """A peg somewhere above the block, turned by up to 30 degrees; the same for the same seed."""
         super().reset(seed=seed)
+        self.build(*start(self.np_random))
+        self._done_steps = 0
+        self._far = self._distance()
+        return self._observation(), self._info()
+
+    def build(self, x: float, y: float, angle: float) -> pymunk.Space:
+        """The space with the peg there (cm; angle in radians), attached."""
         space = pymunk.Space()
         space.damping = math.exp(-DRAG)
         space.add(self.slot.add_to(space.static_body, friction=math.sqrt(self.friction)))
         self._body = self.peg.body(mass=MASS)
-        self._body.angle = float(self.np_random.uniform(-math.pi / 6, math.pi / 6))
-        self._body.position = float(self.np_random.uniform(-3, 3)), float(self.np_random.uniform(5, 7))
+        self._body.angle = angle
+        self._body.position = x, y
         self._wrist = pymunk.SimpleMotor(space.static_body, self._body, 0.0)
         self._wrist.max_force = 100 * TORQUE
         space.add(self._body, self.peg.add_to(self._body, friction=math.sqrt(self.friction)), self._wrist)
         self._space = space
         # F = k A: 100 for kg cm/s² a newton
         self._contact = attach(space, stiffness=100 * FORCE / (SINKING * PEG[0] ** 2))
-        self._done_steps = 0
-        self._far = self._distance()
-        return self._observation(), self._info()
+        return space
 
     def step(
         self, action: NDArray[np.float32]
@@ -148,25 +156,61 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         pixels: NDArray[np.uint8] = pygame.surfarray.array3d(surface).swapaxes(0, 1).copy()
         return pixels
 
+    def _state(self) -> NDArray[np.float64]:
+        body = self._body
+        return np.array([[*body.position, body.angle, *body.velocity, body.angular_velocity]])
+
     def _tip(self) -> pymunk.Vec2d:
-        return self._body.local_to_world((0, -PEG[1] / 2))
+        return pymunk.Vec2d(*tip(self._state())[0].tolist())
 
     def _distance(self) -> float:
-        return self._tip().get_distance((0, -DEPTH))
+        return float(distance(self._state())[0])
 
     def _info(self) -> dict[str, Any]:
-        tip = self._tip()
-        inside = abs(tip.x) < (PEG[0] + self.clearance) / 2
-        depth = max(0.0, min(-tip.y / DEPTH, 1.0)) if inside else 0.0
+        depth = float(depth_in(self._state(), self.clearance)[0])
         return {"depth": depth, "is_success": depth >= SUCCESS, "regions": len(self._contact.regions)}
 
     def _observation(self) -> NDArray[np.float32]:
-        body = self._body
-        x, y = body.position / REACH
-        vx, vy = body.velocity / REACH
-        turn = body.angular_velocity / math.tau
-        return np.array([x, y, math.sin(body.angle), math.cos(body.angle), vx, vy, turn], np.float32)
+        return observation(self._state())[0]
 
 
-if "rigidarea/PegInSlot-v0" not in gymnasium.registry:
-    gymnasium.register("rigidarea/PegInSlot-v0", entry_point="rigidarea.gym:PegInSlot")
+# --- the task, for many pegs at once: states (k, 6) are x, y, angle, vx, vy, angular velocity ---
+
+
+def start(draw: np.random.Generator) -> tuple[float, float, float]:
+    """x, y, angle of a peg somewhere above the block, turned by up to 30 degrees."""
+    angle = float(draw.uniform(-math.pi / 6, math.pi / 6))
+    return float(draw.uniform(-3, 3)), float(draw.uniform(5, 7)), angle
+
+
+def tip(states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k, 2): the middles of the tips (cm)."""
+    half, angle = PEG[1] / 2, states[:, 2]
+    return np.stack([states[:, 0] + half * np.sin(angle), states[:, 1] - half * np.cos(angle)], axis=1)
+
+
+def distance(states: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(k,): of the tips from the slot's bottom (cm)."""
+    return np.hypot(tip(states)[:, 0], tip(states)[:, 1] + DEPTH)
+
+
+def depth_in(states: NDArray[np.float64], clearance: float) -> NDArray[np.float64]:
+    """(k,): how deep the tips are in the slot, over its depth."""
+    x, y = tip(states).T
+    return np.where(np.abs(x) < (PEG[0] + clearance) / 2, np.clip(-y / DEPTH, 0.0, 1.0), 0.0)
+
+
+def observation(states: NDArray[np.float64]) -> NDArray[np.float32]:
+    """(k, 7): what `PegInSlot` shows."""
+    x, y, angle, vx, vy, w = states.T
+    place = [x / REACH, y / REACH, np.sin(angle), np.cos(angle)]
+    return np.stack([*place, vx / REACH, vy / REACH, w / math.tau], axis=1).astype(np.float32)
+
+
+for _name in ("PegInSlot", "PushToGoal"):
+    if f"rigidarea/{_name}-v0" not in gymnasium.registry:
+        gymnasium.register(
+            f"rigidarea/{_name}-v0",
+            entry_point=f"rigidarea.{'gym' if _name == 'PegInSlot' else 'vector'}:{_name}",
+            vector_entry_point=f"rigidarea.vector:{_name}Vector",
+        )

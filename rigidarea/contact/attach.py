@@ -22,9 +22,10 @@ from ..kernel.join import SPARE
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import positive
 from .arrays import Store
-from .memory import Memory, recall, remember
+from .memory import Memory, recall, remember, take_arbiters
 from .register import Register
 from .report import regions_of, total_energy
+from .snapshots import ROOM, Snapshot
 from .space import KEY, attached, attached_class
 
 if TYPE_CHECKING:
@@ -73,6 +74,7 @@ class AreaContact:
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
+        self._snapshot_room = ROOM
         bodies = max(16, len(space._bodies) + 1)
         # room for a contact of each body, and what a frame wants beyond (`has_room`): where there are more, a frame is
         # run again (a copy takes its original's tables)
@@ -392,7 +394,40 @@ class AreaContact:
         )
         return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{firm}>"
 
-    # --- copies ---
+    # --- snapshots, copies ---
+
+    def snapshot(self) -> Snapshot:
+        """The space as it is now, for `restore`: to go back, to try what an action leads to, to begin anew.
+
+        What is in it: of bodies mass, place, motion, forces, who sleeps; joints' impulses; all contacts; what callbacks
+        were told. After `restore` the run goes on with the same bits. Materials, filters, joints' parameters and the
+        space's own settings are not: they stay as they are. Raises RuntimeError within a step, and after `detach`;
+        ValueError for a space with flexible parts.
+        """
+        self._between_steps("snapshot")
+        return Snapshot(self)
+
+    def restore(self, snapshot: Snapshot) -> None:
+        """Put the space back to where it was when the snapshot was taken, as often as you like.
+
+        Raises ValueError, before anything has changed, for the snapshot of another space, and where bodies, shapes or
+        joints have come or gone since; RuntimeError within a step, and after `detach`.
+        """
+        if not isinstance(snapshot, Snapshot) or snapshot._contact() is not self:
+            raise ValueError(f"snapshot must be one that this contact has taken, got {snapshot!r:.80}")
+        self._between_steps("restore")
+        snapshot.put_back(self)
+
+    def _between_steps(self, what: str) -> None:
+        if self.space._locked:
+            raise RuntimeError(f"{what}() within a step: call it after the step")
+        if self._settings["flexible"] is not None:
+            raise ValueError(f"{what}() of a space with flexible parts: they are not in a snapshot")
+        if self._state["pending"]:
+            self._update()
+
+    def _take_arbiters(self) -> None:
+        take_arbiters(self._store, self.space)
 
     def __getstate__(self) -> dict[str, Any]:
         if self._space is not None:

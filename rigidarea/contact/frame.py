@@ -58,6 +58,7 @@ from ..kernel.tables import (
     TURN,
     UNSORTED,
     Tables,
+    find_pair,
     forget_contacts,
 )
 from ..kernel.verdict import wait_for_verdicts
@@ -82,6 +83,7 @@ from .record import (
     members,
     read_motion,
     read_place,
+    row_of_shape,
     state_of,
     time_step,
     timestamp,
@@ -121,6 +123,15 @@ def silence(constraint: int, dt: float) -> None:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
+    for arbiter in members(space, s.space_contacts - 8):
+        both = words(arbiter + s.arbiter_shape_a, 2)
+        a = row_of_shape(s, both[0])
+        b = row_of_shape(s, both[1])
+        p = find_pair(tables, a, b) if a >= 0 and b >= 0 else -1
+        if (
+            p >= 0 and tables.pairs[p].stamp != s.frame
+        ):  # of who has been woken just now: as it was when they fell asleep
+            array_at(arbiter + s.arbiter_count, (1,), np.int32)[0] = 0
 
 
 @kernel(forceinline=True)

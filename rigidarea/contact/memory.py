@@ -12,7 +12,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, centre_of, joint_impulse, put_centre
+from ..chipmunk import address_of, centre_of, put_centre
 from ..kernel.broad import drop_pairs, put_in_tree
 from ..kernel.tables import (
     ANEW,
@@ -36,6 +36,7 @@ from ..kernel.tables import (
     rehash,
 )
 from .arrays import Store
+from .snapshots import first_of_group, idle_of, joint_numbers, listed_bodies, put_to_sleep
 
 
 class Memory(NamedTuple):
@@ -53,7 +54,7 @@ class Memory(NamedTuple):
     """(n,) SHAPE, by row."""
     counters: np.ndarray
     joints: list[np.ndarray]
-    """Impulses."""
+    """Impulses, and what they are made of: pymunk's copies measure a pin's length and a ratchet's angle anew."""
     before: float
     """In which time they did them."""
     bodies: np.ndarray
@@ -64,6 +65,12 @@ class Memory(NamedTuple):
     centres: np.ndarray
     """(n, 2) where each body's centre of gravity is: pymunk restores a body's place before its centre of gravity, and
     leaves one elsewhere whose centre is not its origin."""
+    idle: np.ndarray
+    """(n,) for how long each body has idled (time)."""
+    sleepers: list[list[int]]
+    """The groups that sleep, by the bodies' places in the space's list: pymunk's copies wake them."""
+    listed: list[int]
+    """The bodies that do not, as Chipmunk lists them."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
@@ -88,14 +95,37 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         np.array(rows, np.int64),
         tables.shapes.copy(),
         tables.counters.copy(),
-        [np.array(joint_impulse(joint)) for joint in space.constraints],
+        [np.concatenate(joint_numbers(joint)) for joint in space.constraints],
         float(store.state["before"][0]),
         np.array(
             [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
         ),
         _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
+        *_who_sleeps(space),
     )
+
+
+def _who_sleeps(space: pymunk.Space) -> tuple[np.ndarray, list[list[int]], list[int]]:
+    """`Memory.idle`, `sleepers`, `listed`."""
+    place = {address_of(body._body): i for i, body in enumerate(space.bodies)}
+    groups: dict[int, list[int]] = {}
+    for body in space.bodies:
+        if body.is_sleeping:
+            groups.setdefault(first_of_group(body), []).append(place[address_of(body._body)])
+    for root, group in groups.items():
+        group.sort(key=lambda i: i != place[root])
+    listed = [place[address] for address in listed_bodies(space).tolist()]
+    return np.array([idle_of(body)[0] for body in space.bodies]), list(groups.values()), listed
+
+
+def _put_to_sleep(space: pymunk.Space, memory: Memory) -> None:
+    addresses = [address_of(body._body) for body in space.bodies]
+    for group in memory.sleepers:
+        put_to_sleep([addresses[i] for i in group])
+    for body, idle in zip(space.bodies, memory.idle):
+        idle_of(body)[0] = idle
+    listed_bodies(space)[:] = [addresses[i] for i in memory.listed]
 
 
 def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
@@ -150,7 +180,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for p in np.flatnonzero(lost):  # one of its shapes is gone
         end_pair(tables, int(p))
     rehash(tables)
-    _take_arbiters(store, space)
+    take_arbiters(store, space)
     awake = _body_rows(store, space)[memory.awake]
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
@@ -163,11 +193,14 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
             row[name] = value
     store.state["before"] = memory.before
     for joint, impulse in zip(space.constraints, memory.joints):
-        joint_impulse(joint)[:] = impulse
+        made_of, did = joint_numbers(joint)
+        made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
     _keep_apart(store, space)
+    _put_to_sleep(space, memory)
+    store.state["asleep"] = bool(memory.sleepers)  # who will be hit in the first frame is woken before it
 
 
-def _take_arbiters(store: Store, space: pymunk.Space) -> None:
+def take_arbiters(store: Store, space: pymunk.Space) -> None:
     """Pairs have the arbiters of the copy, not those of its original."""
     pairs = store.tables.pairs
     pairs["arbiter"] = 0

@@ -98,6 +98,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
         look = 1 if more == 0 else 0
         wait = 1
         moved = 0.0
+        known = True  # which rows bear: those that have joined since the search are not among them
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
                 joined = _join(s, tables, h, False)
@@ -105,6 +106,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                     return False
                 wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
+                known = joined == 0
             moved = sweep(tables, k % 2 == 0)
             if k > 0 and moved <= SETTLED * small:
                 break
@@ -115,8 +117,9 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                     search_together(tables, min(1, searches), False)
                 if moved > small and blows(tables, load_law(s), h):
                     search_together(tables, searches, False)
+                known = True
             elif k == 1 and not jointed:
-                search_together(tables, searches - 1, True)
+                search_together(tables, searches - 1, known)
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
         if (not gained and moved <= small) or moved <= SETTLED * small:
             break

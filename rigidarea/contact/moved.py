@@ -1,0 +1,386 @@
+"""All that the next frame of an attached space starts from, into one block of memory and back: machine code.
+
+Our tables, as far as they are in use; of Chipmunk what a frame reads: of bodies mass, place, motion, forces and for how
+long they have idled, of joints the impulse, of a ratchet also the angle. Chipmunk's count of steps goes on: what was
+noted of it is moved on with it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numba import types
+
+from ..chipmunk import function
+from ..kernel.jit import callback, kernel
+from ..kernel.joint import JOINT, KINDS, RATCHET
+from ..kernel.memory import array_at, record
+from ..kernel.tables import (
+    APART,
+    ASKED,
+    AWAKE,
+    BODIES,
+    BODY,
+    BOXED,
+    COUNTED,
+    COUNTERS,
+    FREE_PAIR,
+    FREE_PAIRS,
+    FREE_REGION,
+    FREE_REGIONS,
+    JOINTS,
+    LIVE,
+    MOVERS,
+    NEIGHBOURS,
+    PAIR,
+    REGION,
+    SHAPE,
+    SHAPES,
+    TOLD,
+    USED_PAIRS,
+    USED_REGIONS,
+    Tables,
+    rehash,
+)
+from ..kernel.tree import NODE
+from ..store import _memcpy, load_tables
+from .joints import KIND_WORDS
+from .record import floats, members, state_of, timestamp, words
+
+#: What a block begins with; the counters follow.
+HEAD = record(
+    [
+        ("bytes", "i8"),  # of the whole block
+        ("stamp", "i8"),  # Chipmunk's number of its last step
+        ("frame", "i8"),  # and of our last frame
+        ("pairs", "i8"),  # for how many there was room
+        ("regions", "i8"),
+        ("nodes", "i8"),
+        ("constraints", "i8"),
+        ("sleepers", "i8"),  # words of the list of those that sleep
+        ("listed", "i8"),  # bodies of Chipmunk's list of those that do not
+        ("before", "f8"),
+        ("taken", "i8"),
+        ("contacts", "i8"),
+        ("asleep", "i8"),
+    ]
+)
+#: What is not as it was (`compare`); DOZED: others sleep than then, which alone can be put right.
+SAME, BODIES_CHANGED, SHAPES_CHANGED, JOINTS_CHANGED, DOZED = range(5)
+#: Of a joint: its address, its impulse, a ratchet's angle (bytes).
+_JOINT = 32
+_HEAD = HEAD.itemsize
+_TABLES = _HEAD + 8 * COUNTERS
+_BODY, _SHAPE, _PAIR, _REGION, _NODE = (kind.itemsize for kind in (BODY, SHAPE, PAIR, REGION, NODE))
+_NEAR, _JOINED = NEIGHBOURS.itemsize, JOINT.itemsize
+
+_cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
+
+
+@kernel
+def _move(back: int, block: int, at: int, address: int, size: int) -> int:
+    """So many bytes from memory into the block, or back; where the block goes on."""
+    if back:
+        _memcpy(np.uint64(address), np.uint64(block + at), np.uint64(size))
+    else:
+        _memcpy(np.uint64(block + at), np.uint64(address), np.uint64(size))
+    return int(at + (size + 7) // 8 * 8)
+
+
+@kernel
+def _move_tables(s: Any, n: np.ndarray, back: int, block: int, at: int) -> int:
+    """Our tables, as far as the counters n say that they are in use."""
+    at = _move(back, block, at, s.bodies_at, n[BODIES] * _BODY)
+    at = _move(back, block, at, s.shapes_at, n[SHAPES] * _SHAPE)
+    at = _move(back, block, at, s.pairs_at, n[USED_PAIRS] * _PAIR)
+    at = _move(back, block, at, s.regions_at, n[USED_REGIONS] * _REGION)
+    at = _move(back, block, at, s.nodes_at, s.nodes_n * _NODE)
+    at = _move(back, block, at, s.roots_at, 12)
+    at = _move(back, block, at, s.near_at, n[BOXED] * _NEAR)
+    at = _move(back, block, at, s.live_at, 4 * n[LIVE])
+    at = _move(back, block, at, s.awake_at, 4 * n[AWAKE])
+    at = _move(back, block, at, s.movers_at, 4 * n[MOVERS])
+    at = _move(back, block, at, s.asked_at, 4 * n[ASKED])
+    at = _move(back, block, at, s.apart_at, 8 * n[APART])
+    return int(_move(back, block, at, s.joints_at, n[JOINTS] * _JOINED))
+
+
+@kernel
+def _move_bodies(s: Any, bodies: np.ndarray, n: int, idle: int, back: int, block: int, at: int) -> int:
+    """What Chipmunk has of bodies, from the mass to the transform, and for how long they have idled."""
+    first = s.body_inverse_mass - 8
+    for i in range(n):
+        address = np.int64(bodies[i].address)
+        if address != 0:
+            at = _move(back, block, at, address + first, s.body_transform + 48 - first)
+            at = _move(back, block, at, address + idle, 8)
+    return int(at)
+
+
+@kernel
+def _move_joints(s: Any, space: int, back: int, block: int, at: int) -> int:
+    """What joints did in the last frame, with which they begin the next."""
+    kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)
+    for word in members(space, s.space_constraints):
+        if word == s.hidden:
+            continue
+        address = np.int64(word)
+        kept = floats(block + at, 4)
+        if not back:
+            words(block + at, 1)[0] = word
+        for k in range(KINDS):
+            if kinds[k, 0] == np.int64(words(address, 1)[0]):
+                impulse = floats(address + kinds[k, 1], kinds[k, 2])
+                angle = floats(address + kinds[k, 3], 1)
+                for i in range(kinds[k, 2]):
+                    if back:
+                        impulse[i] = kept[1 + i]
+                    else:
+                        kept[1 + i] = impulse[i]
+                if k == RATCHET and back:
+                    angle[0] = kept[3]
+                elif k == RATCHET:
+                    kept[3] = angle[0]
+        at += _JOINT
+    return int(at)
+
+
+@kernel
+def _list_sleepers(s: Any, space: int, idle: int, at: int) -> int:
+    """Each group that sleeps, its bodies' addresses and 0, there; how many words. at 0: counted alone.
+
+    Chipmunk keeps with a body the first of its group, the next, and the time for which it has idled.
+    """
+    n = 0
+    for root in members(space, s.space_sleeping):
+        body = np.int64(root)
+        while body != 0:
+            if at != 0:
+                words(at + 8 * n, 1)[0] = body
+            n += 1
+            body = np.int64(words(body + idle - 8, 1)[0])
+        if at != 0:
+            words(at + 8 * n, 1)[0] = 0
+        n += 1
+    return n
+
+
+@callback(types.int64(types.uintp, types.int64, types.uintp, types.int64))
+def save(space: int, idle: int, block: int, room: int) -> int:
+    """Take a snapshot; how many bytes it has. Nothing is written where there is no room for them.
+
+    idle: where Chipmunk keeps for how long a body has idled (bytes).
+    """
+    s = state_of(space)
+    tables = load_tables(s)
+    n = tables.counters
+    joints = len(members(space, s.space_constraints)) - 1
+    sleepers = _list_sleepers(s, space, idle, 0)
+    size = _TABLES + n[BODIES] * (_BODY + s.body_transform + 56) + n[SHAPES] * _SHAPE + n[USED_PAIRS] * _PAIR
+    size += n[USED_REGIONS] * _REGION + s.nodes_n * _NODE + n[BOXED] * _NEAR + n[JOINTS] * _JOINED
+    size += 4 * (n[LIVE] + n[AWAKE] + n[MOVERS] + n[ASKED]) + 8 * n[APART] + joints * _JOINT + 64
+    listed = members(space, s.space_bodies)
+    size += 8 * (sleepers + len(listed))
+    if size > room:
+        return int(size)
+    head = array_at(block, (1,), HEAD)[0]
+    head.stamp = timestamp(space)
+    head.frame = s.frame
+    head.pairs = s.pairs_n
+    head.regions = s.regions_n
+    head.nodes = s.nodes_n
+    head.constraints = joints
+    head.sleepers = sleepers
+    head.listed = len(listed)
+    head.before = s.before
+    head.taken = s.taken
+    head.contacts = s.contacts
+    head.asleep = s.asleep
+    at = _move(0, block, _HEAD, s.counters_at, 8 * COUNTERS)
+    at = _move_tables(s, n, 0, block, at)
+    at = _move_joints(s, space, 0, block, at)
+    at += 8 * _list_sleepers(s, space, idle, block + at)
+    for k in range(len(listed)):
+        words(block + at + 8 * k, 1)[0] = listed[k]
+    at += 8 * len(listed)
+    at = _move_bodies(s, tables.bodies, n[BODIES], idle, 0, block, at)
+    head.bytes = at
+    return int(at)
+
+
+@kernel(forceinline=True)
+def _after_tables(n: np.ndarray, nodes: int) -> int:
+    """Where a block's joints begin."""
+    at = _TABLES + n[BODIES] * _BODY + n[SHAPES] * _SHAPE + n[USED_PAIRS] * _PAIR
+    at += n[USED_REGIONS] * _REGION + nodes * _NODE + 16 + n[BOXED] * _NEAR
+    for count in (n[LIVE], n[AWAKE], n[MOVERS], n[ASKED]):
+        at += (4 * count + 7) // 8 * 8
+    return int(at + 8 * n[APART] + n[JOINTS] * _JOINED)
+
+
+@callback(types.int64(types.uintp, types.int64, types.uintp))
+def compare(space: int, idle: int, block: int) -> int:
+    """Whether a snapshot's bodies, shapes and joints are those of the space: SAME, or what is not."""
+    s = state_of(space)
+    tables = load_tables(s)
+    head = array_at(block, (1,), HEAD)[0]
+    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
+    n = tables.counters
+    if then[BODIES] != n[BODIES]:
+        return BODIES_CHANGED
+    if then[SHAPES] != n[SHAPES] or head.nodes != s.nodes_n:
+        return SHAPES_CHANGED
+    at = block + _TABLES
+    for i in range(n[BODIES]):
+        if array_at(at + i * _BODY, (1,), BODY)[0].address != tables.bodies[i].address:
+            return BODIES_CHANGED
+    at += n[BODIES] * _BODY
+    for i in range(n[SHAPES]):
+        one = array_at(at + i * _SHAPE, (1,), SHAPE)[0]
+        other = tables.shapes[i]
+        if one.address != other.address or one.ident != other.ident or one.body != other.body:
+            return SHAPES_CHANGED
+        if one.outline != other.outline or one.mirror != other.mirror:
+            return SHAPES_CHANGED
+    constraints = members(space, s.space_constraints)
+    if head.constraints != len(constraints) - 1:
+        return JOINTS_CHANGED
+    at = block + _after_tables(then, head.nodes)
+    for address in constraints:
+        if address != s.hidden:
+            if words(at, 1)[0] != address:
+                return JOINTS_CHANGED
+            at += _JOINT
+    k = 0
+    for root in members(space, s.space_sleeping):
+        body = np.int64(root)
+        while body != 0:
+            if k >= head.sleepers or np.int64(words(at + 8 * k, 1)[0]) != body:
+                return DOZED
+            k += 1
+            body = np.int64(words(body + idle - 8, 1)[0])
+        k += 1
+    return SAME if k == head.sleepers else DOZED
+
+
+@callback(types.int64(types.uintp))
+def sleepers(block: int) -> int:
+    """Where a snapshot has its list of those that sleep (`HEAD.sleepers` words), from its beginning on (bytes)."""
+    head = array_at(block, (1,), HEAD)[0]
+    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
+    return _after_tables(then, head.nodes) + head.constraints * _JOINT
+
+
+@callback(types.void(types.uintp, types.uintp))
+def reorder(space: int, block: int) -> None:
+    """Chipmunk's list of bodies in the order of then, once the same ones are awake: sums over them follow it."""
+    s = state_of(space)
+    head = array_at(block, (1,), HEAD)[0]
+    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
+    at = block + _after_tables(then, head.nodes) + head.constraints * _JOINT + 8 * head.sleepers
+    listed = members(space, s.space_bodies)
+    if len(listed) == head.listed:
+        for k in range(head.listed):
+            listed[k] = words(at + 8 * k, 1)[0]
+
+
+@kernel
+def free_again(tables: Tables, head: Any, pairs: int, regions: int) -> None:
+    """Rows that were not in use then, and have come into use, or into being, since; pairs, regions: used until now."""
+    counters = tables.counters
+    for p in range(counters[USED_PAIRS], pairs):
+        pair = tables.pairs[p]
+        pair.a = -1
+        pair.b = -1
+        pair.head = -1
+        pair.next = p + 1 if p + 1 < len(tables.pairs) else -1
+    for r in range(counters[USED_REGIONS], regions):
+        region = tables.regions[r]
+        region.stamp = -1
+        region.next = r + 1 if r + 1 < len(tables.regions) else -1
+    if len(tables.pairs) > head.pairs:
+        counters[FREE_PAIRS] += len(tables.pairs) - head.pairs
+        p = counters[FREE_PAIR]
+        if p < 0:
+            counters[FREE_PAIR] = head.pairs
+        while p >= 0:
+            after = tables.pairs[p].next
+            if after < 0 and p < head.pairs:
+                tables.pairs[p].next = head.pairs
+            p = after
+    if len(tables.regions) > head.regions:
+        counters[FREE_REGIONS] += len(tables.regions) - head.regions
+        r = counters[FREE_REGION]
+        if r < 0:
+            counters[FREE_REGION] = head.regions
+        while r >= 0:
+            after = tables.regions[r].next
+            if after < 0 and r < head.regions:
+                tables.regions[r].next = head.regions
+            r = after
+
+
+@kernel
+def _delay(tables: Tables, late: int) -> None:
+    """Numbers of frames, moved on by so many."""
+    counters = tables.counters
+    counters[COUNTED] += late
+    for i in range(counters[BODIES]):
+        if tables.bodies[i].stamp >= 0:
+            tables.bodies[i].stamp += late
+    for i in range(counters[SHAPES]):
+        if tables.shapes[i].seen >= 0:
+            tables.shapes[i].seen += late
+    for p in range(counters[USED_PAIRS]):
+        pair = tables.pairs[p]
+        pair.arbiter = 0  # it may be another's by now
+        if pair.stamp >= 0:
+            pair.stamp += late
+        if pair.lasting >= 0:
+            pair.lasting += late
+        if pair.waiting >= 0:
+            pair.waiting += late
+
+
+@callback(types.int64(types.uintp, types.int64, types.uintp))
+def restore(space: int, idle: int, block: int) -> int:
+    """Put a snapshot back that `compare` has found to fit. 1: what Chipmunk takes for static is elsewhere now."""
+    s = state_of(space)
+    tables = load_tables(s)
+    head = array_at(block, (1,), HEAD)[0]
+    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
+    pairs = tables.counters[USED_PAIRS]
+    regions = tables.counters[USED_REGIONS]
+    late = np.int64(timestamp(space)) - head.stamp
+    at = _move(1, block, _HEAD, s.counters_at, 8 * COUNTERS)
+    at = _move_tables(s, then, 1, block, at)
+    at = _move_joints(s, space, 1, block, at)
+    at += 8 * (head.sleepers + head.listed)
+    elsewhere = 0
+    there = at
+    for i in range(then[BODIES]):
+        body = tables.bodies[i]
+        if body.address != 0:
+            if not body.awake:
+                place = floats(body.address + s.body_transform, 6)
+                kept = floats(block + there + s.body_transform - s.body_inverse_mass + 8, 6)
+                for k in range(6):
+                    elsewhere |= place[k] != kept[k]
+            there += s.body_transform + 64 - s.body_inverse_mass
+    _move_bodies(s, tables.bodies, then[BODIES], idle, 1, block, at)
+    free_again(tables, head, pairs, regions)
+    _delay(tables, late)
+    rehash(tables)
+    tables.counters[TOLD] = 0
+    s.frame = head.frame + late
+    s.before = head.before
+    s.taken = head.taken
+    s.contacts = head.contacts
+    s.asleep = head.asleep
+    for k in range(tables.counters[AWAKE]):  # queries look at the shapes' boxes
+        shape = words(tables.bodies[tables.awake[k]].address + s.body_shapes, 1)[0]
+        while shape != 0:
+            _cache_box(s.scratch_at, shape)
+            shape = words(shape + s.shape_next, 1)[0]
+    return elsewhere

@@ -1,0 +1,213 @@
+"""`AreaContact.snapshot` and `restore`: an attached space as it was, in microseconds."""
+
+from __future__ import annotations
+
+import weakref
+from functools import lru_cache
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..chipmunk import LayoutError, address_of, kinds_of_joints, layout
+
+if TYPE_CHECKING:
+    from .attach import AreaContact
+
+_CHANGED = {1: "bodies", 2: "shapes", 3: "joints"}
+_ARBITER = int(ffi.sizeof("struct cpArbiter"))
+#: What of an arbiter is put back: materials, normal, and from `swapped` on what callbacks were told and have said.
+_PARTS = (slice(0, 32), slice(120, 136), slice(168, _ARBITER))
+#: A block's first room (bytes).
+ROOM = 2**16
+
+
+class Snapshot:
+    """An attached space as it was: what `AreaContact.snapshot` returns. It belongs to its space, in its process."""
+
+    __slots__ = ("_arbiters", "_block", "_contact")
+
+    def __init__(self, contact: AreaContact) -> None:
+        space, (save, *_) = contact.space, _functions()
+        at, idle = space._space, idle_time()
+        block = np.empty(contact._snapshot_room, np.uint8)
+        size = save(at, idle, ffi.from_buffer(block), len(block))
+        if size > len(block):
+            contact._snapshot_room = size + size // 4
+            block = np.empty(contact._snapshot_room, np.uint8)
+            size = save(at, idle, ffi.from_buffer(block), len(block))
+        self._block, self._contact = block[:size].copy(), weakref.ref(contact)
+        self._arbiters = _arbiters_of(space) if space._handlers else {}
+
+    @property
+    def nbytes(self) -> int:
+        """Its size (bytes)."""
+        return len(self._block)
+
+    def put_back(self, contact: AreaContact) -> None:
+        """`AreaContact.restore`."""
+        space, (_, compare, sleepers, restore, reorder) = contact.space, _functions()
+        at, idle, block = space._space, idle_time(), ffi.from_buffer(self._block)
+        changed = compare(at, idle, block)
+        if changed in _CHANGED:
+            raise ValueError(
+                f"expected the {_CHANGED[changed]} that the space had when the snapshot was taken; "
+                "some have come, gone or changed since"
+            )
+        if changed:
+            for body in space.bodies:
+                if lib.cpBodyIsSleeping(body._body):
+                    lib.cpBodyActivate(body._body)
+            _unthread(space)
+        elsewhere = restore(at, idle, block)
+        if changed:
+            first = sleepers(block)
+            words = self._block[first:].view(np.uint64)[: int(self._block[56:64].view(np.int64)[0])]
+            put_to_sleep(words.tolist())
+        reorder(at, block)
+        if elsewhere:
+            lib.cpSpaceReindexStatic(at)
+        if space._handlers:
+            late = lib.cpSpaceGetTimestamp(at) - int(self._block[8:16].view(np.int64)[0])
+            _put_arbiters_back(space, self._arbiters, late)
+            contact._take_arbiters()
+
+    def __reduce__(self) -> Any:
+        raise TypeError("a snapshot belongs to its space: copy or pickle the space")
+
+    def __repr__(self) -> str:
+        return f"<Snapshot, {self.nbytes} bytes>"
+
+
+@lru_cache(maxsize=1)
+def _functions() -> tuple[Any, ...]:
+    from . import moved
+
+    kinds = {
+        "save": "long long(*)(void *, long long, void *, long long)",
+        "compare": "long long(*)(void *, long long, void *)",
+        "sleepers": "long long(*)(void *)",
+        "restore": "long long(*)(void *, long long, void *)",
+        "reorder": "void(*)(void *, void *)",
+    }
+    return tuple(ffi.cast(kind, getattr(moved, name).address) for name, kind in kinds.items())
+
+
+@lru_cache(maxsize=1)
+def idle_time() -> int:
+    """Where Chipmunk keeps for how long a body has idled (bytes); before it the first and the next of its group.
+
+    LayoutError where it is not after all else that is known of a body.
+    """
+    space, one, two = pymunk.Space(), pymunk.Body(1, 1), pymunk.Body(1, 1)
+    space.sleep_time_threshold, space.idle_speed_threshold = 100.0, 1.0
+    space.add(one, two)
+    lib.cpSpaceStep(space._space, 0.125)  # not space.step, which somebody may have wrapped
+    first = layout()["body_shapes"] + 8
+    memory = np.frombuffer(ffi.buffer(ffi.cast("char *", one._body) + first, 48), np.float64)
+    places = np.flatnonzero(memory == 0.125)
+    if len(places) != 1:
+        raise LayoutError(f"idle time: expected one place in Chipmunk's struct, found {len(places)}")
+    at = first + 8 * int(places[0])
+    one.sleep()
+    two.sleep_with_group(one)
+    words = [ffi.cast("uintptr_t *", body._body)[at // 8 - k] for k in (1, 2) for body in (one, two)]
+    expected = [address_of(two._body), 0, address_of(one._body), address_of(one._body)]
+    if words != expected:
+        raise LayoutError("sleeping: the group of a body is not where it was expected")
+    return at
+
+
+def put_to_sleep(listed: list[int]) -> None:
+    """Have groups of bodies sleep: their addresses, the first before the others, and 0 after each group."""
+    root = 0
+    for address in listed:
+        if address and not root:
+            lib.cpBodySleep(ffi.cast("cpBody *", address))
+            root = address
+        elif address:
+            lib.cpBodySleepWithGroup(ffi.cast("cpBody *", address), ffi.cast("cpBody *", root))
+        else:
+            root = 0
+
+
+def idle_of(body: pymunk.Body) -> np.ndarray:
+    """For how long Chipmunk has seen a body idle, in place: float64 (1,) (time)."""
+    return np.frombuffer(ffi.buffer(ffi.cast("char *", body._body) + idle_time(), 8))
+
+
+def first_of_group(body: pymunk.Body) -> int:
+    """The address of the first body of the group with which a body sleeps."""
+    return int(ffi.cast("uintptr_t *", body._body)[idle_time() // 8 - 2])
+
+
+def listed_bodies(space: pymunk.Space) -> np.ndarray:
+    """Addresses of the bodies that are awake, as Chipmunk lists them, in place: uint64 (n,)."""
+    at = ffi.cast("uintptr_t *", address_of(space._space) + layout()["space_bodies"])[0]
+    n, arr = ffi.cast("int *", at)[0], ffi.cast("uintptr_t *", at)[1]
+    return (
+        np.frombuffer(ffi.buffer(ffi.cast("char *", arr), 8 * n), np.uint64) if n else np.empty(0, np.uint64)
+    )
+
+
+def joint_numbers(joint: pymunk.Constraint) -> tuple[np.ndarray, np.ndarray]:
+    """What a joint is made of, and its impulse, in place: empty of an unknown kind."""
+    memory, own = ffi.cast("char *", joint._constraint), int(ffi.cast("uintptr_t *", joint._constraint)[0])
+    for kind in kinds_of_joints():
+        if kind.own_class == own:
+            made_of = np.frombuffer(ffi.buffer(memory + kind.parameters, 8 * kind.numbers))
+            return made_of, np.frombuffer(ffi.buffer(memory + kind.impulse, 8 * kind.impulses))
+    return np.empty(0), np.empty(0)
+
+
+def _unthread(space: pymunk.Space) -> None:
+    """Bodies have no arbiters, as before Chipmunk's first step: what sleeps must have none with who is awake.
+
+    Those that are cached find their bodies again in the next step.
+    """
+    off = layout()
+    at = ffi.cast("uintptr_t *", address_of(space._space) + off["space_contacts"] - 8)[0]
+    count, listed = ffi.cast("int *", at), ffi.cast("uintptr_t *", at)[1]
+    first = int(ffi.offsetof("struct cpArbiter", "thread_a"))
+    for i in range(count[0]):
+        arbiter = _arbiter(ffi.cast("uintptr_t *", listed)[i])
+        ffi.buffer(arbiter, _ARBITER)[first : first + 32] = bytes(32)
+    count[0] = 0
+    for body in {*space.bodies, *(shape.body for shape in space.shapes), space.static_body}:
+        ffi.cast("uintptr_t *", body._body)[off["body_shapes"] // 8 + 1] = 0
+
+
+def _arbiters_of(space: pymunk.Space) -> dict[tuple[int, int], bytes]:
+    """Chipmunk's arbiters by the addresses of their shapes."""
+    return {
+        (address_of(arbiter.a), address_of(arbiter.b)): ffi.buffer(arbiter, _ARBITER)[:]
+        for arbiter in map(_arbiter, space._get_arbiters())
+    }
+
+
+def _arbiter(pointer: Any) -> Any:
+    return ffi.cast("struct cpArbiter *", pointer)
+
+
+def _put_arbiters_back(space: pymunk.Space, kept: dict[tuple[int, int], bytes], late: int) -> None:
+    """Callbacks are told what they would have been: what touched goes on touching, refused or not."""
+    left = dict(kept)
+    for arbiter in map(_arbiter, space._get_arbiters()):
+        then = left.pop((address_of(arbiter.a), address_of(arbiter.b)), None)
+        if then is None:
+            arbiter.state, arbiter.count = lib.CP_ARBITER_STATE_CACHED, 0  # as if it had not been yet
+        else:
+            _say_again(arbiter, then, late)
+    for (a, b), then in left.items():
+        arbiter = _arbiter(lib.cpArbiterNew(ffi.cast("cpShape *", a), ffi.cast("cpShape *", b)))
+        _say_again(arbiter, then, late)
+        lib.cpSpaceAddCachedArbiter(space._space, arbiter)
+
+
+def _say_again(arbiter: Any, then: bytes, late: int) -> None:
+    memory = ffi.buffer(arbiter, _ARBITER)
+    for part in _PARTS:
+        memory[part] = then[part]
+    arbiter.stamp += late
+    arbiter.count = 0  # its points are in memory that has been used again
