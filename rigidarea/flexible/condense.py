@@ -32,7 +32,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work, make_ready
-from rigidarea.flexible.dense import dot, yielded
+from rigidarea.flexible.dense import dot, factor, yielded
 from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
@@ -389,7 +389,8 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         buf.right[0, i] = buf.stale[i] + buf.shift[i]
         for c in range(columns):
             buf.right[c + 1, i] = buf.moves[i, c]
-    yielded(s.stiffness, buf.compliance, buf.right, n, columns + 1, buf.system, buf.last)
+    factor(s.stiffness, buf.compliance, n, buf.system, buf.last)
+    yielded(buf.right, n, columns + 1, buf.system, buf.last)
     off = 0.0
     for i in range(n):
         off += abs(buf.right[0, i])

@@ -72,14 +72,12 @@ def eliminate(a: Array, n: int, columns: int) -> None:
 SINGULAR = 1e-12  # of a diagonal: what rounding leaves of one that other rows have taken up
 
 
-@_vectorized("void(f8[:, ::1], f8[:, ::1], f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
-def yielded(
-    k: Array, c: Array, right: Array, n: int, columns: int, work: Array, last: NDArray[np.int64]
-) -> None:
-    """Solves (I + K C) y = −K r for the first ``columns`` rows r of ``right``, in place; K, C (n, n) symmetric, K ≥ 0.
+@_vectorized("void(f8[:, ::1], f8[:, ::1], i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
+def factor(k: Array, c: Array, n: int, work: Array, last: NDArray[np.int64]) -> None:
+    """Of I + K C, for ``yielded``: into work (3, n, n) and last (n,). K, C (n, n) symmetric, K ≥ 0.
 
-    With K = Uᵀ U, y = −Uᵀ (I + U C Uᵀ)⁻¹ U r: symmetric, so without pivots, half the work. U keeps to the band of
-    K, whose rows are those of neighbours. work (3, n, n), last (n,): scratch.
+    With K = Uᵀ U, (I + K C)⁻¹ K = Uᵀ (I + U C Uᵀ)⁻¹ U: symmetric, so without pivots, half the work. U keeps to the
+    band of K, whose rows are those of neighbours.
     """
     u, t, a = work[0], work[1], work[2]
     end = 0
@@ -125,6 +123,12 @@ def yielded(
         for j in range(i):
             t[i, j] = a[i, j] / a[j, j]
             a[i, i] -= a[i, j] * t[i, j]
+
+
+@_vectorized("void(f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
+def yielded(right: Array, n: int, columns: int, work: Array, last: NDArray[np.int64]) -> None:
+    """Solves (I + K C) y = −K r for the first ``columns`` rows r of ``right``, in place, after ``factor``."""
+    u, t, a = work[0], work[1], work[2]
     for r in range(columns):
         x = right[r]
         for j in range(n):

@@ -176,6 +176,7 @@ def run_steps(  # type: ignore[no-untyped-def]
                 break
             _copy(saved, state)
             keep_springs(buf, 2, 1)
+            s.load.made[0] = 0  # a failed step's tangent foresees nothing
             if code == NOT_FINITE:
                 _unloaded(bodies, sy, state, buf)
             if code == FULL:

@@ -20,6 +20,7 @@ from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
+from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
 from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
@@ -218,6 +219,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     """One generalised-α step of length h from time t, in place. Returns Newton iterations, or an error code."""
     scheme = scheme_of(st.rho, h)
     count = len(sy.mass)
+    note_places(sy, buf, state, s.load, -1.0)
     _predict(state, scheme)
     for b in range(count):
         w = work_at(bodies, b)
@@ -231,6 +233,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             w.mobility[i - lo] = 1.0 / stiffness
     if st.loose and _flies(bodies, sy, state, scheme, pairs, st, s, found, buf):
         return 1
+    if s.load.made[0] > 0:
+        note_places(sy, buf, state, s.load, 1.0)
+        foresee(bodies, sy, buf, state, scheme, s.load, st.sts)
     end = _number(sy, buf)
     buf.clock[0], buf.clock[1] = h, scheme.vel
     change, before, regions = 1.0, 0.0, -1

@@ -60,6 +60,8 @@ def test_rubber_against_a_wall(level, speed):
     m.contact(m.ground(box(0.5, 0.1), at=(0.0, -0.05)), disc)
     r = m.run(0.01, STEP)
     back = r.v[-1, disc, 1] / speed
+    if level == "compliant":  # loads go with the bodies: without that 4.0 to 4.4, up to 9 in a row
+        assert r.iterations.mean() < 3.0
     assert r.forces[-1, 0, 1] == 0.0
     if level == "compliant":
         assert back == pytest.approx(1.0, abs=1e-3)
