@@ -188,7 +188,7 @@ class AreaContact:
         given = None if value is None else positive(value, "stiffness")
         self._settings["stiffness"] = given
         self._state["stiffness"], self._state["stiffness_given"] = given or 0.0, given is not None
-        self._store.tables.pairs["stiffness"] = 0.0
+        self._store.tables.pairs["rate"] = 0.0
 
     @property
     def penetration(self) -> float:

@@ -607,5 +607,5 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     sign = -1.0 if pair.swapped else 1.0
     pair.surface_x = sign * x
     pair.surface_y = sign * y
-    s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.stiffness > EXTREME
+    s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.rate > EXTREME
     _note_normal(s, pair, arbiter)

@@ -14,7 +14,7 @@ from .motion import centre_of, earlier, since_of, unseen_for
 from .place import Pose, overlap_of_outlines
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, turn_to
-from .stiffness import depth_for
+from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
 from .work import Work
 
@@ -206,9 +206,9 @@ def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def _lying(law: Law, pair: Any, face: float, inverse: float) -> float:
+def _lying(law: Law, pair: Any, inverse: float) -> float:
     """How deep one lies on the other under its own weight (length)."""
-    return law.gravity / (inverse * region_stiffness(law, pair.stiffness, face))
+    return law.gravity / (inverse * pair.rate)
 
 
 @kernel
@@ -260,7 +260,6 @@ def enter(
     law: Law,
     pair: Any,
     region: Any,
-    face: float,
     ia: int,
     ib: int,
     a: Any,
@@ -269,12 +268,11 @@ def enter(
     h: float,
 ) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
-    k = pair.stiffness
-    region.stiffness = k
-    stiffness = region_stiffness(law, k, max(region.chord, face))
     inverse = inverse_mass(region, a, b)
+    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     phase2 = stiffness * inverse * h * h
-    height = STEP * _lying(law, pair, face, inverse)
+    height = STEP * _lying(law, pair, inverse)
     if back == 0.0 and goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, height, h):
         region.mode = REST
         region.placed = 0
@@ -287,7 +285,7 @@ def enter(
         region.spring = 0.0
         return
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
-    region.rest_depth = depth_for(law, region, k, push)
+    region.rest_depth = depth_for(law, pair, region, push)
     unseen = unseen_for(pair, h)
     placed = law.followed != math.inf and back == 0.0 and jumped_in(law, region, 0.0, a, b, unseen)
     if phase2 <= law.followed and back == 0.0:
@@ -324,7 +322,6 @@ def expect(
     law: Law,
     pair: Any,
     region: Any,
-    face: float,
     ia: int,
     ib: int,
     a: Any,
@@ -337,12 +334,12 @@ def expect(
 
     A bounce only at the first look (`meet_ahead`).
     """
-    region.stiffness = pair.stiffness
-    stiffness = region_stiffness(law, pair.stiffness, max(region.chord, face))
     inverse = inverse_mass(region, a, b)
+    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     if stiffness * inverse * h * h <= law.followed:
         return False  # the steps follow it
-    lying = _lying(law, pair, face, inverse)
+    lying = _lying(law, pair, inverse)
     sinks = law.gravity * h * h  # what carries it is not solved for yet
     if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying + sinks, h):
         return False  # it will be there, and say so itself
@@ -361,7 +358,7 @@ def expect(
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
-    rest = max(lying, depth_for(law, region, pair.stiffness, gain / inverse))
+    rest = max(lying, depth_for(law, pair, region, gain / inverse))
     region.rest_depth = min(region.depth, rest)
     region.back = ahead
     return True

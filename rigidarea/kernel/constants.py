@@ -67,16 +67,9 @@ LOAD_TIME = 0.5
 #: than so many times. With depth the same under any load, the lowest of a pile of twenty layers were twenty times as
 #: stiff as ten sweeps can solve: their error moved bodies by more than they overlap, and such a pile never rested.
 DEEPER = 20.0
-#: A stiffness that is too low grows by this factor a frame, and shrinks by that one when it is this much too high. (A
-#: load that comes and goes is not followed: a pile in which stiffness goes up and down never rests.)
-STIFFER = 1.2
-SOFTER = 1.02
-TOO_STIFF = 10.0
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1
-#: Of a body's smallest extent, on which a corner is taken to rest when its stiffness is chosen.
-SPREAD = 1.0
 #: A joint gives way by this part of its effective mass: of joints that contradict each other, each is held as far as it
 #: can. What hangs in one sinks by this part of the way that it falls in a substep, over the part of an error that goes.
 JOINT_GIVE = 1e-5

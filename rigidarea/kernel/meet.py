@@ -34,7 +34,7 @@ from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, steer
 from .sides import length_on_first_edge, shown_sides
-from .stiffness import choose_stiffness
+from .stiffness import choose_stiffness, stiffness_of
 from .tables import (
     FREE_REGION,
     FREE_REGIONS,
@@ -267,16 +267,15 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                 region.born = 1  # hit at a speed of which its present overlap says nothing
     free_regions(regions, counters, old)
     pair.head = kept
-    face = _face(pool, sa, sb, a, b)
-    if pair.stiffness == 0.0 and kept >= 0:
-        choose_stiffness(law, pair, face, a, b, h)
+    if pair.rate == 0.0 and kept >= 0:
+        choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
     r = kept
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
         if region.born:
-            enter(pool, tables, work, law, pair, region, face, ia, ib, a, b, back, h)
+            enter(pool, tables, work, law, pair, region, ia, ib, a, b, back, h)
         steer(pair, region, a, b)
-        region.stiffness = pair.stiffness
+        region.stiffness = stiffness_of(law, pair, region, inverse_mass(region, a, b), h)
         r = region.next
     return True
 
@@ -398,14 +397,13 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         region.tangent_stiffness = 0.0
     if kept < 0:
         return True
-    face = _face(pool, sa, sb, a, b)
-    if pair.stiffness == 0.0:
-        choose_stiffness(law, pair, face, a, b, h)
+    if pair.rate == 0.0:
+        choose_stiffness(law, pair, _face(pool, sa, sb, a, b), a, b, h)
     r = kept
     while r >= 0:  # after the loops have been read: looking for the touch takes the work
         region = regions[r]
         after = region.next
-        if expect(pool, tables, work, law, pair, region, face, ia, ib, a, b, ahead, h, first and old < 0):
+        if expect(pool, tables, work, law, pair, region, ia, ib, a, b, ahead, h, first and old < 0):
             steer(pair, region, a, b)
             region.next = pair.head
             pair.head = r

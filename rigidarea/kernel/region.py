@@ -96,3 +96,18 @@ def region_stiffness(law: Law, k: float, chord: float) -> float:
     if law.law == LAW_AREA:
         return k * chord
     return k * chord * chord / law.length
+
+
+@kernel(forceinline=True)
+def growth(r: Any) -> float:
+    """n of area ~ depth^n, the chord being dA/ddepth: 1 for a face, 3/2 for a round one on a plane, 2 for a corner.
+
+    Less than 1 where the chord shrinks: past the middle of a body.
+    """
+    return float(min(2.0, r.depth * r.chord / r.area))
+
+
+@kernel(forceinline=True)
+def beyond(law: Law, phase2: float) -> float:
+    """How far a step is too long for a contact of (w h)^2 = phase2: 0 where it follows it, to 1."""
+    return 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2

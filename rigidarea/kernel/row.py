@@ -41,10 +41,9 @@ from .constants import (
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .jit import kernel
 from .joint import solve_joint
-from .meet import closing, inverse_mass, region_stiffness
 from .memory import record
-from .stiffness import area_allowed
-from .tables import BOUNCED, IMPACT, LAW_AREA, NEARING, PLACED, REST, SPENT, STRUCK, Law
+from .region import beyond, closing, growth, inverse_mass, region_stiffness
+from .tables import BLOW, BOUNCED, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .turning import turning_speed
 
 ROW = record(
@@ -124,7 +123,7 @@ def slipping(r: Any, a: Any, b: Any, full: float) -> float:
 def _ends(row: Any, r: Any) -> None:
     """The face's two ends from the point of application, and how F0 and C are shared."""
     straight = r.straight
-    if straight <= 1e-6 * r.chord:
+    if straight < 0.5 * r.chord:  # a corner, an arc, one of many facets: those roll
         row.ends = 1
         row.e1 = 0.0
         row.e2 = 0.0
@@ -154,6 +153,45 @@ def may_close(opening: float, a: Any, b: Any, h: float) -> float:
     and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
     """
     return float(min(opening, LOOK * least_extent(a, b) / h))
+
+
+@kernel
+def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
+    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
+
+    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
+    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
+    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
+    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
+    at rest.
+    """
+    u_x = a.vx - a.kick_x - b.vx + b.kick_x
+    u_y = a.vy - a.kick_y - b.vy + b.kick_y
+    square = u_x * u_x + u_y * u_y
+    closes = u_x * r.nx + u_y * r.ny
+    disc = a if b.inverse_mass == 0.0 else b
+    other = b if b.inverse_mass == 0.0 else a
+    round_one = 1 if b.inverse_mass == 0.0 else 2
+    if (
+        r.radial & round_one == 0
+        or other.inverse_mass > 0.0
+        or other.w != 0.0
+        or disc.pushed == 0
+        or closes <= left
+        or closes * closes > SMOOTH * square
+        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
+    ):
+        return left
+    along = u_y * r.nx - u_x * r.ny
+    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
+    # (along - then) / (closes - left): of either little but rounding may be left
+    turn = -(closes + left) / (along + then)
+    size = math.sqrt(1.0 + turn * turn)
+    nx = (r.nx - turn * r.ny) / size
+    ny = (r.ny + turn * r.nx) / size
+    r.nx = nx
+    r.ny = ny
+    return (left + then * turn) / size
 
 
 @kernel
@@ -190,6 +228,8 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
         else:
             row.t2 = target
     leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
+    if e == 0.0 and row.ends == 1:
+        row.t1 = _turn_along(r, a, b, max(0.0, row.t1))
     row.alpha_t = 0.0
     row.tt = surface
     pushed = max(a.pushed if a.mobile else 0, b.pushed if b.mobile else 0)
@@ -222,45 +262,6 @@ def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
         r.arm_b += (1.0 - share) * arm
     r.lean_a -= share * lean
     r.lean_b += (1.0 - share) * lean
-
-
-@kernel
-def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
-    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
-
-    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
-    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
-    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
-    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
-    at rest.
-    """
-    u_x = a.vx - a.kick_x - b.vx + b.kick_x
-    u_y = a.vy - a.kick_y - b.vy + b.kick_y
-    square = u_x * u_x + u_y * u_y
-    closes = u_x * r.nx + u_y * r.ny
-    disc = a if b.inverse_mass == 0.0 else b
-    other = b if b.inverse_mass == 0.0 else a
-    round_one = 1 if b.inverse_mass == 0.0 else 2
-    if (
-        r.radial & round_one == 0
-        or other.inverse_mass > 0.0
-        or other.w != 0.0
-        or disc.pushed == 0
-        or closes <= left
-        or closes * closes > SMOOTH * square
-        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
-    ):
-        return left
-    along = u_y * r.nx - u_x * r.ny
-    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
-    x = closes - left
-    y = along - then
-    size = math.sqrt(x * x + y * y)
-    nx = (x * r.nx - y * r.ny) / size
-    ny = (x * r.ny + y * r.nx) / size
-    r.nx = nx
-    r.ny = ny
-    return (left * x + then * y) / size
 
 
 @kernel
@@ -374,18 +375,18 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.l2 = 0.0
         row.lt = r.lt * (h / r.step)
     else:
-        firm = max(stiffness, region_stiffness(law, pair.firm, r.chord))
+        stiffness = max(stiffness, pair.firm)
         least = least_extent(a, b)
         if r.placed == PLACED and law.stiffness == 0.0:
             pressed = pair.least if drives(a) or drives(b) else max(pair.least, pair.load)
             most = PLACED_LOADS * pressed
             if elastic > most:
-                firm *= most / elastic
+                stiffness *= most / elastic
                 elastic = most
-        phase2 = firm * inverse * h * h
-        theta = 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
-        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(firm / inverse)
-        c += theta * (1.0 + RELEASE_STEPS) * h * firm
+        phase2 = stiffness * inverse * h * h
+        theta = beyond(law, phase2)
+        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
+        c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
         slowest = elastic / (RELEASE_SPEED * least)
         if r.placed == SPENT and law.followed < math.inf:
             c = max(c, stiffness / RELEASE_SPEED)
@@ -395,9 +396,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
         row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
-        # a step longer than an edge's own time opens it all by itself: no trace of speed is left
-        if phase2 >= 1.0 and r.curve_a == 0.0 and r.curve_b == 0.0:
-            row.theta = 1.0
+        # a step longer than an edge's own time opens it all by itself: no trace of speed is left; what is round rolls
+        if phase2 >= 1.0:
+            row.theta = 1.0 if row.ends == 2 else max(row.theta, 2.0 * growth(r) - 3.0)
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness
@@ -622,9 +623,9 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
         # a blow is no load, nor is what joints or kinematic bodies hold overlapped, which presses as far as it is stiff
         held = r.placed == PLACED and (a.calm < 0 or b.calm < 0 or drives(a) or drives(b))
         if r.mode == IMPACT or held:
-            pair.area = -math.inf
-        elif last and r.mode != NEARING:
-            pair.area += area_allowed(law, r, a, b)
+            pair.lies = BLOW
+        elif last and r.mode != NEARING and pair.lies != BLOW:
+            pair.lies = FOLLOWS if row.theta > 0.0 and law.law == LAW_AREA else LIES
     pair.jx += normal * row.nx - row.lt * row.ny
     pair.jy += normal * row.ny + row.lt * row.nx
     if row.shift != 0.0:

@@ -8,9 +8,10 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import DEEPER, LOAD_TIME, SOFTER, SPREAD, STIFFER, TOO_STIFF, WEIGHTLESS_PHASE2
+from .constants import DEEPER, LOAD_TIME, WEIGHTLESS_PHASE2
 from .jit import kernel
-from .tables import AWAKE, LAW_AREA, LED, NEAR, Law, Tables
+from .region import beyond, growth, region_stiffness
+from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -24,26 +25,17 @@ def allowed_depth(law: Law, a: Any, b: Any) -> float:
 
 
 @kernel
-def stiffness_for(law: Law, r: Any, load: float, depth: float) -> float:
-    """k (force/length^2) with which `load` presses the region to `depth`.
+def depth_for(law: Law, pair: Any, r: Any, load: float) -> float:
+    """The depth at which the region would carry `load`.
 
-    Its area grows as depth^n with n = depth * chord / area, chord being dA/ddepth: 1 for a face, 3/2 for a disc on a
-    plane, 2 for a corner.
+    Of a k that is given its area grows as depth^n (`growth`).
     """
-    n = min(2.0, max(1.0, r.depth * r.chord / r.area))
-    area = r.area * (depth / r.depth) ** n
-    if law.law != LAW_AREA:
-        area *= r.chord * (depth / r.depth) ** (n - 1.0) / law.length
-    return load / area
-
-
-@kernel
-def depth_for(law: Law, r: Any, k: float, load: float) -> float:
-    """The depth at which the region would carry `load`: `stiffness_for` the other way round."""
     if load <= 0.0:
         return 0.0
-    n = min(2.0, max(1.0, r.depth * r.chord / r.area))
-    force = k * r.area
+    if law.stiffness == 0.0:
+        return float(load / pair.rate)
+    n = max(1.0, growth(r))
+    force = law.stiffness * r.area
     if law.law != LAW_AREA:
         force *= r.chord / law.length
         n = 2.0 * n - 1.0
@@ -52,36 +44,43 @@ def depth_for(law: Law, r: Any, k: float, load: float) -> float:
 
 @kernel
 def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float) -> None:
-    """The stiffness of a pair that touches for the first time: for the weight of the lighter body that can move.
+    """The rate of a pair that touches for the first time: for the weight of the lighter body that can move.
 
-    face: the chord on which it would lie (length). Not the one on which it has landed: k tuned on a corner is far too
-    stiff for the face that comes down next (theory 3). What it rests on in the end, `carry` learns.
+    face: the chord on which it would lie (length).
     """
+    pair.face = face
     if law.stiffness > 0.0:
-        pair.stiffness = law.stiffness
+        pair.rate = region_stiffness(law, law.stiffness, face)
         return
     depth = allowed_depth(law, a, b)
     acceleration = law.gravity if law.gravity > 0.0 else WEIGHTLESS_PHASE2 * depth / (h * h)
     pair.least = acceleration / max(a.inverse_mass, b.inverse_mass)
     pair.load = pair.least
-    pair.stiffness = pair.least / (depth * face)
-    if law.law != LAW_AREA:
-        pair.stiffness *= law.length / face
+    pair.rate = pair.least / depth
 
 
 @kernel
-def area_allowed(law: Law, r: Any, a: Any, b: Any) -> float:
-    """The region's area (length^2; by the energy law weighted with chord / length) at the depth allowed.
+def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float:
+    """k of a region as it is now (force/length^2): what presses it to the depth allowed when the pair bears its load.
 
-    Of straight edges no less than if they met on a SPREAD of the smaller one's smallest extent: a corner's k would be
-    a thousand times what is right for the face that comes down next, and what is that stiff keeps a pile awake.
+    k A is then the pair's rate times the mean thickness A / L of a face, times twice that of a corner: linear in the
+    depth of either, so that neither the corner on which a body lands is too soft for it nor, a frame later, the face
+    that comes down too hard. By the energy law, and where the steps follow the contact, k is that of the face all
+    along: only a k that does not follow the region's shape has a potential (theory 1).
     """
-    depth = allowed_depth(law, a, b)
-    area = 1.0 / stiffness_for(law, r, 1.0, depth)
-    if r.straight > 0.0:
-        spread = SPREAD * depth / law.penetration
-        area = max(area, depth * spread if law.law == LAW_AREA else depth * spread * spread / law.length)
-    return area
+    if law.stiffness > 0.0:
+        return float(law.stiffness)
+    of_face = pair.rate / pair.face
+    if law.law != LAW_AREA:
+        return float(of_face * law.length / pair.face)
+    n = growth(r)
+    if r.chord > 0.0:
+        part = r.straight / r.chord if n > 1.0 else 0.0
+        k = (n + (1.0 - n) * part) * pair.rate / r.chord
+    else:
+        k = pair.rate * r.depth / r.area
+    theta = beyond(law, pair.rate * inverse * h * h)
+    return float((1.0 - theta) * of_face + theta * k)
 
 
 @kernel(forceinline=True)
@@ -91,31 +90,30 @@ def bear(pair: Any, dt: float, most: float) -> float:
     most: no load that a stiffness follows is more (force). What is jammed between walls presses as far as it is stiff:
     that would be stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved.
     """
-    if pair.area <= 0.0 or pair.stiffness <= 0.0:
+    if pair.lies <= 0:
         return 0.0
-    pair.load += dt / (dt + LOAD_TIME) * (pair.carrying / dt - pair.load)
-    return float(max(min(most, pair.load), pair.least))
+    pair.load += dt / (dt + LOAD_TIME) * (min(most, pair.carrying / dt) - pair.load)
+    return float(max(pair.load, pair.least))
 
 
 @kernel
-def carry(pair: Any, load: float, dt: float, most: float) -> None:
-    """Once a frame, after `bear`: the pair's stiffness after a load (force) no less than its own.
+def carry(pair: Any, load: float, now: float, depth: float) -> None:
+    """Once a frame, after `bear`: the pair's rate after a load (force) no less than its own, at the depth allowed.
 
     That of the less loaded of its two bodies, not the pair's: where a body lies on several, each bears as much as it is
-    stiff, and stiff as it bears they would share the load in any way at all, and go on sharing it anew.
-    Too soft, it stiffens; far too stiff, it softens slowly, for every change moves what lies on it.
+    stiff, and stiff as it bears they would share the load in any way at all, and go on sharing it anew. One whose k has
+    a potential only stiffens: what it has stored it gives back.
+
+    now: what it bears in this frame (force). Until the rate has grown to that, it resists sinking as if it had; and
+    what goes beyond all that it may sink under (DEEPER) it resists wholly.
     """
-    if pair.area > 0.0 and pair.stiffness > 0.0:
-        pressed = pair.carrying / dt
-        wanted = max(math.sqrt(load * pair.least), load / DEEPER) / pair.area
-        pair.firm = max(wanted, min(most, pressed) / pair.area)
-        k = pair.stiffness
-        if wanted > k:
-            pair.stiffness = STIFFER * k
-        elif TOO_STIFF * wanted < k:
-            pair.stiffness = k / SOFTER
+    if pair.lies > 0:
+        wanted = max(math.sqrt(load * pair.least), load / DEEPER) / depth
+        if pair.lies == FOLLOWS or wanted > pair.rate:
+            pair.rate = wanted
+        pair.firm = max(math.sqrt(now * pair.least), now - DEEPER * pair.least) / depth
     pair.carrying = 0.0
-    pair.area = 0.0
+    pair.lies = 0
 
 
 @kernel
@@ -144,7 +142,8 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
         pair = tables.pairs[tables.near[i].pair]
         a = tables.bodies[tables.shapes[pair.a].body]
         b = tables.bodies[tables.shapes[pair.b].body]
-        carry(pair, min(a.load, b.load), dt, _most(a, b, most))
+        now = min(_most(a, b, most), pair.carrying / dt)
+        carry(pair, min(a.load, b.load), now, allowed_depth(law, a, b))
 
 
 @kernel(forceinline=True)

@@ -18,6 +18,9 @@ CHORD, NODAL = 0, 1
 #: How a body's position comes about: not at all, by our drifts, by a position function of the user's.
 FIXED, DRIFTS, LED = 0, 1, 2
 
+#: How a pair bears: with a k that has a potential, with one that follows its regions' shape, or as no load does.
+LIES, FOLLOWS, BLOW = 1, 2, -1
+
 BODY = record(
     [
         ("address", "u8"),  # of Chipmunk's body; 0: none
@@ -140,6 +143,7 @@ PAIR = record(
         ("next", "i4"),  # in the free list
         ("near", "i4"),  # counters[SEARCH]: it is in `Tables.near`
         ("seats", "i1"),  # 1: it touches, and may do so elsewhere as well without turning
+        ("lies", "i1"),  # how it has borne a load in this frame: LIES, FOLLOWS or BLOW; 0: not at all
         ("verdict", "i1"),  # 1: the user lets it collide, 0: not
         ("side_a", "i1"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
         ("side_b", "i1"),
@@ -168,13 +172,15 @@ PAIR = record(
         ("steer_s", "f8"),
         ("jx", "f8"),  # impulse on B in this frame
         ("jy", "f8"),
-        ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
+        ("rate", "f8"),  # force over depth with which it bears its load (force/length); 0: not chosen yet
+        ("face", "f8"),  # the chord on which one of them would lie (length)
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
-        # k that its load of the last frame asks for: what resists, where k has not grown to it yet
-        ("firm", "f8"),
+        (
+            "firm",
+            "f8",
+        ),  # the rate with which it resists, where its own has not grown to the load yet (force/length)
         ("carrying", "f8"),  # normal impulse in this frame
-        ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
     ],
 )
 
@@ -413,10 +419,10 @@ def comes_first(tables: Tables, a: int, b: int) -> bool:
 def _renew(pair: Any) -> None:
     """A pair that nothing is known of but who it is."""
     pair.seats = 0
-    pair.stiffness = 0.0
+    pair.rate = 0.0
     pair.firm = 0.0
     pair.carrying = 0.0
-    pair.area = 0.0
+    pair.lies = 0
     pair.axis_x = 0.0
     pair.axis_y = 0.0
     pair.parted = -1

@@ -6,7 +6,6 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.kernel.constants import STIFFER
 
 DT = 1 / 60
 
@@ -287,10 +286,9 @@ def test_what_is_jammed_grows_no_stiffer_than_all_that_pushes(hung):
         space.step(DT)
         if i > 540:
             assert max(b.velocity.length for b in bodies) < 10
-    # as stiff as the weight of all asks for (and a fifth more), but 0.01 deep on either side (and, the heap on it, a
-    # tenth more): a disc's A goes as d^1.5
+    # at most as stiff as the weight of all asks for, but 0.01 deep on either side (a tenth more, the heap on it)
     weight, allowed = (20 * 3 + hung) * 900, 2e-4 * 16
-    assert max(contact.regions["force"]) < STIFFER * weight * (0.011 / allowed) ** 1.5
+    assert max(contact.regions["force"]) < weight * 0.011 / allowed
 
 
 def test_what_a_joint_holds_overlapped_is_turned_by_nothing():

@@ -78,8 +78,8 @@ def test_a_card_house_stands(seconds):
     assert way < 0.05 and turn < 0.05 and speed < 1e-3  # a slide of a card's foot is 0.3
 
 
-#: One setting with which all of this stands: beds 200 times as stiff as the default's, four steps a frame.
-ONE = {"engine": ENGINE, "penetration": 1e-6}
+#: One setting with which all of this stands: beds 20 times as stiff as the default's, four steps a frame.
+ONE = {"engine": ENGINE, "penetration": 1e-5}
 
 
 @area_only
@@ -96,9 +96,9 @@ ONE = {"engine": ENGINE, "penetration": 1e-6}
     ids=["ladder 1.03", "ladder 1.05", "arch", "card house", "books"],
 )
 def test_one_setting_stands_them_all(make, seconds):
-    """60 s. They move by what they give when they are put down: a ladder slips by 4 mm of 2 m, and holds."""
+    """60 s. They move by what they give when they are put down: books by 0.8 mm of 1 m, and hold."""
     way, turn, speed = moves(make(), seconds, 4)
-    assert way < 5e-3 and turn < 5e-3 and speed < 1e-9
+    assert way < 1e-3 and turn < 2e-3 and speed < 1e-9
 
 
 @area_only
