@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..kernel.broad import (
     ask_about,
@@ -157,7 +156,7 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     return int(i)
 
 
-@callback(types.void(types.uintp, types.uintp, types.uintp, types.int64))
+@callback("void(uintp, uintp, uintp, int64)")
 def shapes_come(state: int, addresses: int, heads: int, n: int) -> None:
     """Enter n of Chipmunk's shapes; addresses: n words; heads: n int32, the numbers of their outlines."""
     s = array_at(state, (1,), STATE)[0]
@@ -195,7 +194,7 @@ def shapes_come(state: int, addresses: int, heads: int, n: int) -> None:
         ask_about(tables, i)
 
 
-@callback(types.void(types.uintp, types.uintp, types.int64))
+@callback("void(uintp, uintp, int64)")
 def shapes_go(state: int, idents: int, n: int) -> None:
     """Forget n of Chipmunk's shapes; idents: n words, its ids."""
     s = array_at(state, (1,), STATE)[0]
@@ -225,7 +224,7 @@ def shapes_go(state: int, idents: int, n: int) -> None:
     counters[GONE] = 1
 
 
-@callback(types.void(types.uintp, types.uintp, types.int64, types.int64))
+@callback("void(uintp, uintp, int64, int64)")
 def bodies_come(state: int, addresses: int, n: int, hold: int) -> None:
     """Enter n of Chipmunk's bodies; hold: have the solve move them, unless their position function is the user's."""
     s = array_at(state, (1,), STATE)[0]
@@ -241,7 +240,7 @@ def bodies_come(state: int, addresses: int, n: int, hold: int) -> None:
             function[0] = s.hold_at
 
 
-@callback(types.void(types.uintp, types.uintp, types.int64))
+@callback("void(uintp, uintp, int64)")
 def bodies_go(state: int, addresses: int, n: int) -> None:
     """Forget n of Chipmunk's bodies."""
     s = array_at(state, (1,), STATE)[0]
@@ -254,7 +253,7 @@ def bodies_go(state: int, addresses: int, n: int) -> None:
     tables.counters[GONE] = 1
 
 
-@callback(types.void(types.uintp, types.uintp, types.int64))
+@callback("void(uintp, uintp, int64)")
 def placed_anew(state: int, addresses: int, n: int) -> None:
     """n of Chipmunk's bodies, static or asleep, are where they are now: they have been reindexed."""
     s = array_at(state, (1,), STATE)[0]

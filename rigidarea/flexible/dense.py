@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import functools
 from typing import Any
 
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import cached, kernel
+from rigidarea.kernel.jit import kernel, vectorized
 
 Array = NDArray[np.float64]
 
@@ -17,13 +15,7 @@ Array = NDArray[np.float64]
 _SUMS = {"reassoc", "contract"}
 
 
-def _vectorized(signatures: Any, **options: Any) -> Any:
-    """Decorator: compiled for ``signatures`` with loops vectorized, which kernels otherwise are not (``kernel.whole``):
-    here they go over dozens of numbers."""
-    return cached(functools.partial(numba.njit, signatures, error_model="numpy", _nrt=False, **options))
-
-
-@_vectorized(
+@vectorized(
     [f"f8(f8[{a}], f8[{b}])" for a in (":", "::1") for b in (":", "::1")],
     fastmath=_SUMS,
 )
@@ -72,7 +64,7 @@ def eliminate(a: Array, n: int, columns: int) -> None:
 SINGULAR = 1e-12  # of a diagonal: what rounding leaves of one that other rows have taken up
 
 
-@_vectorized("void(f8[:, ::1], f8[:, ::1], f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
+@vectorized("void(f8[:, ::1], f8[:, ::1], f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
 def yielded(
     k: Array, c: Array, right: Array, n: int, columns: int, work: Array, last: NDArray[np.int64]
 ) -> None:
