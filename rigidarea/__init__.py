@@ -6,12 +6,13 @@ space.step(1 / 60)  # as ever
 """
 
 from . import shapes
+from .compile.chosen import backend
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
 from .overlap import OVERLAP, OVERLAPS, overlap, overlaps
 from .plan import Plan, plan
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "OVERLAP",
@@ -23,6 +24,7 @@ __all__ = [
     "SimulationError",
     "attach",
     "attached",
+    "backend",
     "overlap",
     "overlaps",
     "plan",

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import sys
 from pathlib import Path
 
 #: Machine code made ahead of time, which a wheel has beside this file; by numba, here; the kernels' text as Python.
 LIBRARY, COMPILED, INTERPRETED = "library", "compiled", "interpreted"
+_NAME = {"win32": "kernels.dll", "darwin": "kernels.dylib"}.get(sys.platform, "kernels.so")
 #: Where a wheel has its machine code, and what is in it.
-FILES = Path(__file__).with_name("kernels.bin"), Path(__file__).with_name("kernels.json")
+FILES = Path(__file__).with_name(_NAME), Path(__file__).with_name("kernels.json")
 
 
 def _chosen() -> str:

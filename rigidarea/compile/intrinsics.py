@@ -39,31 +39,31 @@ def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
 
 def caller(signature: str) -> Any:
     """`kernel.memory.caller`."""
-    given_types, result = normalize_signature(signature)
+    kinds_given, returned = normalize_signature(signature)
     @intrinsic
     def call(typingctx: Any, address: Any, *arguments: Any) -> Any:
         def codegen(context: Any, builder: Any, typed: Any, args: Any) -> Any:
             kind = ir.FunctionType(
                 ir.VoidType()
-                if result == types.void
-                else context.get_value_type(result),
-                [context.get_value_type(a) for a in given_types],
+                if returned == types.void
+                else context.get_value_type(returned),
+                [context.get_value_type(a) for a in kinds_given],
             )
             pointer = builder.inttoptr(args[0], kind.as_pointer())
             values = args[1]
             given = [
                 context.cast(builder, builder.extract_value(values, i), source, target)
-                for i, (source, target) in enumerate(zip(typed.args[1].types, given_types))
+                for i, (source, target) in enumerate(zip(typed.args[1].types, kinds_given))
             ]
             result = builder.call(pointer, given)
-            return context.get_dummy_value() if result == types.void else result
+            return context.get_dummy_value() if returned == types.void else result
 
         kinds = (
             arguments[0].types
             if len(arguments) == 1 and isinstance(arguments[0], types.BaseTuple)
             else arguments
         )
-        return result(types.uintp, types.StarArgTuple.from_types(tuple(kinds))), codegen
+        return returned(types.uintp, types.StarArgTuple.from_types(tuple(kinds))), codegen
 
     return call
 

@@ -78,6 +78,25 @@ void *NRT_MemInfo_varsize_realloc(MemInfo *info, size_t size) {
     return data;
 }
 
+/* Another shape of an array, without a copy: of one whose items lie one after the other. 0: there is none. */
+int numba_attempt_nocopy_reshape(ptrdiff_t nd, const ptrdiff_t *shape, const ptrdiff_t *strides, ptrdiff_t new_nd,
+                                 const ptrdiff_t *new_shape, ptrdiff_t *new_strides, ptrdiff_t item, int fortran) {
+    ptrdiff_t size = item, i;
+    if (fortran)
+        return 0;
+    for (i = nd - 1; i >= 0; i--) {
+        if (shape[i] != 1 && strides[i] != size)
+            return 0;
+        size *= shape[i];
+    }
+    size = item;
+    for (i = new_nd - 1; i >= 0; i--) {
+        new_strides[i] = size;
+        size *= new_shape[i];
+    }
+    return 1;
+}
+
 /* An array that a kernel has given to Python has been copied: count it down. Only that thread has it. */
 VISIBLE void rigidarea_release(MemInfo *info) {
     if (--info->count == 0)
