@@ -5,15 +5,15 @@ from __future__ import annotations
 import ctypes
 import functools
 import importlib
+import inspect
 import json
 import pickle
 import struct
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import numpy as np
-
-from .chosen import FILES
 
 #: Takes the addresses of arguments and results; the interpreter's lock is kept, as numba does.
 _WAY_IN = ctypes.PYFUNCTYPE(ctypes.c_int, ctypes.c_char_p, ctypes.c_void_p)
@@ -91,7 +91,7 @@ def _taker(kind: Any) -> tuple[str, Callable[[Any, list[Any]], None]]:
     return "Q" + (2 if strides else 1) * ndim * "q", put
 
 
-def _giver(kind: Any) -> tuple[str, Callable[[Any], Any]]:
+def _giver(kind: Any, release: Callable[[int], None]) -> tuple[str, Callable[[Any], Any]]:
     """(format of its words, what makes a value of an iterator over them) of a result."""
     if kind is None:
         return "", lambda words: None
@@ -100,7 +100,7 @@ def _giver(kind: Any) -> tuple[str, Callable[[Any], Any]]:
     if isinstance(kind, str):
         return kind, next
     if "of" in kind:
-        inner = [_giver(one) for one in kind["of"]]
+        inner = [_giver(one, release) for one in kind["of"]]
         givers = [giver for _, giver in inner]
         made: Any = tuple
         if "named" in kind:
@@ -123,7 +123,7 @@ def _giver(kind: Any) -> tuple[str, Callable[[Any], Any]]:
             memory = (ctypes.c_char * size).from_address(address)
             out = np.ndarray(shape, dtype, memory, strides=strides).copy()
         if owner:
-            library.release(owner)
+            release(owner)
         return out
 
     return "QQ" + 2 * ndim * "q", array
@@ -132,9 +132,9 @@ def _giver(kind: Any) -> tuple[str, Callable[[Any], Any]]:
 class _Overload:
     """One function of the library: for arguments of certain types."""
 
-    def __init__(self, described: dict[str, Any]) -> None:
+    def __init__(self, library: Library, described: dict[str, Any]) -> None:
         takers = [_taker(kind) for kind in described["takes"]]
-        code, self._give = _giver(described["returns"])
+        code, self._give = _giver(described["returns"], library.release)
         self._takers = [taker for _, taker in takers]
         self._pack = struct.Struct("=" + "".join(code for code, _ in takers)).pack
         self._out = struct.Struct("=" + code)
@@ -170,14 +170,15 @@ def _raised(status: int, out: Any) -> BaseException:
 class Function:
     """A kernel that Python calls, in machine code."""
 
-    def __init__(self, function: Any, described: list[dict[str, Any]]) -> None:
+    def __init__(self, library: Library, function: Any, described: list[dict[str, Any]]) -> None:
         functools.update_wrapper(self, function)
         self.py_func = function
+        self._library = library
         self._described = described
 
     @functools.cached_property
     def _overloads(self) -> list[_Overload]:
-        return [_Overload(one) for one in self._described]
+        return [_Overload(self._library, one) for one in self._described]
 
     def __call__(self, *arguments: Any, **named: Any) -> Any:
         if named:
@@ -192,8 +193,6 @@ class Function:
         raise TypeError(f"{self.__qualname__} of the library of machine code takes {expected}, got {given}")
 
     def _in_order(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
-        import inspect
-
         return inspect.signature(self.py_func).bind(*arguments, **named).args
 
 
@@ -217,9 +216,9 @@ class Callback:
 class Library:
     """The library that a wheel has."""
 
-    def __init__(self) -> None:
-        self._library = ctypes.CDLL(str(FILES[0]))
-        self._contents: dict[str, Any] = json.loads(FILES[1].read_text())
+    def __init__(self, library: Path, contents: Path) -> None:
+        self._library = ctypes.CDLL(str(library))
+        self._contents: dict[str, Any] = json.loads(contents.read_text())
         release = self._library.rigidarea_release
         release.argtypes, release.restype = [ctypes.c_void_p], None
         self.release: Callable[[int], None] = release
@@ -246,12 +245,9 @@ class Library:
     def function(self, function: Any) -> Any:
         """A kernel: machine code, if Python calls it; else as it is."""
         described = self._contents["functions"].get(f"{function.__module__}.{function.__qualname__}")
-        return Function(function, described) if described else function
+        return Function(self, function, described) if described else function
 
     def callback(self, function: Any) -> Callback:
         """A callback, which all are in the library."""
         symbol = self._contents["callbacks"][f"{function.__module__}.{function.__qualname__}"]
         return Callback(function, self.address(symbol))
-
-
-library = Library()

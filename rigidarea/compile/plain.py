@@ -14,12 +14,11 @@ from typing import Any
 
 import numpy as np
 
-from .chosen import BACKEND, LIBRARY
+from .chosen import BACKEND, FILES, LIBRARY
+from .library import Library
 
-if BACKEND == LIBRARY:
-    from .library import library
-else:
-    library = None  # type: ignore[assignment]
+#: None: interpreted.
+library = Library(*FILES) if BACKEND == LIBRARY else None
 
 _CTYPES = {
     "uintp": ctypes.c_size_t,
