@@ -19,7 +19,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("folder", type=Path, help="where the library and its list of contents are written")
     folder: Path = parser.parse_args(arguments).folder
     os.environ["RIGIDAREA_BACKEND"] = "compiled"
-    with tempfile.TemporaryDirectory() as cache:  # what comes from a cache is machine code, which is of no use here
+    with (
+        tempfile.TemporaryDirectory() as cache
+    ):  # what comes from a cache is machine code, which is of no use here
         os.environ["NUMBA_CACHE_DIR"] = cache
         return _make(folder)
 

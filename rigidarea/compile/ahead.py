@@ -94,12 +94,18 @@ def called_from_python() -> dict[str, Any]:
     for module in modules():
         own = vars(module)
         for thing in list(own.values()):
-            if getattr(thing, "__module__", None) != module.__name__ or _is_kernel(thing) or isinstance(thing, CFunc):
+            if (
+                getattr(thing, "__module__", None) != module.__name__
+                or _is_kernel(thing)
+                or isinstance(thing, CFunc)
+            ):
                 continue
             for code in _codes(thing):
                 for name in code.co_names:
                     there = own.get(name)
-                    inner = [vars(there).get(n) for n in code.co_names] if isinstance(there, ModuleType) else []
+                    inner = (
+                        [vars(there).get(n) for n in code.co_names] if isinstance(there, ModuleType) else []
+                    )
                     for kernel in filter(_is_kernel, [there, *inner]):
                         found[name_of(kernel)] = kernel
     return found
@@ -109,7 +115,9 @@ class Calls:
     """Notes, while it is entered, what Python calls with which types."""
 
     def __init__(self) -> None:
-        self.noted: dict[str, dict[Any, Any]] = {}  # by name: types -> the compiled function (numba's CompileResult)
+        self.noted: dict[
+            str, dict[Any, Any]
+        ] = {}  # by name: types -> the compiled function (numba's CompileResult)
 
     def __enter__(self) -> Calls:
         calls, plain, part = self, compiled.Whole.__bases__[0].__call__, compiled._Part.__call__
@@ -219,7 +227,9 @@ def _leaves(context: Any, builder: Any, kind: Any, value: Any) -> list[Any]:
         return [builder.bitcast(value, _WORD)]
     if isinstance(kind, types.BaseTuple):
         parts = [builder.extract_value(value, i) for i in range(len(kind.types))]
-        return [w for k, part in zip(kind.types, parts, strict=True) for w in _leaves(context, builder, k, part)]
+        return [
+            w for k, part in zip(kind.types, parts, strict=True) for w in _leaves(context, builder, k, part)
+        ]
     array = context.make_array(kind)(context, builder, value)
     ends = [builder.ptrtoint(array.meminfo, _WORD), builder.ptrtoint(array.data, _WORD)]
     return [*ends, *cgutils.unpack_tuple(builder, array.shape), *cgutils.unpack_tuple(builder, array.strides)]
@@ -266,9 +276,17 @@ def _way_in(context: Any, symbol: str, native: str, result: Any, kinds: Any, c: 
 class Unit:
     """One function of the library."""
 
-    def __init__(self, name: str, number: int, compiled_code: bytes, native: str, result: Any, kinds: Any, c: bool) -> None:
+    def __init__(
+        self, name: str, number: int, compiled_code: bytes, native: str, result: Any, kinds: Any, c: bool
+    ) -> None:
         self.symbol = f"{name.replace('.', '_').lstrip('_')}_{number}"
-        self._code, self._native, self._result, self._kinds, self._c = compiled_code, native, result, tuple(kinds), c
+        self._code, self._native, self._result, self._kinds, self._c = (
+            compiled_code,
+            native,
+            result,
+            tuple(kinds),
+            c,
+        )
 
     def described(self) -> dict[str, Any]:
         """What `library` is told."""
@@ -300,7 +318,9 @@ class Unit:
         return codegen._tm.emit_object(module)  # type: ignore[no-any-return]
 
 
-def units(calls: Calls, callbacks: list[CFunc], kept: dict[str, bytes]) -> tuple[dict[str, Unit], dict[str, list[Unit]]]:
+def units(
+    calls: Calls, callbacks: list[CFunc], kept: dict[str, bytes]
+) -> tuple[dict[str, Unit], dict[str, list[Unit]]]:
     """(callbacks, functions) by name."""
     back = {}
     for function in callbacks:
@@ -312,7 +332,15 @@ def units(calls: Calls, callbacks: list[CFunc], kept: dict[str, bytes]) -> tuple
     for name, noted in sorted(calls.noted.items()):
         for kinds, result in noted.items():
             native = result.fndesc.llvm_func_name
-            unit = Unit(name, len(called.get(name, ())), kept[native], native, result.signature.return_type, kinds, False)
+            unit = Unit(
+                name,
+                len(called.get(name, ())),
+                kept[native],
+                native,
+                result.signature.return_type,
+                kinds,
+                False,
+            )
             called.setdefault(name, []).append(unit)
     return back, called
 
@@ -336,7 +364,11 @@ def _trampolines(codegen: Any) -> bytes:
     table = ir.GlobalVariable(module, ir.ArrayType(pointer, len(compiled.externals)), "rigidarea_externals")
     table.initializer = ir.Constant(table.value_type, None)
     for i, (name, signature) in enumerate(compiled.externals.items()):
-        result = ir.VoidType() if signature.return_type == types.none else context.get_value_type(signature.return_type)
+        result = (
+            ir.VoidType()
+            if signature.return_type == types.none
+            else context.get_value_type(signature.return_type)
+        )
         kind = ir.FunctionType(result, [context.get_value_type(k) for k in signature.args])
         function = ir.Function(module, kind, name)
         builder = ir.IRBuilder(function.append_basic_block())

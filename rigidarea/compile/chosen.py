@@ -28,8 +28,14 @@ def _chosen() -> str:
     for way in [asked] if asked else [LIBRARY, COMPILED]:
         if there[way]:
             return way
-    wanted = f"RIGIDAREA_BACKEND={asked}" if asked else "this build of rigidarea, which has no machine code in it,"
-    needs = "a wheel that has machine code in it" if asked == LIBRARY else "numba: pip install 'rigidarea[compile]'"
+    wanted = (
+        f"RIGIDAREA_BACKEND={asked}" if asked else "this build of rigidarea, which has no machine code in it,"
+    )
+    needs = (
+        "a wheel that has machine code in it"
+        if asked == LIBRARY
+        else "numba: pip install 'rigidarea[compile]'"
+    )
     raise ImportError(f"{wanted} needs {needs}")
 
 

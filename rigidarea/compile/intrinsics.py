@@ -40,13 +40,12 @@ def array_at(typingctx: Any, address: Any, shape: Any, dtype: Any) -> Any:
 def caller(signature: str) -> Any:
     """`kernel.memory.caller`."""
     kinds_given, returned = normalize_signature(signature)
+
     @intrinsic
     def call(typingctx: Any, address: Any, *arguments: Any) -> Any:
         def codegen(context: Any, builder: Any, typed: Any, args: Any) -> Any:
             kind = ir.FunctionType(
-                ir.VoidType()
-                if returned == types.void
-                else context.get_value_type(returned),
+                ir.VoidType() if returned == types.void else context.get_value_type(returned),
                 [context.get_value_type(a) for a in kinds_given],
             )
             pointer = builder.inttoptr(args[0], kind.as_pointer())

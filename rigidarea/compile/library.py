@@ -66,7 +66,7 @@ def _taker(kind: Any) -> tuple[str, Callable[[Any, list[Any]], None]]:
         def put(value: Any, words: list[Any]) -> None:
             if not isinstance(value, tuple) or len(value) != len(takers):
                 raise _Other
-            for taker, item in zip(takers, value):  # noqa: B905 - just as many
+            for taker, item in zip(takers, value):
                 taker(item, words)
 
         return "".join(code for code, _ in inner), put
@@ -145,7 +145,7 @@ class _Overload:
         words: list[Any] = []
         if len(arguments) != len(self._takers):
             raise _Other
-        for taker, value in zip(self._takers, arguments):  # noqa: B905 - just as many
+        for taker, value in zip(self._takers, arguments):
             taker(value, words)
         out = ctypes.create_string_buffer(self._room)
         status = self._way_in(self._pack(*words), out)

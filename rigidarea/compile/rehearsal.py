@@ -53,7 +53,11 @@ def _mixed_space() -> pymunk.Space:
 
 
 def _contacts() -> None:
-    for settings in ({}, {"law": "energy", "direction": "nodal"}, {"integration": "explicit", "stiffness": 1e4}):
+    for settings in (
+        {},
+        {"law": "energy", "direction": "nodal"},
+        {"integration": "explicit", "stiffness": 1e4},
+    ):
         space = _mixed_space()
         contact = ra.attach(space, **settings)  # type: ignore[arg-type]
         for _ in range(30):

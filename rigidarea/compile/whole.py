@@ -17,7 +17,6 @@ from llvmlite import binding
 from numba.core import config
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
-
 #: Where code that runs is kept as it is before it is optimized (LLVM's bitcode), by the names of its functions:
 #: `ahead` makes machine code for others of it. None: nowhere.
 kept: dict[str, bytes] | None = None

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-
 from ..chipmunk import function
 from ..kernel.broad import forget_the_gone
 from ..kernel.jit import callback
