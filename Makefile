@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: run test test-all lint studies reference constraints clean
+.PHONY: run test test-all lint studies docs reference constraints clean
 .DEFAULT_GOAL := run
 
 # A dot a second while a command says nothing for long.
@@ -13,7 +13,7 @@ ALIVE := sh -c 'while sleep 1; do printf .; done & trap "kill $$!" EXIT; "$$@"' 
 .venv/.installed: pyproject.toml constraints.txt
 	$(ALIVE) $(PYTHON) -m venv .venv
 	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
-	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,dev]'
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,docs,dev]'
 	touch $@
 
 run: .venv/.installed
@@ -40,9 +40,13 @@ studies: .venv/.installed
 	$(BIN)/python -m rigidarea demo all --no-film --out $(OUT)/gallery
 	cp $(OUT)/gallery/*.png docs/
 
-# Rewrites docs/api.md from the docstrings, and the two pages about pymunk's own examples and tests.
+# Runs every page's snippets, draws their pictures anew, builds the site without a warning into $(OUT)/site.
+docs: .venv/.installed
+	$(BIN)/python tools/pages.py
+	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --strict --site-dir $(OUT)/site
+
+# Rewrites the two pages about pymunk's own examples and tests.
 reference: .venv/.installed
-	$(BIN)/python -m rigidarea reference --docs docs
 	$(BIN)/python -m rigidarea compat tests --docs docs
 	$(BIN)/python -m rigidarea compat examples --docs docs
 

@@ -9,8 +9,9 @@ from . import shapes
 from .compile.chosen import backend
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
-from .overlap import OVERLAP, OVERLAPS, overlap, overlaps
+from .overlap import OVERLAP, OVERLAPS, covers, overlap, overlaps
 from .plan import Plan, plan
+from .queries import point_query, segment_query
 
 __version__ = "0.2.0"
 
@@ -25,8 +26,11 @@ __all__ = [
     "attach",
     "attached",
     "backend",
+    "covers",
     "overlap",
     "overlaps",
     "plan",
+    "point_query",
+    "segment_query",
     "shapes",
 ]

@@ -28,7 +28,6 @@ COMMANDS = {
     "compare": "rigid, compliant and modal beside each other",
     "plan": "the cheapest model and settings within a tolerance, and how often that is right",
     "run": "an existing pymunk program, area contact attached to every space it makes",
-    "reference": "the API reference, written from the docstrings",
     "compat": "pymunk's own examples and tests with area contact attached",
 }
 #: Where they are: each module has `add_arguments(parser)` and `run(arguments)`.
@@ -37,8 +36,13 @@ MODULES = {
     "case": "cases",
     "plan": "plan.command",
     "run": "compat.run",
-    "reference": "reference",
     "compat": "compat.command",
+}
+#: The extra that brings a module which commands need (README, "Set up").
+EXTRAS = {
+    **dict.fromkeys(("pygame", "imageio", "imageio_ffmpeg"), "demos"),
+    **dict.fromkeys(("scipy", "threadpoolctl"), "flexible"),
+    **dict.fromkeys(("matplotlib", "b2d", "pyb2d3", "distributed"), "studies"),
 }
 STUDIES = ("bench", "chart", "atlas", "compare")
 
@@ -101,9 +105,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ModuleNotFoundError as error:
         if (error.name or "").split(".")[0] == "rigidarea":
             raise
-        top.exit(
-            2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[demos,studies,flexible]'\n"
-        )
+        extra = EXTRAS.get((error.name or "").split(".")[0], "demos,studies,flexible")
+        top.exit(2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[{extra}]'\n")
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
     except KeyboardInterrupt:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import sys
 import threading
 import time
@@ -28,13 +29,15 @@ def alive(silence: float = SILENCE, since: float = 0.0) -> Iterator[None]:
     sys.stdout, sys.stderr = (stream and _Heard(stream, hush) for stream in before)  # type: ignore[assignment]
     teller = threading.Thread(target=hush.watch, daemon=True)
     teller.start()
+    process = os.getpid()
     try:
         yield
     finally:
-        hush.over.set()
-        teller.join()
-        hush.heard("")
         sys.stdout, sys.stderr = before
+        if os.getpid() == process:  # a fork has no thread, and may have a lock that the thread held
+            hush.over.set()
+            teller.join()
+            hush.heard("")
 
 
 class _Hush:

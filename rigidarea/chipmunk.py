@@ -383,11 +383,12 @@ def _space_and_constraint() -> dict[str, int]:
         "space_constraints": _find_array(space._space, "constraints", [address_of(joint._constraint)]),
     }
     handler = pymunk.Space.on_collision
-    handler(space, pre_solve=lambda *arguments: None)
+    handler(space, begin=lambda *arguments: None, pre_solve=lambda *arguments: None)
     own = space._handlers[None, None]._handler
+    found["pythons_begin"] = address_of(own.beginFunc)
     found["handler_pre_solve"] = int(ffi.offsetof("struct cpCollisionHandler", "preSolveFunc"))
     found["pythons_pre_solve"] = address_of(own.preSolveFunc)
-    space.on_collision(pre_solve=pymunk.empty_callback)
+    space.on_collision(begin=pymunk.empty_callback, pre_solve=pymunk.empty_callback)
     found["no_pre_solve"] = address_of(own.preSolveFunc)
     globally = address_of(own)
     found["space_handlers"] = globally - address_of(space._space) - 8
@@ -407,9 +408,29 @@ def _space_and_constraint() -> dict[str, int]:
             constraint, "constraint", name, lambda name=name: setattr(joint, name, lambda *arguments: None)
         )
     space.iterations = 10
+    found["space_contacts"] = _contact_buffers(found["space_constraints"])
     two.sleep()
     found["space_sleeping"] = _find_array(space._space, "components that sleep", [address_of(two._body)])
     return found
+
+
+def _contact_buffers(constraints: int) -> int:
+    """Where a space keeps the head of its contact buffers, whose count of contacts is 16 bytes on, and its indices:
+    static, dynamic, joints, arbiters, buffers. constraints: where its joints are (bytes).
+    """
+    space = pymunk.Space()
+    body = pymunk.Body(1, 1)
+    space.add(body, pymunk.Circle(body, 1), pymunk.Circle(space.static_body, 1))
+    lib.cpSpaceStep(space._space, 0.125)
+    (arbiter,) = space._get_arbiters()
+    head = _word(space._space, constraints + 16)
+    first = address_of(ffi.cast("struct cpArbiter *", arbiter).contacts)
+    if head + 24 != first or int(ffi.cast("unsigned int *", head + 16)[0]) != 1:
+        raise LayoutError("contacts: a space's buffer of them is not where it was expected")
+    still, moving = (_word(space._space, constraints - offset) for offset in (16, 8))
+    if _word(ffi.cast("void *", moving), 16) != still or _word(ffi.cast("void *", still), 24) != moving:
+        raise LayoutError("indices: a space's dynamic index does not know its static one")
+    return constraints + 16
 
 
 def _word(pointer: object, offset: int) -> int:

@@ -12,13 +12,14 @@ import math
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Unpack
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
 from .contact import AreaContact, attach
+from .gate import ShapeAttributes
 from .outline import Outline
 
 ENGINES = ("area", "pymunk")
@@ -114,7 +115,7 @@ def load(name: str) -> Scene:
     return scene
 
 
-def static_body(space: pymunk.Space, outline: Outline, **attributes: Any) -> pymunk.Shape:
+def static_body(space: pymunk.Space, outline: Outline, **attributes: Unpack[ShapeAttributes]) -> pymunk.Shape:
     """Add an outline to the space's static body; returns its shape. attributes: as in `Outline.add_to`."""
     shape = outline.add_to(space.static_body, **attributes)
     space.add(shape)
@@ -128,7 +129,7 @@ def add_body(
     *,
     density: float,
     angle: float = 0.0,
-    **attributes: Any,
+    **attributes: Unpack[ShapeAttributes],
 ) -> pymunk.Body:
     """Add a dynamic body of this outline to the space; returns the body.
 

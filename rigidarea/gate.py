@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterable
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 import pymunk
@@ -95,6 +95,17 @@ def listed(values: Any, name: str) -> list[Any]:
         return list(values)
     except TypeError:
         raise ValueError(f"{name} must be a list, got {values!r:.80}") from None
+
+
+class ShapeAttributes(TypedDict, total=False):
+    """What pymunk's shapes have that may be given as keywords."""
+
+    friction: float
+    elasticity: float
+    collision_type: int
+    filter: pymunk.ShapeFilter
+    sensor: bool
+    surface_velocity: tuple[float, float]
 
 
 def checked_attribute(name: str, value: Any) -> None:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property, lru_cache, partial
-from typing import Any
+from typing import Any, Literal, Unpack
 
 import numpy as np
 import pymunk
@@ -29,6 +29,7 @@ from . import arcs as curves
 from .arcs import Points, arc_points, circle_points
 from .gate import (
     LARGEST,
+    ShapeAttributes,
     check_valid,
     checked_attribute,
     checked_bulges,
@@ -39,8 +40,9 @@ from .gate import (
     numbers,
     positive,
 )
+from .pictures import FILL, figure, path_data, svg
 from .simple import check_simple
-from .stand_in import hull_of, stand_in, width_of
+from .stand_in import MAX_VERTICES, hull_of, stand_in, width_of
 
 DEFAULT_TOLERANCE = 5e-5
 """Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
@@ -221,7 +223,7 @@ class Outline:
         shape: pymunk.Shape,
         tolerance: float | None = None,
         *,
-        side: str = "both",
+        side: Literal["both", "left", "right"] = "both",
         thickness: float | None = None,
     ) -> Outline:
         """The solid that a pymunk shape stands for, in its body's coordinates.
@@ -369,24 +371,25 @@ class Outline:
 
     # --- into a pymunk space ---
 
-    def add_to(self, body: pymunk.Body, **shape_attrs: Any) -> pymunk.Shape:
-        """Put the outline on a body, behind a pymunk stand-in shape that contains it; returns that shape,
+    def add_to(self, body: pymunk.Body, **shape_attrs: Unpack[ShapeAttributes]) -> pymunk.Shape:
+        """Put the outline on a body, behind a proxy shape of pymunk's that contains it; returns that shape,
         to add to the space.
 
-        The stand-in only tells the broad phase where to look; contact is computed with the exact outline,
-        which hangs on it as `shape.outline` and survives copying and pickling. The stand-in is the
+        The proxy only tells the broad phase where to look; contact is computed with the exact outline,
+        which hangs on it as `shape.outline` and survives copying and pickling. The proxy is the
         circle itself for a disc, its convex hull where that has no more than 8 vertices, else the tighter of
-        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). Hence pymunk's
-        own queries and drawing see the stand-in: `point_query`, `segment_query`, `shapes_collide` and
-        `debug_draw` report a slot, a hole or the gap between two teeth as solid. It has no mass: give the
-        body its mass and moment (`moment`, or `body`).
+        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). In an attached
+        space callbacks and `debug_draw` see the outline. pymunk's own queries see the proxy: `point_query`,
+        `segment_query` and `shapes_collide` report a slot, a hole or the gap between two teeth as solid;
+        `rigidarea.point_query` and `rigidarea.segment_query` do not. The proxy has no mass: give the body its mass
+        and moment (`moment`, or `body`).
 
         shape_attrs: friction, elasticity, collision_type, filter, sensor, surface_velocity, as in pymunk.
         Raises ValueError for other names (mass and density among them), and for values that pymunk could not take.
         """
         if not isinstance(body, pymunk.Body):
             raise ValueError(f"body must be a pymunk.Body, got {type(body).__name__}")
-        known = ("friction", "elasticity", "collision_type", "filter", "sensor", "surface_velocity")
+        known = ShapeAttributes.__annotations__
         unknown = sorted(set(shape_attrs) - set(known))
         if unknown:
             raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")
@@ -398,6 +401,15 @@ class Outline:
             setattr(shape, name, value)
         shape.outline = self
         return shape
+
+    @cached_property
+    def proxied(self) -> bool:
+        """Whether pymunk's broad phase sees another shape (`add_to`): not of a disc, a convex polygon of at the most
+        8 points, a segment.
+        """
+        if self.arcs:
+            return len(self.rings) > 1 or not curves.is_circle(self.arcs[0])
+        return not self.two_sided and (len(self.rings[0]) > MAX_VERTICES or not self.convex)
 
     @cached_property
     def smallest_extent(self) -> float:
@@ -421,7 +433,7 @@ class Outline:
         return stand_in(hull_of(curves.around(self.rings[0], self.arcs[0])) if self.arcs else self._hull)
 
     def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
-        """A dynamic pymunk body with this outline's mass, moment and centre of gravity (no shape on it yet).
+        """A dynamic pymunk body at the origin with this outline's mass, moment, centre of gravity (no shape on it yet).
 
         Give either density (mass/length²) or mass. Raises ValueError unless exactly one is given, positive
         and finite.
@@ -433,6 +445,7 @@ class Outline:
         mass = positive(mass, "mass")
         body = pymunk.Body(mass, mass * self._gyration)
         body.center_of_gravity = self.centroid
+        body.position = 0, 0  # which pymunk moves with the centre of gravity
         return body
 
     # --- immutable: copies share it ---
@@ -446,6 +459,13 @@ class Outline:
     def __reduce__(self) -> tuple[Any, ...]:
         mirror = None if self.mirror is None else self.mirror.rings
         return _restore, (self.rings, self._resample, mirror, self.arcs)
+
+    def _repr_svg_(self) -> str:
+        """A notebook's picture of it."""
+        return svg([(path_data(self.rings, self.arcs), "", FILL)], self.bounds)
+
+    def _repr_html_(self) -> str:
+        return figure(self._repr_svg_(), repr(self))
 
     def __repr__(self) -> str:
         points = " + ".join(str(len(ring)) for ring in self.rings)

@@ -22,7 +22,6 @@ from .kernel.pool import Pool, pack
 from .outline import DEFAULT_TOLERANCE, Outline
 from .store import overlap_by_address, state_of_arrays
 
-#: One row a region, as `overlap` returns them.
 OVERLAP = np.dtype(
     [
         ("area", "f8"),  # (length^2)
@@ -34,7 +33,7 @@ OVERLAP = np.dtype(
         ("polygon", "O"),
     ]
 )
-#: One row a region, as `overlaps` returns them.
+"""One row a region, as `overlap` returns them: area, centroid, direction, chord, polygon."""
 OVERLAPS = np.dtype(
     [
         ("place", "i8"),  # which of the places
@@ -44,6 +43,7 @@ OVERLAPS = np.dtype(
         ("chord", "f8"),  # (length); 0 where the boundaries do not cross
     ]
 )
+"""One row a region, as `overlaps` returns them: place, area, centroid, direction, chord."""
 
 
 _scratch = threading.local()

@@ -42,14 +42,16 @@ BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, R
 SHAPE_WORDS = SHAPE.itemsize // 8
 #: What a frame that may have to be run again starts from.
 KEPT = ("bodies", "pairs", "regions", "counters")
+#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
+EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live", "awake"),
-    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "keys", "values", "counters"),
+    *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "table", "counters"),
     *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
-    *("users", "mirrors", "extents"),
+    *("form_extent", "form_mirror", "form_users", "form_span", "form_raw", "form_table", "form_fill"),
     *(f"kept_{name}" for name in KEPT),
     "seen",
 ]
@@ -66,7 +68,7 @@ OFFSETS = [
     *("arbiter_elasticity", "arbiter_friction", "arbiter_surface", "arbiter_shape_a", "arbiter_count"),
     *("arbiter_contacts", "arbiter_normal", "arbiter_process", "arbiter_handlers", "arbiter_stamp"),
     *("contact_normal_impulse", "contact_tangent_impulse", "contact_size"),
-    *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve"),
+    *("handler_pre_solve", "no_pre_solve", "pythons_pre_solve", "pythons_begin", "space_contacts"),
     *("space_gravity", "space_bodies", "space_constraints", "space_handlers", "space_sleeping"),
     *("constraint_a", "constraint_collide", "constraint_pre_solve", "constraint_post_solve"),
 ]
@@ -85,7 +87,6 @@ STATE = record(
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
         ("frame", "i8"),  # Chipmunk's number of the step that has begun
-        ("held", "i8"),  # the step in which a position function of ours was last called
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
@@ -120,6 +121,7 @@ STATE = record(
         # where the times of a frame's phases are summed up (`contact/phases.py`); 0: nowhere
         ("phases_at", "u8"),
         ("scratch_at", "u8"),  # room for what nobody reads
+        ("shown_at", "u8"),  # what arbiters of outlines are made to say (`contact/shown.py`)
         ("kinds_at", "u8"),  # what `chipmunk.kinds_of_joints` has found
     ],
 )
@@ -314,8 +316,7 @@ def load_tables(s: Any) -> Tables:
         array_at(s.near_at, (s.near_n,), NEIGHBOURS),
         array_at(s.apart_at, (s.apart_n, 2), np.int32),
         array_at(s.joints_at, (s.joints_n,), JOINT),
-        array_at(s.keys_at, (s.keys_n,), np.int64),
-        array_at(s.values_at, (s.values_n,), np.int32),
+        array_at(s.table_at, (s.table_n,), np.int32),
         array_at(s.counters_at, (s.counters_n,), np.int64),
     )
 

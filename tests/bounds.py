@@ -95,6 +95,8 @@ def outline(draw: random.Random) -> ra.Outline:
 def add(space: pymunk.Space, draw: random.Random) -> None:
     """A body with one or two shapes, or none."""
     body = pymunk.Body(draw.choice([1, 0.1, 20]), draw.choice([1, 0.1, 1e-2]))
+    if draw.random() < 0.2:
+        body = pymunk.Body(body_type=pymunk.Body.STATIC)
     body.position = draw.uniform(-4, 4), draw.uniform(0.5, 8)
     body.velocity = draw.uniform(-9, 9), draw.uniform(-30, 9)
     shapes: list[pymunk.Shape] = []
@@ -147,7 +149,7 @@ def remove(space: pymunk.Space, draw: random.Random) -> None:
 
 
 def scene(seed: int) -> None:
-    """A space in which things come, are joined, and go, for some frames."""
+    """A space in which things come, are joined, and go, for some frames; some before there is one."""
     global _at_end
     _at_end = seed % 2 == 0
     draw = random.Random(seed)
@@ -160,6 +162,10 @@ def scene(seed: int) -> None:
     contact = ra.attach(space)
     for _ in range(12):
         draw.choice([add, add, join, remove])(space, draw)
+        for _ in range(draw.choice([0, 0, 60])):
+            tile = pymunk.Poly(space.static_body, [(0, -1), (1, -1), (0, 0)])
+            space.add(tile)
+            space.remove(tile)
         try:
             contact.step(DT, 2, steps=draw.choice([None, 1, 5]))
         except ra.SimulationError:

@@ -24,10 +24,10 @@ def run(arguments):
     atexit.register(print, "at exit", flush=True)
     raise SystemExit(CODE)
 
-parsers = command.parser("reference")
-sys.argv = ["rigidarea", "reference"]
+parsers = command.parser("plan")
+sys.argv = ["rigidarea", "plan", "nothing.py"]
 command.parser = lambda name: parsers
-parsers._subparsers._group_actions[0].choices["reference"].set_defaults(run=run)
+parsers._subparsers._group_actions[0].choices["plan"].set_defaults(run=run)
 command.main()
 """
 

@@ -133,3 +133,35 @@ def test_extent_knows_arcs(kernel: Any) -> None:
         k = loops[0]
         got = extent(work.polygon, work.bows, int(k["start"]), int(k["stop"]), bool(k["arcs"]), *n)
         assert got == pytest.approx((along.min(), along.max()), abs=1e-6)
+
+
+def frame(thin: float, bulge: float) -> ra.Outline:
+    """A star of four curved sides, hollow, with a bar to the right."""
+    corners = [
+        (1, -0.05, 0),
+        (1, 0.05, bulge),
+        (0.05, 1, 0),
+        (-0.05, 1, bulge),
+        (-1, 0.05, 0),
+        (-1, -0.05, bulge),
+    ]
+    corners += [(-0.05, -1, 0), (0.05, -1, bulge)]
+    hollow = [((1 - thin) * x, (1 - thin) * y, b) for x, y, b in corners]
+    return ra.Outline.from_bulges([corners[0], (3, -0.05, 0), (3, 0.05, 0), *corners[1:]], [hollow])
+
+
+def test_thin_curved_frames_keep_their_hollow(kernel: Any) -> None:
+    """One of two regions has a hole, thinner round it than its arcs are high: which one it is in is asked on an arc.
+    (On a chord it was in none, and the overlap 0.)"""
+    claw = ra.Outline([(-2, -2), (1.5, -2), (1.5, 2), (2.5, 2), (2.5, -2), (3.5, -2), (3.5, 3), (-2, 3)])
+    rng = np.random.default_rng(6)
+    for _ in range(3 if PURE_PYTHON else 40):
+        a = frame(10 ** rng.uniform(-3, -0.5), float(rng.uniform(-0.42, 0.5)))
+        turn = rng.uniform(0, TAU)
+        a = a.rotated(turn)
+        pose = (*rng.uniform(-0.05, 0.05, 2), turn)
+        want = placed(a, (0, 0, 0)).intersection(placed(claw, pose)).area
+        for one, other, pose_one, pose_other in ((a, claw, (0, 0, 0), pose), (claw, a, pose, (0, 0, 0))):
+            found = kernel.one(one, pose_one, other, pose_other)
+            assert found.count.tolist() == [2]
+            assert found.area.sum() == pytest.approx(want, abs=1e-6)

@@ -1,33 +1,117 @@
-"""Documents that are run: every Python block, every test that a table names, the reference's names."""
+"""The site: every snippet runs, pictures are what snippets draw, nothing warns, questions find their answers."""
 
+import importlib
 import inspect
+import json
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
+from types import ModuleType
 
+import numpy as np
 import pymunk
 import pytest
 import shapely
 
 import rigidarea as ra
-from rigidarea import reference
-from rigidarea.__main__ import COMMANDS, main
+from rigidarea.__main__ import COMMANDS
 
 ROOT = Path(__file__).parent.parent
-FROM_PYMUNK = ROOT / "docs" / "from-pymunk.md"
+DOCS = ROOT / "docs"
+FROM_PYMUNK = DOCS / "from-pymunk.md"
+sys.path.insert(0, str(ROOT / "tools"))
+pages = importlib.import_module("pages")
 
 
-def blocks(text: str) -> list[str]:
-    return re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+@pytest.mark.parametrize("page", pages.pages(), ids=lambda page: page.stem)
+def test_every_python_block_runs_and_draws_its_picture(page, tmp_path, monkeypatch):
+    """In their order, in one namespace: each goes on from the one before. `python tools/pages.py` draws anew."""
+    pygame = pytest.importorskip("pygame")
+    if page.stem == "learning":
+        pytest.importorskip("gymnasium")
+    monkeypatch.chdir(tmp_path)
+    pages.run(page, tmp_path)
+    for block in pages.blocks(page):
+        if block.picture is not None:
+            drawn, kept = (
+                pygame.surfarray.array3d(pygame.image.load(folder / f"{block.picture}.png")).astype(int)
+                for folder in (tmp_path, DOCS / "pictures")
+            )
+            off = np.abs(drawn - kept).max(axis=2) > 30 if drawn.shape == kept.shape else np.ones(1)
+            assert off.mean() < 0.01, f"{block.picture}: python tools/pages.py"
 
 
-@pytest.mark.parametrize("page", ["docs/from-pymunk.md", "README.md"])
-def test_every_python_block_runs(page):
-    """In their order, in one namespace: each goes on from the one before."""
-    found = blocks((ROOT / page).read_text())
-    assert len(found) >= 2
-    names: dict = {}
-    for number, block in enumerate(found):
-        exec(compile(block, f"{page}, block {number}", "exec"), names)
+def test_snippets_are_found():
+    found = {page.stem: len(list(pages.blocks(page))) for page in pages.pages()}
+    assert found["tutorial"] >= 8 and found["questions"] == 13 and found["README"] >= 1 and len(found) >= 9
+
+
+def test_every_picture_of_a_page_is_there_and_every_file_is_shown():
+    text = {page: page.read_text() for page in [ROOT / "README.md", *DOCS.rglob("*.md")]}
+    shown = {
+        (page.parent / name).resolve()
+        for page, words in text.items()
+        for name in re.findall(r"!\[[^\]]*\]\(([^)]+\.png)\)", words)
+    }
+    assert all(path.is_file() for path in shown), [path for path in shown if not path.is_file()]
+    drawn = {DOCS / "pictures" / f"{b.picture}.png" for page in text for b in pages.blocks(page) if b.picture}
+    assert set((DOCS / "pictures").glob("*.png")) == drawn
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory):
+    """The site, built; its folder."""
+    pytest.importorskip("mkdocs")
+    pytest.importorskip("material")
+    folder = tmp_path_factory.mktemp("site")
+    built = subprocess.run(
+        [sys.executable, "-m", "mkdocs", "build", "--strict", "-d", str(folder)],
+        env={**os.environ, "NO_MKDOCS_2_WARNING": "1"},  # the theme's own, of a MkDocs to come
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        timeout=300,
+    )
+    assert built.returncode == 0, built.stderr
+    assert "WARNING" not in built.stderr and "built in" in built.stderr
+    return folder
+
+
+def test_the_site_is_built_without_a_warning_and_has_every_public_name(site):
+    for module, page in REFERENCE.items():
+        text = (site / "reference" / f"{page}.html").read_text()
+        for name in public(importlib.import_module(module)):
+            assert re.search(rf'id="[\w.]*\b{name}"', text), f"{module}.{name}"
+
+
+#: In a game author's words, written before the answers, and the section that answers.
+ASKED = {
+    "player on the ground can jump": "how-do-i-know-the-player-stands-on-the-ground",
+    "body sinks into the floor": "why-does-it-sink",
+    "draw a gear": "how-do-i-draw-a-gear",
+    "jump through a platform from below": "how-does-one-jump-through-a-platform-from-below",
+    "pinball bumper elasticity": "how-do-i-make-a-bumper-that-gives-back-more",
+    "level from svg inkscape": "how-do-i-get-a-level-out-of-a-drawing",
+    "damage how hard hit impulse": "how-hard-was-it-hit",
+    "mouse click shape": "what-is-under-the-mouse",
+    "gears drive each other": "how-do-i-make-gears-drive-each-other",
+    "frame slow": "why-is-a-frame-slow-and-what-does-it-cost",
+    "fly apart first frame": "why-does-everything-fly-apart-in-the-first-frame",
+    "save game pickle": "how-do-i-save-the-game",
+}
+
+
+def test_the_search_finds_the_answers(site):
+    """Among the first three; by the engine of the site's own search, titles counting as there."""
+    lunr = pytest.importorskip("lunr")
+    documents = json.loads((site / "search" / "search_index.json").read_text())["docs"]
+    fields = [{"field_name": "title", "boost": 1000}, {"field_name": "text"}]
+    index = lunr.lunr(ref="location", fields=fields, documents=documents)
+    for question, section in ASKED.items():
+        first = [hit["ref"] for hit in index.search(question)[:3]]
+        assert f"questions.html#{section}" in first, (question, first)
 
 
 def test_every_row_names_a_test_that_is_there():
@@ -44,9 +128,9 @@ def test_every_row_names_a_test_that_is_there():
 
 
 def test_every_command_shown_is_there():
-    pages = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
-    assert len(pages) > 8
-    for page in pages:
+    every = [ROOT / "README.md", *sorted(DOCS.rglob("*.md"))]
+    assert len(every) > 15
+    for page in every:
         for command in re.findall(r"python -m rigidarea\s+(\w+)", page.read_text()):
             assert command in COMMANDS, (page, command)
 
@@ -67,7 +151,7 @@ def test_docs_refresh():
     assert body.position.y == pytest.approx(17, abs=0.2)  # 5 of the segment, 12 of the disc
 
 
-def test_docs_queries_see_the_stand_in():
+def test_docs_queries_see_the_proxy():
     space = pymunk.Space()
     ell = ra.Outline([(0, 0), (4, 0), (4, 1), (1, 1), (1, 4), (0, 4)])
     body = ell.body(density=1)
@@ -78,39 +162,26 @@ def test_docs_queries_see_the_stand_in():
 
 # --- the reference ---
 
+REFERENCE = {
+    f"rigidarea{name}": page for name, page in (("", "rigidarea"), (".shapes", "shapes"), (".bring", "bring"))
+}
 
-@pytest.mark.parametrize("module", ["rigidarea", "rigidarea.shapes", "rigidarea.bring"])
+
+def public(module: ModuleType) -> dict[str, object]:
+    """The names that a module offers, submodules left out."""
+    found = {name: getattr(module, name) for name in module.__all__}
+    return {name: value for name, value in found.items() if not inspect.ismodule(value)}
+
+
+@pytest.mark.parametrize("module", REFERENCE)
 def test_everything_public_is_documented(module):
-    for name, value in reference.public(__import__(module, fromlist=["x"])).items():
+    for name, value in public(importlib.import_module(module)).items():
         if inspect.isclass(value) or inspect.isfunction(value):
             assert inspect.getdoc(value), name
         if inspect.isclass(value):
             for member, inner in vars(value).items():
                 if not member.startswith("_") and (inspect.isfunction(inner) or isinstance(inner, property)):
                     assert inspect.getdoc(inner), f"{name}.{member}"
-
-
-def test_the_page_has_every_public_name():
-    """Content is renewed by a command; a name that is missing is a page that nobody renewed."""
-    page = (ROOT / "docs" / "api.md").read_text()
-    for module in ("rigidarea", "rigidarea.shapes", "rigidarea.bring"):
-        for name in reference.public(__import__(module, fromlist=["x"])):
-            assert re.search(rf"^### (class )?`{name}\b", page, re.MULTILINE), f"{name}: make reference"
-
-
-def test_the_command_writes_the_page(tmp_path, capsys):
-    assert main(["reference", "--docs", str(tmp_path)]) == 0
-    text = (tmp_path / "api.md").read_text()
-    assert text == reference.page() and "### class `Outline`\n\n```python\nOutline(points: ArrayLike" in text
-    assert main(["reference"]) == 0
-    assert capsys.readouterr().out == text
-
-
-def test_signatures_keep_their_defaults():
-    def made(self, law: "str" = "area", wide: "float | None" = None) -> "int":
-        return 0
-
-    assert reference._signature(made) == "(law: str = 'area', wide: float | None = None) -> int"
 
 
 def test_theory_cites_what_is_there():

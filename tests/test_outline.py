@@ -466,3 +466,11 @@ def test_a_body_from_an_outline():
             outline.body(**wrong)
     with pytest.raises(ValueError, match="mass must be finite and not negative, got -1"):
         outline.moment(-1)
+
+
+def test_a_body_is_where_its_outline_was_drawn():
+    """Before anybody sets its position: at the origin, its centre of gravity at the outline's centroid."""
+    plate = Outline([(10, 20), (14, 20), (14, 23), (10, 23)])
+    body = plate.body(mass=2)
+    assert body.position == (0, 0)
+    assert body.local_to_world(body.center_of_gravity) == pytest.approx(plate.centroid)

@@ -15,7 +15,10 @@ N = 60
 
 
 def fresh(n: int = N) -> tuple[np.ndarray, np.ndarray]:
-    return tree.new_nodes(n), np.array([-1, -1, 0], np.int32)
+    nodes = np.zeros(2 * n, tree.NODE)  # all free, the first one first
+    nodes["parent"] = np.arange(1, 2 * n + 1)
+    nodes["parent"][-1:] = -1
+    return nodes, np.array([-1, -1, 0], np.int32)
 
 
 def found(nodes: np.ndarray, root: int, box: tuple[float, ...]) -> list[int]:

@@ -14,12 +14,14 @@ from .image import outlines_from_image, outlines_from_mask
 from .limits import LIMITS, Limits
 from .save import save_scene, scene_as_text
 from .scene import Scene, load_scene, scene_from_text
-from .svg import outlines_from_svg
+from .svg import Element, elements_from_svg, outlines_from_svg
 
 __all__ = [
     "LIMITS",
+    "Element",
     "Limits",
     "Scene",
+    "elements_from_svg",
     "load_scene",
     "outlines_from_geojson",
     "outlines_from_image",

@@ -31,6 +31,7 @@ class Limits(NamedTuple):
 
 
 LIMITS = Limits()
+"""Of files from anywhere: the default."""
 
 
 def read(source: str | os.PathLike[str], limits: Limits) -> bytes:

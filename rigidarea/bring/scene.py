@@ -44,13 +44,13 @@ from __future__ import annotations
 
 import os
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, Unpack, cast
 
 import numpy as np
 import pymunk
 import shapely
 
-from ..contact import AreaContact, attach
+from ..contact import AreaContact, Settings, attach
 from ..outline import Outline
 from .joints import COMMON, JOINTS, LENGTH, POINT
 from .limits import LIMITS, Limits, allowed, check, file_of, read, shown, text
@@ -78,12 +78,13 @@ class Scene:
     bodies: dict[str, pymunk.Body]
     """Those that have a name."""
     joints: dict[str, pymunk.Constraint]
-    contact: dict[str, Any] = field(default_factory=dict)
+    contact: Settings = field(default_factory=Settings)
     """Arguments of `rigidarea.attach`."""
 
-    def attach(self, **more: Any) -> AreaContact:
+    def attach(self, **more: Unpack[Settings]) -> AreaContact:
         """Attach area contact to `space` with the settings of the file; those in `more` (of `rigidarea.attach`) win."""
-        return attach(self.space, **{**self.contact, **more})
+        settings: Settings = {**self.contact, **more}
+        return attach(self.space, **settings)
 
 
 def load_scene(source: str | os.PathLike[str], limits: Limits = LIMITS) -> Scene:
@@ -187,7 +188,7 @@ class _Reader(Values):
         check(len(given_joints), self.limits.parts, "joints")
         for i, given in enumerate(given_joints):
             self.joint(given, f"joints[{i}]", space, bodies, joints)
-        return Scene(space, bodies, joints, contact)
+        return Scene(space, bodies, joints, cast(Settings, contact))
 
     # --- parts ---
 

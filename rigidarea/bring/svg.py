@@ -5,19 +5,26 @@ from __future__ import annotations
 import math
 import os
 import re
-from typing import Any
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from typing import Any, NamedTuple, Unpack
 from xml.parsers import expat
 
-from ..gate import size, truth
+import numpy as np
+import pymunk
+import shapely
+
+from ..gate import ShapeAttributes, size, truth
 from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read, shown, text
-from .rings import outlines_of_polygons, polygons_of_rings
+from .rings import outlines_of_polygons, overlapping_boxes, polygons_of_rings
 from .svg_path import NUMBER, Matrix, Segments, finite_numbers, numbers
+from .values import Ring
 
 #: A drawing is read in Python, some megabyte a second.
 SVG_BYTES = 2 * 2**20
 #: Things that can make a small file a large drawing, or reach beyond the file.
-REFUSED = ("use", "script", "foreignObject")
+REFUSED = ("script", "foreignObject")
 #: What is inside these is drawn only where something else asks for it.
 ASIDE = ("defs", "symbol", "clipPath", "mask", "marker", "pattern")
 NAMESPACE = "http://www.w3.org/2000/svg"
@@ -32,12 +39,44 @@ _UNITS = {
     "mm": 9.6 / 2.54,
     "q": 2.4 / 2.54,
 }
+_STRAIGHT: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
 _TURNS = {"": 1.0, "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}
 _LENGTH = re.compile(rf"\s*+({NUMBER})\s*+([A-Za-z]*+|%)\s*+")
 _TRANSFORM = re.compile(r"[\s,]*+([A-Za-z]++)\s*+\(([^()]*+)\)[\s,]*+")
 #: Attributes that a style may set too.
 _STYLED = {"display", "transform", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r"}
-_SHAPES = ("path", "rect", "circle", "ellipse", "polyline", "polygon")
+#: What an element takes from those around it, and what it is where none says.
+_INK = {
+    "fill": "black",
+    "stroke": "none",
+    "stroke-width": "1",
+    "stroke-linecap": "butt",
+    "stroke-linejoin": "miter",
+}
+_SHAPES = ("path", "rect", "circle", "ellipse", "polyline", "polygon", "line")
+_CLOSED = ("rect", "circle", "ellipse", "polygon")
+#: Points of the strokes of one element, and pairs of their edges whose boxes overlap: GEOS pays for every crossing.
+STROKED, CROSSING = 1_000, 50_000
+LABEL = "http://www.inkscape.org/namespaces/inkscape label"
+HREF = "http://www.w3.org/1999/xlink href"
+
+
+class Element(NamedTuple):
+    """A solid of an SVG file, with the names that it has there."""
+
+    outline: Outline
+    id: str
+    """The element's `id`, or that of the <use> that drew it; empty: it has none."""
+    name: str
+    """Its label in Inkscape, or else its id."""
+    layers: tuple[str, ...]
+    """Names of the groups around it, the outermost first."""
+
+    def add_to(self, body: pymunk.Body, **shape_attrs: Unpack[ShapeAttributes]) -> pymunk.Shape:
+        """`Outline.add_to`, the shape with its `name` and `layers` as attributes."""
+        shape = self.outline.add_to(body, **shape_attrs)
+        shape.name, shape.layers = self.name, self.layers  # type: ignore[attr-defined]
+        return shape
 
 
 def outlines_from_svg(
@@ -48,28 +87,48 @@ def outlines_from_svg(
     tolerance: float | None = None,
     limits: Limits = LIMITS,
 ) -> list[Outline]:
-    """Outlines from an SVG file: one for every connected solid of every path, rectangle, circle, ellipse, polygon.
+    """Outlines from an SVG file: those of `elements_from_svg`, without their names."""
+    found = elements_from_svg(source, scale=scale, flip=flip, tolerance=tolerance, limits=limits)
+    return [element.outline for element in found]
 
-    Within one element what lies within an odd number of its rings is solid, so letters keep their holes; whether it
-    is filled or stroked is not asked, `display: none` is. Transforms and units are applied; lengths are CSS pixels
+
+def elements_from_svg(
+    source: str | os.PathLike[str],
+    *,
+    scale: float = 1.0,
+    flip: bool = False,
+    tolerance: float | None = None,
+    limits: Limits = LIMITS,
+) -> list[Element]:
+    """What an SVG file draws: an element for every connected solid of every path, rectangle, circle, ellipse, polygon.
+
+    Within one element what lies within an odd number of its rings is solid, so letters keep their holes. What has a
+    stroke and `fill: none` is the stroke, as wide as it is drawn; lines too. Else what is inside counts, filled or not,
+    unless `display: none`. <use> draws what it names. Transforms and units are applied; lengths are CSS pixels
     times `scale`. y points down as in the file, or up with `flip`. tolerance: largest sagitta of a chord in place of a
-    curve (length; None: a thousandth of the element's smaller extent).
+    curve (length; None: a thousandth of the element's smaller extent, of a stroke's width).
 
-    Raises ValueError for what is no SVG, for a file that uses entities, scripts or <use> (a short one can unfold
-    without end), for rings that cross, and for more than `limits` allow.
+    Raises ValueError, with the element and its line, for what is no SVG, for a file with entities or scripts, for rings
+    that cross, for a <use> of nothing or of itself, and for more than `limits` allow, what is used again counted again.
     """
     allowed(limits), truth(flip, "flip"), size(scale, "scale")
     if tolerance is not None:
         size(tolerance, "tolerance")
     content = text(read(source, limits._replace(bytes=min(limits.bytes, SVG_BYTES))), str(source))
     try:
-        sheet = _Sheet(limits)
-        _parsed(content, sheet)
-        drawing = _Drawing(limits, _rules("".join(sheet.style)))
-        _parsed(content, drawing)
-        made: list[Outline] = []
-        for rings in drawing.segments.rings(scale, flip, tolerance):
-            made += outlines_of_polygons(polygons_of_rings(rings, limits), 0.0, limits)
+        tree = _Tree(limits)
+        _parsed(content, tree)
+        drawing = _Drawing(limits, tree)
+        made: list[Element] = []
+        for mark, rings in zip(drawing.marks, drawing.segments.rings(scale, flip, tolerance, 2)):
+            with _at(mark.node):
+                polygons = (
+                    polygons_of_rings([ring for ring in rings if len(ring) >= 3], limits)
+                    if mark.stroke is None
+                    else _stroked(rings, mark.stroke._replace(width=scale * mark.stroke.width), tolerance)
+                )
+                found = outlines_of_polygons(polygons, 0.0, limits)
+            made += [Element(outline, mark.id, mark.name, mark.layers) for outline in found]
             check(len(made), limits.rings, "outlines")
         return made
     except expat.ExpatError as error:
@@ -78,68 +137,171 @@ def outlines_from_svg(
         raise ValueError(f"{source}: {error}") from None
 
 
-class _Sheet:
-    """First reading: nothing in it that is not read, nor too much; its style sheets."""
+class _Node(NamedTuple):
+    """An element of the file."""
+
+    space: str
+    tag: str
+    given: dict[str, str]
+    line: int
+    children: list[_Node]
+
+    def __str__(self) -> str:
+        named = f" id={shown(self.given['id'])}" if "id" in self.given else ""
+        return f"line {self.line}, <{self.tag[:40]}{named}>"
+
+
+class _Stroke(NamedTuple):
+    """A pen: its width (length), caps and joins as SVG calls them; closed: the element's rings are."""
+
+    width: float
+    cap: str
+    join: str
+    closed: bool
+
+
+class _Mark(NamedTuple):
+    """What is drawn: an element of the file, its names, its pen."""
+
+    node: _Node
+    id: str
+    name: str
+    layers: tuple[str, ...]
+    stroke: _Stroke | None
+
+
+@contextmanager
+def _at(node: _Node) -> Iterator[None]:
+    """Within it, a ValueError says at which element it was."""
+    try:
+        yield
+    except ValueError as error:
+        raise ValueError(f"{node}: {error}") from None
+
+
+class _Tree:
+    """Reading: all elements, no more than are allowed; the style sheets."""
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
-        self.elements = self.depth = 0
+        self.elements = 0
+        self.open: list[_Node] = []
+        self.root: _Node | None = None
+        self.named: dict[str, _Node] = {}
         self.styled = 0
         self.style: list[str] = []
 
-    def start(self, name: str, given: dict[str, str]) -> None:
-        tag = name.rpartition(" ")[2]
+    def start(self, name: str, given: dict[str, str], line: int) -> None:
+        space, _, tag = name.rpartition(" ")
         if tag in REFUSED:
             raise ValueError(f"expected a plain drawing, got '<{tag}'")
-        if self.depth == 0 and name not in ("svg", f"{NAMESPACE} svg"):
+        if self.root is None and name not in ("svg", f"{NAMESPACE} svg"):
             raise ValueError(f"expected an SVG drawing, got one with <{tag[:40]}> around it")
         self.elements += 1
-        self.depth += 1
         check(self.elements, self.limits.parts, "elements")
-        check(self.depth, self.limits.depth, "elements within each other")
+        node = _Node(space, tag, given, line, [])
+        if self.open:
+            self.open[-1].children.append(node)
+        else:
+            self.root = node
+        self.open.append(node)
+        check(len(self.open), self.limits.depth, "elements within each other")
+        if "id" in given:
+            self.named.setdefault(given["id"], node)
         self.styled += tag == "style"
 
     def end(self, name: str) -> None:
-        self.depth -= 1
-        self.styled -= name.rpartition(" ")[2] == "style"
+        self.styled -= self.open.pop().tag == "style"
 
     def words(self, found: str) -> None:
         if self.styled:
             self.style.append(found)
 
 
+class _Place(NamedTuple):
+    """Where an element is drawn: what those around it say."""
+
+    node: _Node
+    matrix: Matrix
+    view: tuple[float, float]
+    """What percentages are of (length)."""
+    ink: dict[str, str]
+    layers: tuple[str, ...]
+    depth: int
+    used: dict[str, str] | None
+    """The attributes of the <use> that draws it."""
+
+
 class _Drawing:
-    """Second reading: what is drawn."""
+    """What is drawn, in the order of the file."""
 
-    def __init__(self, limits: Limits, rules: dict[str, dict[str, str]]) -> None:
+    def __init__(self, limits: Limits, tree: _Tree) -> None:
         self.segments = Segments(limits)
-        self.rules = rules
-        #: Of every open element: its transform, the size that percentages are of, whether it is drawn.
-        self.open: list[tuple[Matrix, tuple[float, float], bool]] = []
+        self.marks: list[_Mark] = []
+        self.named = tree.named
+        self.rules = _rules("".join(tree.style))
+        assert tree.root is not None  # else expat would have said so
+        todo = [_Place(tree.root, _STRAIGHT, (0.0, 0.0), _INK, (), 1, None)]
+        drawn = 0
+        while todo:
+            place = todo.pop()
+            drawn += 1
+            with _at(place.node):
+                check(drawn, limits.parts, "elements")
+                check(place.depth, limits.depth, "elements within each other")
+                todo += reversed(self._inner(place))
 
-    def start(self, name: str, given: dict[str, str]) -> None:
-        space, _, tag = name.rpartition(" ")
-        matrix, view, drawn = (
-            self.open[-1] if self.open else ((1.0, 0.0, 0.0, 1.0, 0.0, 0.0), (0.0, 0.0), True)
-        )
-        if drawn and space in ("", NAMESPACE):
-            given = self._styled(tag, given)
-            drawn = tag not in ASIDE and given.get("display", "").strip().lower() != "none"
-            if drawn:
-                matrix = _times(matrix, _transform(given.get("transform", "")))
-                if tag == "svg":
-                    matrix, view = _viewport(matrix, view, given)
-                    drawn = view[0] > 0 and view[1] > 0
-                elif tag in _SHAPES:
-                    self._shape(tag, given, view)
-                    self.segments.element(matrix)
-        self.open.append((matrix, view, drawn))
+    def _inner(self, place: _Place) -> list[_Place]:
+        """Draw one element; what is to be drawn within it."""
+        node, used = place.node, place.used
+        if node.space not in ("", NAMESPACE):
+            return [place._replace(node=child, depth=place.depth + 1, used=None) for child in node.children]
+        given = self._styled(node.tag, node.given)
+        aside = node.tag in ASIDE and not (node.tag == "symbol" and used is not None)
+        if aside or given.get("display", "").strip().lower() == "none":
+            return []
+        matrix, view = _times(place.matrix, _transform(given.get("transform", ""))), place.view
+        ink = {name: given.get(name, value) for name, value in place.ink.items()}
+        if node.tag in ("svg", "symbol"):
+            if used is not None:
+                given = given | {name: used[name] for name in ("width", "height") if name in used}
+            matrix, view = _viewport(matrix, view, given)
+            if not (view[0] > 0 and view[1] > 0):
+                return []
+        name = (used or {}).get("id", given.get("id", ""))
+        if node.tag in _SHAPES:
+            label = (used or {}).get(LABEL, given.get(LABEL, name))
+            stroke = self._pen(node.tag, ink, matrix, view)
+            if node.tag != "line" or stroke is not None:
+                self._shape(node.tag, given, view)
+                if self.segments.element(matrix):
+                    self.marks.append(_Mark(node, name, label, place.layers, stroke))
+        inner = place._replace(matrix=matrix, view=view, ink=ink, depth=place.depth + 1, used=None)
+        if node.tag == "use":
+            href = given.get("href", given.get(HREF, "")).strip()
+            target = self.named.get(href[1:]) if href.startswith("#") else None
+            if target is None:
+                raise ValueError(f"expected href to name an element of the file, got {shown(href)}")
+            x, y = (_length(given.get(axis), whole, f"use.{axis}") or 0.0 for axis, whole in zip("xy", view))
+            return [
+                inner._replace(node=target, matrix=_times(matrix, (1.0, 0.0, 0.0, 1.0, x, y)), used=given)
+            ]
+        if node.tag == "g" and (LABEL in given or name):
+            inner = inner._replace(layers=(*place.layers, given.get(LABEL, name)))
+        return [inner._replace(node=child) for child in node.children]
 
-    def end(self, name: str) -> None:
-        self.open.pop()
-
-    def words(self, found: str) -> None:
-        pass
+    def _pen(
+        self, tag: str, ink: dict[str, str], matrix: Matrix, view: tuple[float, float]
+    ) -> _Stroke | None:
+        """The pen of what is drawn by its stroke alone; None: it is solid."""
+        hollow = tag == "line" or ink["fill"].strip().lower() in ("none", "transparent")
+        if not hollow or ink["stroke"].strip().lower() in ("none", "transparent"):
+            return None
+        width = _length(ink["stroke-width"], math.hypot(*view) / math.sqrt(2), f"{tag}.stroke-width") or 0.0
+        width *= math.sqrt(abs(matrix[0] * matrix[3] - matrix[1] * matrix[2]))
+        if not width > 0:
+            return None
+        return _Stroke(width, ink["stroke-linecap"].strip(), ink["stroke-linejoin"].strip(), tag in _CLOSED)
 
     def _styled(self, tag: str, given: dict[str, str]) -> dict[str, str]:
         """Attributes, then what style sheets say in the order of their selectors' weight, then the element's style."""
@@ -161,7 +323,10 @@ class _Drawing:
             return _length(given.get(name), whole, f"{tag}.{name}")
 
         w, h = view
-        if tag == "path":
+        if tag == "line":
+            ends = [complex(length(f"x{i}", w) or 0.0, length(f"y{i}", h) or 0.0) for i in (1, 2)]
+            self.segments.polyline(ends)
+        elif tag == "path":
             self.segments.path(given.get("d", ""))
         elif tag in ("polyline", "polygon"):
             found = numbers(given.get("points", ""), f"{tag}.points")
@@ -185,7 +350,41 @@ class _Drawing:
                 self.segments.ellipse(complex(length("cx", w) or 0.0, length("cy", h) or 0.0), rx, ry)
 
 
-def _parsed(content: str, reader: _Sheet | _Drawing) -> None:
+def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> list[shapely.Polygon]:
+    """What a pen covers on its way along rings, (n, 2) each."""
+    check(sum(map(len, rings)), STROKED, "points of a stroke")
+    ways = ((r, np.append(True, (r[1:] != r[:-1]).any(axis=1))) for r in rings)
+    rings = [
+        ring[new] for ring, new in ways if np.count_nonzero(new) > 1
+    ]  # a pen that does not move draws nothing
+    if not rings:
+        return []
+    ends = [(ring[:-1], ring[1:]) for ring in rings]
+    low, high = (np.concatenate([how(a, b) for a, b in ends]) for how in (np.minimum, np.maximum))
+    overlapping_boxes(shapely.box(*low.T, *high.T), CROSSING, "edges of a stroke", keep=False)
+    half = pen.width / 2
+    sagitta = min(1e-3 * pen.width if tolerance is None else tolerance, half)
+    quarter = min(64, max(1, math.ceil(math.pi / 4 / math.acos(1 - sagitta / half))))
+    covered = []
+    for ring in rings:
+        closed = pen.closed or (len(ring) > 2 and bool((ring[0] == ring[-1]).all()))
+        way = shapely.LinearRing(ring) if closed and len(ring) > 2 else shapely.LineString(ring)
+        with np.errstate(invalid="ignore"):  # of numbers near the largest; what is not finite is refused
+            covered.append(
+                shapely.buffer(
+                    way,
+                    half,
+                    quad_segs=quarter,
+                    cap_style={"round": "round", "square": "square"}.get(pen.cap, "flat"),
+                    join_style={"round": "round", "bevel": "bevel"}.get(pen.join, "mitre"),
+                    mitre_limit=4.0,
+                )
+            )
+    parts = shapely.get_parts(shapely.union_all(covered))
+    return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
+
+
+def _parsed(content: str, reader: _Tree) -> None:
     """Every element of an XML text handed to the reader; no entity but XML's own five, nothing from elsewhere."""
 
     def refuse(*_: Any) -> None:
@@ -193,7 +392,7 @@ def _parsed(content: str, reader: _Sheet | _Drawing) -> None:
 
     parser = expat.ParserCreate(namespace_separator=" ")
     parser.StartDoctypeDeclHandler = refuse
-    parser.StartElementHandler = reader.start
+    parser.StartElementHandler = lambda name, given: reader.start(name, given, parser.CurrentLineNumber)
     parser.EndElementHandler = reader.end
     parser.CharacterDataHandler = reader.words
     parser.Parse(content, True)
@@ -217,7 +416,7 @@ def _rules(sheet: str) -> dict[str, dict[str, str]]:
 def _declarations(style: str) -> dict[str, str]:
     found = (part.partition(":") for part in style.split(";"))
     told = ((name.strip(), value.replace("!important", "").strip()) for name, _, value in found)
-    return {name: value for name, value in told if name in _STYLED}
+    return {name: value for name, value in told if name in _STYLED or name in _INK}
 
 
 def _length(found: str | None, whole: float, what: str) -> float | None:

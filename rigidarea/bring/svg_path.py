@@ -219,17 +219,21 @@ class Segments:
     def _quadratic(self, a: complex, b: complex, to: complex) -> None:
         self.curve(a, (a + 2 * b) / 3, (to + 2 * b) / 3, to)
 
-    def element(self, matrix: Matrix) -> None:
-        """What was appended since the last element is one, with this transform."""
+    def element(self, matrix: Matrix) -> bool:
+        """What was appended since the last element is one, with this transform; False: nothing was."""
         if len(self.kinds) > (self.stops[-1] if self.stops else 0):
             check(len(self.stops) + 1, self.limits.parts, "elements")
             check(len(self.kinds), self.limits.points, "points")
             check(len(self.kinds), SEGMENTS, "segments")
             self.stops.append(len(self.kinds))
             self.matrices.append(matrix)
+            return True
+        return False
 
-    def rings(self, scale: float, flip: bool, tolerance: float | None) -> list[list[Ring]]:
-        """The rings of each element, transformed, times `scale`, y upwards with `flip`; see `outlines_from_svg`.
+    def rings(self, scale: float, flip: bool, tolerance: float | None, least: int = 3) -> list[list[Ring]]:
+        """The rings of each element, transformed, times `scale`, y upwards with `flip`; see `elements_from_svg`.
+
+        Those of fewer than `least` points are left out.
 
         A curve's chord over 1/n of its parameter is off by at most max|B''| / (8 n^2), and B'' is bounded by the
         control points' second differences; of an arc it is the longer half diameter times the sweep's square.
@@ -244,7 +248,8 @@ class Segments:
         if flip:
             matrices[:, 1::2] *= -1
         with np.errstate(all="ignore"):  # what is not finite is refused below
-            return self._sampled(kinds, ends, of, starts, matrices, tolerance)
+            found = self._sampled(kinds, ends, of, starts, matrices, tolerance)
+        return [[ring for ring in rings if len(ring) >= least] for rings in found]
 
     def _sampled(
         self,
@@ -309,8 +314,7 @@ class Segments:
         moves = np.flatnonzero(kinds == _MOVE)
         found: list[list[Ring]] = [[] for _ in starts]
         for element, ring in zip(of[moves].tolist(), np.split(told, first[moves[1:]])):
-            if len(ring) >= 3:
-                found[element].append(ring)
+            found[element].append(ring)
         return found
 
 

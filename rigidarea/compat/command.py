@@ -232,16 +232,19 @@ def _lives(arguments: argparse.Namespace) -> int:
     if arguments.programs < 1:
         raise ValueError(f"programs must be at least 1, got {arguments.programs}")
     lives.warm()
-    wrong = []
+    wrong, natively = [], []
     for seed in range(arguments.seed, arguments.seed + arguments.programs):
         text = lives.run(seed)
-        if text:
+        if text and (lives.of_pymunk(text) or lives.run(seed, native=True)):
+            natively.append(seed)
+        elif text:
             wrong.append({"seed": seed, "wrong": text})
             print(text, file=sys.stderr, flush=True)
     settings = {"programs": arguments.programs, "seed": arguments.seed}
-    write_json(envelope("compat lives", settings, wrong, summary={"wrong": len(wrong)}), arguments.json)
+    told = {"wrong": len(wrong), "natively": natively}
+    write_json(envelope("compat lives", settings, wrong, summary=told), arguments.json)
     if arguments.json != "-":
-        print(f"{arguments.programs} programs, {len(wrong)} wrong")
+        print(f"{arguments.programs} programs, {len(wrong)} wrong, natively too: {natively or 'none'}")
     return int(bool(wrong))
 
 

@@ -18,7 +18,18 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .. import Outline, SimulationError, attach, attached, overlap, overlaps, shapes
+from .. import (
+    Outline,
+    SimulationError,
+    attach,
+    attached,
+    covers,
+    overlap,
+    overlaps,
+    point_query,
+    segment_query,
+    shapes,
+)
 from ..bring import scene_from_text
 from .surface import surface
 
@@ -214,6 +225,9 @@ class Trial:
             ("outline.add_to(not a body)", lambda: self.outline.add_to(n())),
             ("overlap", lambda: overlap(self.outline, self.pose(), Outline.circle(0.5), self.pose())),
             ("overlaps", lambda: overlaps(self.outline, places(), Outline.circle(0.5), places())),
+            ("covers", lambda: covers(self.outline, self.pose(), (n(), n()))),
+            ("point_query", lambda: point_query(self.space, self.draw.choice([(n(), n()), (0, 0), n()]))),
+            ("segment_query", lambda: segment_query(self.space, (n(), n()), self.draw.choice([(0, 0), n()]))),
             ("overlap(not an outline)", lambda: overlap(n(), (0, 0, 0), self.outline, (0, 0, 0))),
             ("shapes.box", lambda: measured(shapes.box(n(), n()))),
             ("shapes.circle", lambda: measured(shapes.circle(n()))),

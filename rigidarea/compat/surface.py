@@ -138,6 +138,10 @@ def _brought(trial: Trial) -> Calls:
             lambda: _measured(bring.outlines_from_svg(_file("a.svg", drawing(draw)), tolerance=0.1)),
         ),
         (
+            "bring.elements_from_svg",
+            lambda: bring.elements_from_svg(_file("c.svg", drawing(draw)), scale=n()),
+        ),
+        (
             "bring.outlines_from_svg(settings)",
             lambda: _measured(
                 bent(

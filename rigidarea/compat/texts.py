@@ -98,7 +98,7 @@ _LINES: list[list[str]] = [
     *(["case", "?"], ["case", "hertz", "--mode", "?"], ["bench", "?"], ["chart", "--scene", "?"]),
     *(["atlas", "--scene", "?"], ["compare", "?"], ["run", "?"], ["run", "--frames", "?", "/none.py"]),
     *(["run", "--engine", "?", "/none.py"], ["plan", "?"], ["plan", "/none.py", "--tolerance", "?"]),
-    *(["compat", "?"], ["compat", "examples", "?"], ["compat", "fuzz", "--calls", "?"], ["reference", "?"]),
+    *(["compat", "?"], ["compat", "examples", "?"], ["compat", "fuzz", "--calls", "?"]),
     *(["compat", "soak", "--steps", "?"], ["?"], [], ["--version", "?"], ["compat", "tests", "?"]),
 ]
 

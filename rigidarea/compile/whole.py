@@ -17,6 +17,8 @@ from llvmlite import binding
 from numba.core import config
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
+from .interrupts import put_off
+
 #: Where code that runs is kept as it is before it is optimized (LLVM's bitcode), by the names of its functions:
 #: `ahead` makes machine code for others of it. None: nowhere.
 kept: dict[str, bytes] | None = None
@@ -72,12 +74,13 @@ class Codegen(JITCPUCodegen):  # type: ignore[misc]
 
 @contextlib.contextmanager
 def compiling(context: Any, part: bool) -> Iterator[None]:
-    """Within, numba's target context compiles parts, or what runs."""
-    before = context._internal_codegen
-    context._internal_codegen = copy.copy(before)
-    context._internal_codegen.__class__ = Codegen
-    context._internal_codegen._library_class = _Part if part else _Whole
-    try:
-        yield
-    finally:
-        context._internal_codegen = before
+    """Within, numba's target context compiles parts, or what runs; interrupts wait (`interrupts`)."""
+    with put_off():
+        before = context._internal_codegen
+        context._internal_codegen = copy.copy(before)
+        context._internal_codegen.__class__ = Codegen
+        context._internal_codegen._library_class = _Part if part else _Whole
+        try:
+            yield
+        finally:
+            context._internal_codegen = before

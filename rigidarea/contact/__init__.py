@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from .attach import AreaContact, SimulationError, attach
+from .attach import AreaContact, Settings, SimulationError, attach
 from .report import REGIONS
 from .space import attached
 
-__all__ = ["REGIONS", "AreaContact", "SimulationError", "attach", "attached"]
+__all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]

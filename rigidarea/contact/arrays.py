@@ -1,8 +1,8 @@
 """The tables of one attached space: numpy arrays that grow by doubling, and the record by which they are found.
 
-Nothing here knows pymunk: shapes are Chipmunk's integer ids, bodies are addresses.
+Nothing here knows pymunk's objects: shapes are Chipmunk's integer ids, bodies are addresses.
 
-Tables grow by transactions: a copy (`draft`, or new arrays in a copy of this) is changed, then put in their place
+Tables grow by transactions: new arrays in a copy of the store are filled, then put in the place of the old ones
 (`publish`) by two stores between which Python calls nothing. What is raised on the way, a MemoryError or an interrupt,
 leaves the old ones as they were.
 """
@@ -14,14 +14,15 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
+from pymunk._chipmunk_cffi import ffi
 
+from ..chipmunk import address_of
 from ..kernel.conjugate import FACTOR, MOBILITY
 from ..kernel.joint import JOINT
 from ..kernel.overlap import enlarged, fits, new_work
 from ..kernel.pool import HEAD, HasRings, Pool, pack
 from ..kernel.row import ROW
 from ..kernel.tables import (
-    BODIES,
     BODY,
     COUNTERS,
     FREE_BODY,
@@ -30,10 +31,13 @@ from ..kernel.tables import (
     FREE_REGION,
     FREE_REGIONS,
     FREE_SHAPE,
+    MORE_BODIES,
     MORE_JOINTS,
     MORE_KEPT,
     MORE_PAIRS,
     MORE_REGIONS,
+    MORE_SHAPES,
+    MORE_SLOTS,
     MORE_WORK,
     NEIGHBOURS,
     PAIR,
@@ -74,10 +78,11 @@ _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
 class Store:
     """Growing tables of one space, and `state`, the record (1,) STATE of where they are."""
 
-    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64) -> None:
-        """For how many there is room from the start; regions: half as many as pairs."""
+    def __init__(self, bodies: int = 16, shapes: int = 16, pairs: int = 64, regions: int = 32) -> None:
+        """For how many there is room from the start."""
         self.state = np.zeros(1, STATE)
         self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
+        self.at = int(self.state.ctypes.data)
         self._listed: Sequence[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
         self.pool = Pool(
             np.zeros((256, 2)),
@@ -116,8 +121,7 @@ class Store:
             np.zeros(1, NEIGHBOURS),
             np.zeros((JOINTS, 2), np.int32),
             np.zeros(JOINTS, JOINT),
-            np.full(64, -1, np.int64),
-            np.zeros(64, np.int32),
+            np.full(64, -1, np.int32),
             np.zeros(COUNTERS, np.int64),
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR, FREE_SHAPE, FREE_BODY]] = -1
@@ -131,27 +135,21 @@ class Store:
         self._kept = {name: np.zeros(0) for name in (*(f"kept_{name}" for name in KEPT), "seen")}
         self._keeps = False
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
-        self._buffer = np.zeros(64)  # the numbers of one shape
         self._most = (0, 0)  # points and rings of the largest outline
         self._used = 0  # how many outlines had a shape, or might have, when that was last asked
         self._grow_nodes(shapes)
         self.grow_pairs(pairs)
-        self.grow_regions(pairs // 2)
+        self.grow_regions(regions)
         self.sync()
 
     def sizes(self) -> dict[str, int]:
         """What each array takes (bytes)."""
         arrays = {**self.pool._asdict(), **self.work._asdict(), **self.tables._asdict(), **self._kept}
-        own = {name: getattr(self, name) for name in ("state", "slots", "body_keys", "body_rows")}
-        forms = {f"form_{name}": array for name, array in self.forms._asdict().items()}
-        return {name: array.nbytes for name, array in {**arrays, **own, **forms}.items()}
+        own = {name: getattr(self, name) for name in ("state", *_OWN)}
+        return {name: array.nbytes for name, array in {**arrays, **own, **self._named_forms()}.items()}
 
-    def draft(self) -> Store:
-        """A copy, to be changed and published. Of what only grows at its end, and of scratch, there is one."""
-        new = copy.copy(self)
-        new.tables = Tables(*(array.copy() for array in self.tables))
-        new._outlines = self._outlines.copy()
-        return new
+    def _named_forms(self) -> dict[str, np.ndarray]:
+        return {f"form_{name}": array for name, array in self.forms._asdict().items()}
 
     def note_layout(self, offsets: dict[str, int]) -> None:
         """Write Chipmunk's layout (`chipmunk.layout`) into the state record."""
@@ -177,34 +175,39 @@ class Store:
                 self._kept = {**self._kept, f"kept_{name}": np.zeros(len(tables[name]), tables[name].dtype)}
         if self._keeps and len(self._kept["seen"]) != len(self.tables.bodies):
             self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
-        own = {name: getattr(self, name) for name in _OWN}
-        own |= {"users": self.forms.users, "mirrors": self.forms.mirror, "extents": self.forms.extent}
+        own = {name: getattr(self, name) for name in _OWN} | self._named_forms()
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
         words, known = self._words.copy(), self._listed
         self._listed = listed = [arrays[name] for name in ARRAYS]
         for i, (array, before) in enumerate(zip(listed, known)):
-            if array is not before:  # asking numpy takes a microsecond each
-                words[i], words[len(ARRAYS) + i] = array.ctypes.data, len(array)
+            if array is not before:  # (numpy itself takes three times as long to say where an array is)
+                words[i], words[len(ARRAYS) + i] = address_of(ffi.from_buffer(array)), len(array)
         return words
 
     def grow(self) -> None:
         """Make the room that machine code has asked for (counters MORE_...), all of it or none; of pairs and regions
-        a quarter more."""
-        new = self.draft()
-        counters = new.tables.counters
-        pairs, regions, joints, work, kept = (
-            int(counters[k]) for k in (MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT)
-        )
-        counters[[MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT]] = 0
+        an eighth more."""
+        new, counters = copy.copy(self), self.tables.counters.copy()
+        new.tables = self.tables._replace(counters=counters)  # what grows is a new array
+        wanted = [MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT]
+        wanted += [MORE_SHAPES, MORE_BODIES, MORE_SLOTS]
+        pairs, regions, joints, work, kept, shapes, bodies, slots = counters[wanted].tolist()
+        counters[wanted] = 0
         new._keeps = self._keeps or kept > 0
         if pairs > 0:
-            new.grow_pairs((len(new.tables.pairs) + pairs) * 5 // 4)
+            new.grow_pairs((len(new.tables.pairs) + pairs) * 9 // 8)
         if regions > 0:
-            new.grow_regions((len(new.tables.regions) + regions) * 5 // 4)
+            new.grow_regions((len(new.tables.regions) + regions) * 9 // 8)
         if joints > 0:
             new.grow_joints(len(new.tables.joints) + joints)
         if work > 0:
             new.grow_work()
+        if shapes > 0:
+            new.grow_shapes(max(len(new.tables.shapes) + shapes, 2 * len(new.tables.shapes)))
+        if bodies > 0:
+            new.grow_bodies(max(len(new.tables.bodies) + bodies, 2 * len(new.tables.bodies)))
+        if slots > 0:
+            new.slots = _longer(new.slots, max(len(new.slots) + slots, 2 * len(new.slots)), -1)
         self.publish(new)
 
     def grow_pairs(self, n: int) -> None:
@@ -222,9 +225,7 @@ class Store:
         near[: len(self.tables.near)] = self.tables.near
         told = np.zeros(len(new), np.int32)
         told[: len(old)] = self.tables.told
-        self.tables = self.tables._replace(
-            pairs=new, near=near, told=told, keys=np.full(size, -1, np.int64), values=np.zeros(size, np.int32)
-        )
+        self.tables = self.tables._replace(pairs=new, near=near, told=told, table=np.full(size, -1, np.int32))
         if len(old):  # (handing all tables over takes longer than making them)
             rehash(self.tables)
 
@@ -257,27 +258,19 @@ class Store:
         points, rings = self._most
         self.work = enlarged(self.work, 2 * points, 2 * rings)
 
-    def room(self, shapes: int, bodies: int, ident: int) -> None:
-        """Room for so many shapes and bodies more, and for Chipmunk's ids up to `ident`."""
-        tables, new = self.tables, copy.copy(self)
-        counters = tables.counters
-        if counters[SHAPES] + shapes > len(tables.shapes):
-            n = max(int(counters[SHAPES]) + shapes, 2 * len(tables.shapes))
-            longer = {name: _longer(getattr(tables, name), n) for name in ("shapes", "movers", "asked")}
-            new.tables = new.tables._replace(**longer)
-            new._grow_nodes(n)
-        if counters[BODIES] + bodies > len(tables.bodies):
-            n = max(int(counters[BODIES]) + bodies, 2 * len(tables.bodies))
-            longer = {name: _longer(getattr(tables, name), n) for name in ("bodies", "live", "awake")}
-            new.tables = new.tables._replace(**longer, mobility=np.zeros(n, MOBILITY))
-            size = _power(2 * n)
-            used = self.body_keys != 0
-            new.body_keys, new.body_rows = np.zeros(size, np.uint64), np.zeros(size, np.int32)
-            enter_bodies(new.body_keys, new.body_rows, self.body_keys[used], self.body_rows[used])
-        if ident >= len(self.slots):
-            new.slots = _longer(self.slots, max(ident + 1, 2 * len(self.slots)), -1)
-        if new.tables is not tables or new.slots is not self.slots:
-            self.publish(new)
+    def grow_shapes(self, n: int) -> None:
+        """Room for n shapes."""
+        longer = {name: _longer(getattr(self.tables, name), n) for name in ("shapes", "movers", "asked")}
+        self.tables = self.tables._replace(**longer)
+        self._grow_nodes(n)
+
+    def grow_bodies(self, n: int) -> None:
+        """Room for n bodies."""
+        longer = {name: _longer(getattr(self.tables, name), n) for name in ("bodies", "live", "awake")}
+        self.tables = self.tables._replace(**longer, mobility=np.zeros(n, MOBILITY))
+        used, keys, rows = self.body_keys != 0, self.body_keys, self.body_rows
+        self.body_keys, self.body_rows = np.zeros(_power(2 * n), np.uint64), np.zeros(_power(2 * n), np.int32)
+        enter_bodies(self.body_keys, self.body_rows, keys[used], rows[used])
 
     def _grow_nodes(self, shapes: int) -> None:
         """Room for so many shapes in the trees."""
@@ -302,7 +295,7 @@ class Store:
         heads = len(new.forms.users)
         if 2 * heads > len(forms.table):
             new.forms = new.forms._replace(table=np.full(_power(4 * heads), -1, np.int32))
-            for h in np.flatnonzero(forms.raw_at[: forms.fill[3], 1]):
+            for h in np.flatnonzero(forms.span[: forms.fill[3], 1]):
                 enter_form(new.forms, int(h))
         self.publish(new)
 
@@ -330,7 +323,7 @@ class Store:
         self.forms.fill[:4] += len(one.points), len(one.rings), len(one.boxes), 1
         left, bottom, right, top = outline.bounds
         self.forms.extent[h] = extent, 0.5 * (right - left), 0.5 * (top - bottom)
-        self.forms.mirror[h], self.forms.users[h], self.forms.raw_at[h, 1] = -1, 0, 0
+        self.forms.mirror[h], self.forms.users[h], self.forms.span[h, 1] = -1, 0, 0
         self._note_most(len(one.points), len(one.rings))
         self._outlines[id(outline)] = h, outline
         return h
@@ -347,22 +340,19 @@ class Store:
         else:
             self._most = most
 
-    def read(self, addresses: np.ndarray, where: np.ndarray) -> tuple[np.ndarray, int]:
-        """Outlines of Chipmunk's own shapes at these addresses (n,) uint64: their numbers; which has no area, or -1."""
-        heads = np.zeros(len(addresses), np.int32)
+    def read(self, addresses: int, heads: int, n: int) -> int:
+        """Outlines of n of Chipmunk's own shapes (`read_shapes`). Which has no area; -1: all have."""
         done, start = 0, int(self.forms.fill[3])
-        while done < len(addresses):
-            done, why = read_shapes(addresses, done, where, self.pool, self.forms, self._buffer, heads)
-            if why == -1:
-                return heads, done
+        while done < n:
+            done, why = read_shapes(self.at, addresses, heads, done, n)
+            if why < 0:
+                return done
             if why > 0:
-                self._buffer = np.zeros(2 * why)
-            elif done < len(addresses):
-                n = len(addresses) - done + len(self._buffer)
-                self._pool_room(8 * n, 2 * n, 32 * n, 2 * n, 10 * n)
+                more = n - done + why
+                self._pool_room(8 * more, 2 * more, 32 * more, 2 * more, 10 * more)
         if self.forms.fill[3] > start:
             self._note_most(int(self.pool.heads["count"][start : self.forms.fill[3]].max()), 1)
-        return heads, -1
+        return -1
 
     def tidy(self) -> None:
         """Outlines that no shape has go, in time."""
@@ -377,16 +367,16 @@ class Store:
         old, forms, new = self.pool, self.forms, copy.copy(self)
         renumbered = np.full(n + 1, -1, np.int32)  # the last for "none"
         renumbered[used] = np.arange(len(used))
-        heads, raw_at = old.heads[used], forms.raw_at[used]
-        points, rings, boxes, raws = heads["count"], heads["rings"], 2 * heads["leaves"], raw_at[:, 1].copy()
+        heads, span = old.heads[used], forms.span[used]
+        points, rings, boxes, raws = heads["count"], heads["rings"], 2 * heads["leaves"], span[:, 1].copy()
         take = [_ranges(heads["point"], points), _ranges(heads["ring"], rings), _ranges(heads["box"], boxes)]
         shift = [
             _starts(points) - heads["point"],
             _starts(rings) - heads["ring"],
             _starts(boxes) - heads["box"],
         ]
-        raw = forms.raw[_ranges(raw_at[:, 0], raws)]
-        raw_at[:, 0] = _starts(raws)
+        raw = forms.raw[_ranges(span[:, 0], raws)]
+        span[:, 0] = _starts(raws)
         following = old.following[take[0]] + np.repeat(shift[0], points)
         ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points)
         ends = old.rings[take[1]] + np.repeat(shift[0], rings)[:, None]
@@ -396,7 +386,7 @@ class Store:
         new.pool = Pool._make(map(_filled, old, kept))
         sums = np.array((points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()), np.int64)
         mirror = renumbered[forms.mirror[used]]
-        told = forms.extent[used], mirror, forms.users[used], raw_at, raw
+        told = forms.extent[used], mirror, forms.users[used], span, raw
         new.forms = Forms._make([*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums])
         for h in np.flatnonzero(raws):
             enter_form(new.forms, int(h))

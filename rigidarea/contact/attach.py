@@ -8,7 +8,7 @@ import time
 import weakref
 from collections.abc import Callable
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 import pymunk
@@ -18,6 +18,7 @@ from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.jit import lock_for_fork
+from ..kernel.join import SPARE
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import positive
 from .arrays import Store
@@ -25,6 +26,9 @@ from .memory import Memory, recall, remember
 from .register import Register
 from .report import regions_of, total_energy
 from .space import KEY, attached, attached_class
+
+if TYPE_CHECKING:
+    from ..flexible import Assembly
 
 LAWS = {"area": LAW_AREA, "energy": LAW_ENERGY}
 DIRECTIONS = {"chord": CHORD, "nodal": NODAL}
@@ -60,16 +64,17 @@ class AreaContact:
     # --- attaching ---
 
     def _install(self, space: pymunk.Space) -> None:
-        from . import joints, waking  # the machine code: compiled, or loaded, when first attached
+        from . import joints, record, waking  # the machine code: compiled, or loaded, when first attached
         from .hook import Hook
 
         self._error: BaseException | None = None
         self._before: list[tuple[pymunk.Body, tuple[float, ...]]] = []
         self._stepping = False
         bodies = max(16, len(space._bodies) + 1)
-        # room for a pile: each time there are more pairs, a frame is run again (a copy takes its original's tables)
-        pairs = 2 * bodies if self._memory is None else 2
-        self._store = Store(bodies, max(16, len(space._shapes)), pairs)
+        # room for a contact of each body, and what a frame wants beyond (`has_room`): where there are more, a frame is
+        # run again (a copy takes its original's tables)
+        pairs, regions = (2 * bodies + SPARE, 3 * bodies // 2 + SPARE) if self._memory is None else (2, 1)
+        self._store = Store(bodies, max(16, len(space._shapes)), pairs, regions)
         self._state = state = self._store.state[0]
         settings = self._settings
         self._store.note_layout(layout())
@@ -84,7 +89,7 @@ class AreaContact:
         state["explicit"] = settings["integration"] == "explicit"
         state["followed"] = math.inf if state["explicit"] else FOLLOWED
         state["substeps"] = SUBSTEPS
-        state["held"] = state["frame"] = state["broken"] = -1
+        state["frame"] = state["broken"] = -1
         state["handler_count"] = state["shape_count"] = -1
         state["pending"] = 2
         self._scratch = np.zeros(8)
@@ -95,7 +100,8 @@ class AreaContact:
         self._ask = ffi.callback(
             "void(uintptr_t)",
             lambda request: _serve(own, request),
-            onerror=lambda kind, error, trace: _note(own, error, trace),  # an interrupt at its first line too
+            # an interrupt at its first line too
+            onerror=lambda kind, error, trace: _note(own, error, trace, record.REGISTER),
         )
         state["ask_at"] = address_of(self._ask)
         self._space = space
@@ -259,7 +265,10 @@ class AreaContact:
         space = self.space
         flexible = self._settings["flexible"] is not None
         asleep = bool(self._state["asleep"])
-        return bool(space.threaded or space._bodies_to_check or space._handlers or flexible or asleep)
+        proxies = bool(self._register.proxies)
+        return bool(
+            space.threaded or space._bodies_to_check or space._handlers or flexible or asleep or proxies
+        )
 
     def _flexed(self, dt: float, rest: Callable[[], None]) -> None:
         """A frame of pymunk's, `rest`, after the flexible parts' own motion, if there are any."""
@@ -272,13 +281,24 @@ class AreaContact:
         self._stepping = True
         try:
             if flexible is None:
-                rest()
+                self._exactly(rest)
             else:
-                flexible.step(dt, rest, int(self._state["idle_kind"]))
+                flexible.step(dt, lambda: self._exactly(rest), int(self._state["idle_kind"]))
         finally:
             self._stepping = False
-            if self._error is not None:
+            if self._error is not None or self._state["failed"]:
                 self._raise()
+
+    def _exactly(self, rest: Callable[[], None]) -> None:
+        """A step of pymunk's, which hears of outlines where they touch, not where their proxies do."""
+        if not self._register.proxies or self.space._locked:
+            rest()
+            return
+        self._hook.spy.come(self.space)
+        try:
+            rest()
+        finally:
+            self._hook.spy.go(self.space)
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
@@ -291,7 +311,7 @@ class AreaContact:
             taken = int(advance(space._space, dt, frames))
         finally:
             space._locked = self._stepping = False
-            if self._error is not None:
+            if self._error is not None or self._state["failed"]:
                 self._raise()
         if space._add_later or space._remove_later:
             space.step(0.0)  # what a velocity function added or removed: pymunk's own way
@@ -300,6 +320,9 @@ class AreaContact:
     def _raise(self) -> None:
         """Raise what was noted in the step, once; where it was before a frame had begun, bodies are put back first."""
         error, self._error = self._error, None
+        if self._state["failed"]:
+            self._state["failed"] = 0
+            error = error or RecursionError("a step cannot ask Python: too many calls within one another")
         before, self._before = self._before, []
         for body, (x, y, angle, vx, vy, w, fx, fy, torque) in before:
             if (*body.position, body.angle) != (x, y, angle):
@@ -356,6 +379,16 @@ class AreaContact:
                 f"{lib.cpSpaceGetTimestamp(space._space)} of the space: all bodies are as they were before it"
             )
 
+    def __repr__(self) -> str:
+        if self._space is None:
+            return "<AreaContact, detached>"
+        bodies, shapes = len(self._space.bodies), len(self._space.shapes)
+        regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
+        firm = (
+            f"penetration {self.penetration:g}" if self.stiffness is None else f"stiffness {self.stiffness:g}"
+        )
+        return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{firm}>"
+
     # --- copies ---
 
     def __getstate__(self) -> dict[str, Any]:
@@ -383,18 +416,18 @@ def _state_of(body: pymunk.Body) -> tuple[float, ...]:
     return (*place, *motion, *body.force, body.torque)
 
 
-def _note(own: weakref.ref[AreaContact], error: BaseException, trace: TracebackType) -> None:
+def _note(
+    own: weakref.ref[AreaContact], error: BaseException, trace: TracebackType, registering: int
+) -> None:
     """Keep what was raised while machine code was at work, to be raised after the step: nothing can be raised in it.
 
     trace: it begins in the function that was called with the `request`. Where that was to register what has come, no
     frame has begun, but Chipmunk goes on with its step: bodies are put back after it.
     """
-    from . import record
-
     contact = own()
     if contact is not None and contact._space is not None:
         contact._error = contact._error or error
-        if trace.tb_frame.f_locals["request"] == record.REGISTER:
+        if trace.tb_frame.f_locals["request"] == registering:
             contact._before = [(body, _state_of(body)) for body in contact._space.bodies]
         if not contact._stepping:  # a step of pymunk's that has gone past the attached space's own
             contact._space.add_post_step_callback(_raise, ("rigidarea", id(contact)), contact)
@@ -407,18 +440,32 @@ def _raise(space: pymunk.Space, key: Any, contact: AreaContact) -> None:
 # --- settings ---
 
 
+class Settings(TypedDict, total=False):
+    """What `attach` takes besides the space."""
+
+    stiffness: float | None
+    penetration: float
+    law: Literal["area", "energy"]
+    length: float | None
+    direction: Literal["chord", "nodal"]
+    exponent: float
+    rest_speed: float | None
+    integration: Literal["implicit", "explicit"]
+    flexible: Assembly | None
+
+
 def attach(
     space: pymunk.Space,
     stiffness: float | None = None,
     *,
     penetration: float = PENETRATION,
-    law: str = "area",
+    law: Literal["area", "energy"] = "area",
     length: float | None = None,
-    direction: str = "chord",
+    direction: Literal["chord", "nodal"] = "chord",
     exponent: float = 1.0,
     rest_speed: float | None = None,
-    integration: str = "implicit",
-    flexible: Any = None,
+    integration: Literal["implicit", "explicit"] = "implicit",
+    flexible: Assembly | None = None,
 ) -> AreaContact:
     """Replace the collision response of `space` by area contact; `AreaContact.detach` undoes it.
 

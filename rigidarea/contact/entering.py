@@ -30,6 +30,9 @@ from ..kernel.tables import (
     FREE_BODY,
     FREE_SHAPE,
     GONE,
+    MORE_BODIES,
+    MORE_SHAPES,
+    MORE_SLOTS,
     SHAPES,
     TOOTHED,
     UNSORTED,
@@ -47,6 +50,7 @@ from ..store import (
     load_tables,
     row_of_body,
 )
+from .geometry import load_forms
 from .record import body_type, put_to_rest, read_place, row_of_shape, words
 
 STATIC = 2
@@ -56,7 +60,7 @@ MANY = 16
 
 @kernel
 def _row_of_body(s: Any, tables: Tables, address: int) -> int:
-    """The row of Chipmunk's body, made if there is none: where it is, at rest."""
+    """The row of Chipmunk's body, made if there is none: where it is, at rest. -1: there is no room for it."""
     i = row_of_body(s, address)
     if i >= 0:
         return i
@@ -64,6 +68,9 @@ def _row_of_body(s: Any, tables: Tables, address: int) -> int:
     i = counters[FREE_BODY]
     if i >= 0:
         counters[FREE_BODY] = tables.bodies[i].island
+    elif counters[BODIES] == len(tables.bodies):
+        counters[MORE_BODIES] = 1
+        return -1
     else:
         i = counters[BODIES]
         counters[BODIES] += 1
@@ -108,10 +115,12 @@ def _set_box(s: Any, tables: Tables, shape: Any, body: Any, still: bool) -> None
 
 @kernel
 def _come(s: Any, tables: Tables, address: int, head: int) -> int:
-    """A row for Chipmunk's shape that has outline `head`; it is in no tree yet."""
+    """A row for Chipmunk's shape that has outline `head`; it is in no tree yet. -1: there is no room for its body."""
     counters = tables.counters
     own = words(address + s.shape_body, 1)[0]
     b = _row_of_body(s, tables, own)
+    if b < 0:
+        return -1
     body = tables.bodies[b]
     still = body_type(own) == STATIC
     if (
@@ -126,22 +135,23 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     else:
         i = counters[SHAPES]
         counters[SHAPES] += 1
-    clear(s.shapes_at + i * 8 * SHAPE_WORDS, SHAPE_WORDS)
     shape = tables.shapes[i]
+    asked = shape.asked
+    clear(s.shapes_at + i * 8 * SHAPE_WORDS, SHAPE_WORDS)
+    shape.asked = asked  # the row may be listed still: not twice
     shape.address = address
     shape.ident = np.int64(words(address + s.shape_hashid, 1)[0])
     shape.body = b
     shape.outline = head
-    mirror = array_at(s.mirrors_at, (s.mirrors_n,), np.int32)[head]
+    forms = load_forms(s)
+    mirror = forms.mirror[head]
     shape.mirror = mirror
-    users = array_at(s.users_at, (s.users_n,), np.int32)
-    users[head] += 1
+    forms.users[head] += 1
     if mirror >= 0:
-        users[mirror] += 1
-    extents = array_at(s.extents_at, (s.extents_n, 3), np.float64)
-    shape.extent = extents[head, 0]
-    shape.half_x = extents[head, 1]
-    shape.half_y = extents[head, 2]
+        forms.users[mirror] += 1
+    shape.extent = forms.extent[head, 0]
+    shape.half_x = forms.extent[head, 1]
+    shape.half_y = forms.extent[head, 2]
     shape.leaf = -1
     shape.seen = -1
     shape.epoch = -1
@@ -156,100 +166,129 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     return int(i)
 
 
-@callback("void(uintp, uintp, uintp, int64)")
-def shapes_come(state: int, addresses: int, heads: int, n: int) -> None:
-    """Enter n of Chipmunk's shapes; addresses: n words; heads: n int32, the numbers of their outlines."""
+@kernel
+def _has_room(s: Any, tables: Tables, addresses: int, n: int) -> bool:
+    """Whether there is room for n of Chipmunk's shapes; if not, for how many more of what is noted."""
+    counters = tables.counters
+    last = 0
+    for address in words(addresses, n):
+        last = max(last, int(np.int64(words(address + s.shape_hashid, 1)[0])))
+    free = len(tables.shapes) - counters[SHAPES]
+    i = counters[FREE_SHAPE]
+    while i >= 0 and free < n:
+        i = tables.shapes[i].body
+        free += 1
+    counters[MORE_SLOTS] = max(0, last + 1 - s.slots_n)
+    counters[MORE_SHAPES] = max(0, n - free)
+    return bool(counters[MORE_SLOTS] == 0 and counters[MORE_SHAPES] == 0)
+
+
+@callback("int64(uintp, uintp, uintp, int64)")
+def shapes_come(state: int, addresses: int, heads: int, n: int) -> int:
+    """Enter n of Chipmunk's shapes; how many there was room for (MORE_...), the first ones.
+
+    addresses: n words; heads: n int32, the numbers of their outlines.
+    """
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
     counters = tables.counters
     forget_the_gone(tables)
+    if not _has_room(s, tables, addresses, n):
+        return 0
     head_of = array_at(heads, (n,), np.int32)
     many = n >= MANY and tables.roots[STILL] < 0 and tables.roots[MOVING] < 0
     scratch = tables.asked[counters[ASKED] :]
-    if many:
-        still = 0
-        moving = 0
-        for k in range(n):
-            i = _come(s, tables, words(addresses + 8 * k, 1)[0], head_of[k])
+    still = 0
+    moving = 0
+    done = 0
+    for address in words(addresses, n):
+        if many or row_of_shape(s, address) < 0:  # what was interrupted is done again
+            i = _come(s, tables, address, head_of[done])
+            if i < 0:
+                break
             shape = tables.shapes[i]
-            shape.leaf = new_leaf(
-                tables.nodes, tables.roots, i, shape.low_x, shape.low_y, shape.high_x, shape.high_y
-            )
-            if shape.tree == STILL:
-                scratch[still] = shape.leaf
-                still += 1
+            if not many:
+                put_in_tree(tables, i, shape.tree)
+                ask_about(tables, i)
             else:
-                moving += 1
-                scratch[n - moving] = shape.leaf
+                shape.leaf = new_leaf(
+                    tables.nodes, tables.roots, i, shape.low_x, shape.low_y, shape.high_x, shape.high_y
+                )
+                moving += shape.tree == MOVING
+                still += shape.tree == STILL
+                scratch[n - moving if shape.tree == MOVING else still - 1] = shape.leaf
+        done += 1
+    if many:
         build(tables.nodes, tables.roots, STILL, scratch[:still])
         build(tables.nodes, tables.roots, MOVING, scratch[n - moving : n])
         counters[ANEW] = 1
-        return
-    for k in range(n):
-        address = words(addresses + 8 * k, 1)[0]
-        if row_of_shape(s, address) >= 0:  # what was interrupted is done again
-            continue
-        i = _come(s, tables, address, head_of[k])
-        put_in_tree(tables, i, tables.shapes[i].tree)
-        ask_about(tables, i)
+    return done
 
 
-@callback("void(uintp, uintp, int64)")
-def shapes_go(state: int, idents: int, n: int) -> None:
-    """Forget n of Chipmunk's shapes; idents: n words, its ids."""
+@callback("void(uintp, uintp)")
+def shape_goes(state: int, ident: int) -> None:
+    """Forget one of Chipmunk's shapes, by its id, if it is known."""
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
     counters = tables.counters
     slots = array_at(s.slots_at, (s.slots_n,), np.int32)
-    users = array_at(s.users_at, (s.users_n,), np.int32)
-    for ident in words(idents, n):
-        i = int(slots[ident]) if ident < s.slots_n else -1
-        if i < 0:
-            continue
-        slots[ident] = -1
-        shape = tables.shapes[i]
-        end_pairs_of(tables, i)
-        users[shape.outline] -= 1
-        if shape.mirror >= 0:
-            users[shape.mirror] -= 1
-        counters[TOOTHED] -= toothed(load_pool(s), shape)
-        counters[CONCAVE] -= not load_pool(s).heads[shape.outline].convex
-        tables.bodies[shape.body].unmeasured = 1
-        _let_go_of_body(s, tables, shape.body)
-        shape.outline = -1
-        shape.mirror = -1
-        shape.address = 0
-        shape.body = counters[FREE_SHAPE]
-        counters[FREE_SHAPE] = i
+    i = int(slots[ident]) if ident < s.slots_n else -1
+    if i < 0:
+        return
+    slots[ident] = -1
+    shape = tables.shapes[i]
+    end_pairs_of(tables, i)
+    users = load_forms(s).users
+    users[shape.outline] -= 1
+    if shape.mirror >= 0:
+        users[shape.mirror] -= 1
+    counters[TOOTHED] -= toothed(load_pool(s), shape)
+    counters[CONCAVE] -= not load_pool(s).heads[shape.outline].convex
+    tables.bodies[shape.body].unmeasured = 1
+    _let_go_of_body(s, tables, shape.body)
+    shape.outline = -1
+    shape.mirror = -1
+    shape.address = 0
+    shape.body = counters[FREE_SHAPE]
+    counters[FREE_SHAPE] = i
     counters[GONE] = 1
 
 
-@callback("void(uintp, uintp, int64, int64)")
-def bodies_come(state: int, addresses: int, n: int, hold: int) -> None:
-    """Enter n of Chipmunk's bodies; hold: have the solve move them, unless their position function is the user's."""
+@callback("int64(uintp, uintp, int64, int64)")
+def bodies_come(state: int, addresses: int, n: int, hold: int) -> int:
+    """Enter n of Chipmunk's bodies; how many there was room for (MORE_BODIES), the first ones.
+
+    hold: have the solve move them, unless their position function is the user's.
+    """
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
     forget_the_gone(tables)
+    done = 0
     for address in words(addresses, n):
-        body = tables.bodies[_row_of_body(s, tables, address)]
+        i = _row_of_body(s, tables, address)
+        if i < 0:
+            tables.counters[MORE_BODIES] = n - done
+            break
+        body = tables.bodies[i]
         if body.entered == 0:
             body.entered = 1
             body.held += 1
         function = words(address + s.body_position_func, 1)
         if hold and (function[0] == s.position_func or function[0] == s.position_func_again):
             function[0] = s.hold_at
+        done += 1
+    return done
 
 
-@callback("void(uintp, uintp, int64)")
-def bodies_go(state: int, addresses: int, n: int) -> None:
-    """Forget n of Chipmunk's bodies."""
+@callback("void(uintp, uintp)")
+def body_goes(state: int, address: int) -> None:
+    """Forget one of Chipmunk's bodies, if it is known."""
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
-    for address in words(addresses, n):
-        i = row_of_body(s, address)
-        if i >= 0 and tables.bodies[i].entered:
-            tables.bodies[i].entered = 0
-            _let_go_of_body(s, tables, i)
+    i = row_of_body(s, address)
+    if i >= 0 and tables.bodies[i].entered:
+        tables.bodies[i].entered = 0
+        _let_go_of_body(s, tables, i)
     tables.counters[GONE] = 1
 
 

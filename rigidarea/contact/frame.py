@@ -60,7 +60,16 @@ from ..kernel.tables import (
     forget_contacts,
 )
 from ..kernel.verdict import wait_for_verdicts
-from ..store import keep_tables, load_law, load_pool, load_tables, load_work, put_tables_back, row_of_body
+from ..store import (
+    EXTREME,
+    keep_tables,
+    load_law,
+    load_pool,
+    load_tables,
+    load_work,
+    put_tables_back,
+    row_of_body,
+)
 from .joints import give_back, hide, joints_of, read_joint, start_joints
 from .phases import REPORTING, WATCHING, lap, start
 from .record import (
@@ -83,8 +92,6 @@ from .record import (
 )
 from .substep import find_contacts, near_pairs, substeps
 
-#: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
-EXTREME = 1e30
 #: A body that goes so many of its sizes in a frame may come near more others than has been made room for.
 FAST = 30.0
 
@@ -132,33 +139,22 @@ def _is_extreme(body: Any, dt: float) -> bool:
 @kernel
 def _keep_if_fragile(s: Any, space: int, dt: float) -> bool:
     """Where a frame may fail, take down what it starts from. Whether there was room for that and who is near in it."""
-    tables = load_tables(s)
-    for k in range(tables.counters[TOLD]):
-        pair = tables.pairs[tables.told[k]]
-        most = pair.friction + pair.elasticity + abs(pair.surface_x) + abs(pair.surface_y) + pair.stiffness
-        s.fragile |= most > EXTREME
-    for joint in joints_of(s):
-        for i in range(len(joint.p)):
-            s.fragile |= abs(joint.p[i]) > EXTREME
-    if s.fragile:
-        tables.counters[TURN] = 0
-        if not near_pairs(s, space, dt, dt):
-            return False
-        return bool(keep_tables(s))
-    return True
+    if not s.fragile:
+        return True
+    load_tables(s).counters[TURN] = 0
+    return bool(near_pairs(s, space, dt, dt) and keep_tables(s))
 
 
 @kernel
 def _start(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
 
-    What those did is spread over the frame (`gain`). Whether numbers may overflow in it, or room run out, is noted
-    (`fragile`).
+    What those did is spread over the frame (`gain`). Whether bodies' numbers may overflow in it, or room run out, is
+    noted (`fragile`); of pairs and joints that is known.
 
     False: the state of one (`broken`) is not finite. Later that would have spread to others.
     """
     s.broken = -1
-    s.fragile = 0
     # two that are concave may overlap in any number of places: who is at rest keeps its own
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
@@ -392,6 +388,8 @@ def _finish_frame(s: Any, tables: Tables, good: bool) -> None:
     """
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame:
+            continue
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
@@ -415,9 +413,11 @@ def _finish_jointed(s: Any, tables: Tables) -> None:
 
 @kernel
 def _undo(s: Any, tables: Tables) -> None:
-    """A frame that failed: every body and joint as it was."""
+    """A frame that failed: every body and joint as it was; if it could not begin, those that it has taken down."""
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame:
+            continue
         body.calm = body.was_calm
         body.x = body.old_x
         body.y = body.old_y

@@ -7,22 +7,18 @@ shapes share an outline: `Forms` knows each by the numbers that it was made of.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..gate import LARGEST
-from ..kernel.jit import njit
+from ..kernel.jit import kernel, njit
 from ..kernel.memory import array_at
 from ..kernel.pool import Pool, _prepare
 from ..outline import SEGMENT_THICKNESS
+from ..store import STATE, load_pool
 
 CIRCLE, SEGMENT = 0, 1
-#: Where a shape keeps its numbers, in the order of `where`.
-PLACES = (
-    *("circle_centre", "circle_radius", "segment_ends", "segment_radius"),
-    *("poly_radius", "poly_count", "poly_planes"),
-)
 _EPS = float(np.finfo(np.float64).eps)
 
 
@@ -32,16 +28,28 @@ class Forms(NamedTuple):
     extent: np.ndarray  # (H, 3): smallest extent, half width and half height of the box (length)
     mirror: np.ndarray  # (H,) int32: the other side of a two-sided segment; -1: none
     users: np.ndarray  # (H,) int32: how many shapes have it
-    raw_at: (
-        np.ndarray
-    )  # (H, 2) int32: where in `raw` the numbers are that it was made of, and how many; 0: given
+    span: np.ndarray  # (H, 2) int32: where in `raw` the numbers are that made it, and how many; 0: given
     raw: np.ndarray  # (R,)
     table: np.ndarray  # (T,) int32: hash table of outlines by their numbers; -1: empty
     fill: np.ndarray  # (5,) int64: points, rings, boxes, heads, raw numbers in use
 
 
+@kernel(inline="always")
+def load_forms(s: Any) -> Forms:
+    """The forms of the space whose state record is s."""
+    return Forms(
+        array_at(s.form_extent_at, (s.form_extent_n, 3), np.float64),
+        array_at(s.form_mirror_at, (s.form_mirror_n,), np.int32),
+        array_at(s.form_users_at, (s.form_users_n,), np.int32),
+        array_at(s.form_span_at, (s.form_span_n, 2), np.int32),
+        array_at(s.form_raw_at, (s.form_raw_n,), np.float64),
+        array_at(s.form_table_at, (s.form_table_n,), np.int32),
+        array_at(s.form_fill_at, (s.form_fill_n,), np.int64),
+    )
+
+
 @njit
-def _raw(shape: int, where: np.ndarray, buffer: np.ndarray) -> int:
+def _raw(s: Any, shape: int, buffer: np.ndarray) -> int:
     """How many numbers make a shape of Chipmunk's: its kind, its radius, its points, from the lowest x on, in `buffer`.
 
     There may be more than there is room for: then there is nothing.
@@ -49,23 +57,23 @@ def _raw(shape: int, where: np.ndarray, buffer: np.ndarray) -> int:
     kind = array_at(array_at(shape, (1,), np.uint64)[0], (1,), np.int32)[0]
     buffer[0] = kind
     if kind == CIRCLE:
-        buffer[1] = array_at(shape + where[1], (1,), np.float64)[0]
-        buffer[2:4] = array_at(shape + where[0], (2,), np.float64)
+        buffer[1] = array_at(shape + s.circle_radius, (1,), np.float64)[0]
+        buffer[2:4] = array_at(shape + s.circle_centre, (2,), np.float64)
         return 4
     if kind == SEGMENT:
-        buffer[1] = array_at(shape + where[3], (1,), np.float64)[0]
-        buffer[2:6] = array_at(shape + where[2], (4,), np.float64)
+        buffer[1] = array_at(shape + s.segment_radius, (1,), np.float64)[0]
+        buffer[2:6] = array_at(shape + s.segment_ends, (4,), np.float64)
         return 6
-    n = int(array_at(shape + where[5], (1,), np.int32)[0])
+    n = int(array_at(shape + s.poly_count, (1,), np.int32)[0])
     if 2 + 2 * n > len(buffer):
         return 2 + 2 * n
-    planes = array_at(array_at(shape + where[6], (1,), np.uint64)[0], (2 * n, 4), np.float64)
+    planes = array_at(array_at(shape + s.poly_planes, (1,), np.uint64)[0], (2 * n, 4), np.float64)
     first = 0
     for i in range(1, n):
         x, y = planes[n + i, 0], planes[n + i, 1]
         if x < planes[n + first, 0] or (x == planes[n + first, 0] and y < planes[n + first, 1]):
             first = i
-    buffer[1] = array_at(shape + where[4], (1,), np.float64)[0]
+    buffer[1] = array_at(shape + s.poly_radius, (1,), np.float64)[0]
     for i in range(n):
         j = n + (first + i) % n
         buffer[2 + 2 * i] = planes[j, 0]
@@ -175,14 +183,15 @@ def _width(points: np.ndarray) -> float:
 
 
 @njit
-def _room(pool: Pool, forms: Forms, points: int, boxes: int, raw: int) -> bool:
+def _room(pool: Pool, forms: Forms, size: int) -> bool:
+    """Whether there is room for what so many numbers make: two outlines at the most."""
     fill = forms.fill
     return (
-        fill[0] + points <= len(pool.points)
-        and fill[1] + 1 <= len(pool.rings)
-        and fill[2] + boxes <= len(pool.boxes)
-        and fill[3] + 1 <= len(pool.heads)
-        and fill[4] + raw <= len(forms.raw)
+        fill[0] + 4 * size <= len(pool.points)
+        and fill[1] + 2 <= len(pool.rings)
+        and fill[2] + 8 * size <= len(pool.boxes)
+        and fill[3] + 2 <= len(pool.heads)
+        and fill[4] + size <= len(forms.raw)
     )
 
 
@@ -196,7 +205,7 @@ def _enter(
     half: tuple[float, float],
     extent: float,
 ) -> int:
-    """A ring as an outline of the pool, about the middle of its box: its number; -1: it has no area; -2: no room."""
+    """A ring as an outline of the pool, about the middle of its box: its number; -1: it has no area."""
     n = len(ring)
     ring = ring - np.array(middle)
     for i in range(n):
@@ -209,8 +218,6 @@ def _enter(
     if not area > 8 * _EPS * reach * size or reach > LARGEST:
         return -1
     following, ring_of, boxes, numbers = _prepare(ring, arcs, np.array([0, n]), x / area, y / area)
-    if not _room(pool, forms, n, len(boxes), 0):
-        return -2
     p, r, b, h = forms.fill[0], forms.fill[1], forms.fill[2], forms.fill[3]
     pool.points[p : p + n] = ring
     pool.arcs[p : p + n] = arcs
@@ -238,13 +245,13 @@ def _enter(
     forms.extent[h, 2] = half[1]
     forms.mirror[h] = -1
     forms.users[h] = 0
-    forms.raw_at[h, 1] = 0
+    forms.span[h, 1] = 0
     return h
 
 
 @njit
 def _make(pool: Pool, forms: Forms, raw: np.ndarray) -> int:
-    """The outline of a form, new in the pool: its number; -1: it has no area; -2: no room."""
+    """The outline of a form, new in the pool, where there is room: its number; -1: it has no area."""
     kind = raw[0]
     radius = raw[1]
     points = raw[2:].copy().reshape(-1, 2)
@@ -287,8 +294,8 @@ def _two_sides(pool: Pool, forms: Forms, points: np.ndarray) -> int:
     bx, by = points[1, 0], points[1, 1]
     length = math.hypot(bx - ax, by - ay)
     depth = SEGMENT_THICKNESS * length
-    if not (0.0 < length < np.inf) or not _room(pool, forms, 8, 8, 0) or forms.fill[3] + 2 > len(pool.heads):
-        return -1 if not (0.0 < length < np.inf) else -2
+    if not (0.0 < length < np.inf):
+        return -1
     lx, ly = -(by - ay) * (depth / length), (bx - ax) * (depth / length)
     right = np.array([[bx, by], [ax, ay], [ax - lx, ay - ly], [bx - lx, by - ly]])
     left = np.array([[ax, ay], [bx, by], [bx + lx, by + ly], [ax + lx, ay + ly]])
@@ -312,55 +319,57 @@ def _two_sides(pool: Pool, forms: Forms, points: np.ndarray) -> int:
 def enter_form(forms: Forms, h: int) -> None:
     """Have an outline found by the numbers that it was made of."""
     mask = len(forms.table) - 1
-    start = forms.raw_at[h, 0]
-    i = _home(forms.raw[start : start + forms.raw_at[h, 1]], mask)
+    start = forms.span[h, 0]
+    i = _home(forms.raw[start : start + forms.span[h, 1]], mask)
     while forms.table[i] >= 0:
         i = (i + 1) & mask
     forms.table[i] = h
 
 
 @njit
-def read_shapes(
-    addresses: np.ndarray,
-    start: int,
-    where: np.ndarray,
-    pool: Pool,
-    forms: Forms,
-    buffer: np.ndarray,
-    heads: np.ndarray,
-) -> tuple[int, int]:
-    """Outlines of Chipmunk's shapes at these addresses (n,) uint64, from number `start` on: their numbers, in `heads`.
+def read_shapes(state: int, addresses: int, heads: int, start: int, n: int) -> tuple[int, int]:
+    """Outlines of n of Chipmunk's shapes, from number `start` on: their numbers in the pool.
 
-    Returns (how far, why): n and 0; the first that has no area, and -1; the first for which there is no room in the
-    pool, and -2, or in `buffer`, and how many numbers it takes.
+    addresses: n words; heads: n int32, those that are not negative are known already.
+    Returns (how far, why): n and 0; the first that has no area, and -1; the first for which there is no room, and how
+    many numbers make it.
     """
+    s = array_at(state, (1,), STATE)[0]
+    pool = load_pool(s)
+    forms = load_forms(s)
+    head_of = array_at(heads, (n,), np.int32)
+    buffer = np.empty(64)
     mask = len(forms.table) - 1
-    for k in range(start, len(addresses)):
-        n = _raw(int(addresses[k]), where, buffer)
-        if n > len(buffer):
-            return k, n
-        raw = buffer[:n]
+    for k in range(start, n):
+        if head_of[k] >= 0:
+            continue
+        address = int(array_at(addresses + 8 * k, (1,), np.uint64)[0])
+        size = _raw(s, address, buffer)
+        if size > len(buffer):
+            buffer = np.empty(2 * size)
+            _raw(s, address, buffer)
+        raw = buffer[:size]
         i = _home(raw, mask)
         h = -1
         while forms.table[i] >= 0 and h < 0:
             h = int(forms.table[i])
-            at, count = forms.raw_at[h, 0], forms.raw_at[h, 1]
-            same = count == n
-            for j in range(n if same else 0):
+            at, count = forms.span[h, 0], forms.span[h, 1]
+            same = count == size
+            for j in range(size if same else 0):
                 same = same and forms.raw[at + j] == raw[j]
             if not same:
                 h = -1
                 i = (i + 1) & mask
         if h < 0:
-            if not _room(pool, forms, 4 * n, 8 * n + 8, n):
-                return k, -2
+            if not _room(pool, forms, size):
+                return k, size
             h = _make(pool, forms, raw)
             if h < 0:
-                return k, h
-            forms.raw[forms.fill[4] : forms.fill[4] + n] = raw
-            forms.raw_at[h, 0] = forms.fill[4]
-            forms.raw_at[h, 1] = n
-            forms.fill[4] += n
+                return k, -1
+            forms.raw[forms.fill[4] : forms.fill[4] + size] = raw
+            forms.span[h, 0] = forms.fill[4]
+            forms.span[h, 1] = size
+            forms.fill[4] += size
             forms.table[i] = h
-        heads[k] = h
-    return len(addresses), 0
+        head_of[k] = h
+    return n, 0

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import threading
 import weakref
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -22,6 +23,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of
 from . import frame, joints, record
 from .arrays import Store
+from .proxies import Spy
 
 
 class Hook:
@@ -59,22 +61,34 @@ class Hook:
         state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
         state["hold_at"] = record.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
+        self.spy = Spy(state)
         self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
+        names = ("body_position_func", "hold_at", "position_func")
+        self._functions_of_bodies = tuple(int(state[name]) for name in names)
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
         own = joint, body, pivot
         self._classes = classes  # Chipmunk looks there as long as the constraint is in the space
         self._end = weakref.finalize(
-            space, _ended, weakref.ref(space), space._space, own, constraints, self._held, store, classes
+            space,
+            _ended,
+            weakref.ref(space),
+            space._space,
+            own,
+            constraints,
+            self._held,
+            self._functions_of_bodies,
+            store,
+            classes,
         )
 
-    def hold(self, body: pymunk.Body) -> None:
-        """The solve moves a body, unless its position function is the user's: that is to be given back."""
-        self._held.add(body)
+    def hold(self, bodies: Iterable[pymunk.Body]) -> None:
+        """The solve moves bodies, unless their position function is the user's: that is to be given back."""
+        self._held.update(bodies)
 
     def release(self, body: pymunk.Body) -> None:
         """Give a body its position function back."""
         self._held.discard(body)
-        _release(body, self._state)
+        _release(body, *self._functions_of_bodies)
 
     def callbacks(self) -> dict[str, int]:
         """Which functions of its own the global handler has: `record.begin` looks whether they are others."""
@@ -91,15 +105,11 @@ class Hook:
             self._functions[1] = int(state["user_pre_solve"]) or int(state["no_pre_solve"])
 
 
-def _position_function(body: pymunk.Body, state: Any) -> Any:
-    """Where Chipmunk keeps a body's position function."""
-    return ffi.cast("uintptr_t *", address_of(body._body) + int(state["body_position_func"]))
-
-
-def _release(body: pymunk.Body, state: Any) -> None:
-    function = _position_function(body, state)
-    if int(function[0]) == int(state["hold_at"]):
-        function[0] = int(state["position_func"])
+def _release(body: pymunk.Body, offset: int, ours: int, own: int) -> None:
+    """Give a body its `own` position function back, if it has `ours`. offset: where Chipmunk keeps it (bytes)."""
+    words = ffi.cast("uintptr_t *", body._body)
+    if words[offset // 8] == ours:
+        words[offset // 8] = own
 
 
 def _roll(constraints: int, by: int) -> None:
@@ -119,13 +129,21 @@ def _ended(space: Any, address: Any, *arguments: Any) -> None:
         _take_out(address, *arguments)
 
 
-def _take_out(space: Any, own: Any, constraints: int, held: Any, store: Store, classes: Any) -> None:
+def _take_out(
+    space: Any,
+    own: Any,
+    constraints: int,
+    held: Any,
+    functions: tuple[int, int, int],
+    store: Store,
+    classes: Any,
+) -> None:
     """Remove the hidden constraint from Chipmunk's space, and free it; the bodies held have their position functions
-    back. own: it, its own body, its class. store, classes: had to live until now.
+    back. own: it, its own body, its class. functions: see `_release`. store, classes: had to live until now.
     """
     joint, other, pivot = own
     for body in held:
-        _release(body, store.state[0])
+        _release(body, *functions)
     lib.cpSpaceSetUserData(space, ffi.NULL)
     _roll(constraints, -1)  # Chipmunk puts the last in the place of one that goes: the order stays as it was
     lib.cpSpaceRemoveConstraint(space, joint)

@@ -21,7 +21,7 @@ from ..kernel.jit import callback, kernel
 from ..kernel.joint import JOINT, KINDS, RATCHET, ROTARY_SPRING, SPRING, spring_reach
 from ..kernel.memory import array_at, caller
 from ..kernel.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
-from ..store import STATE, row_of_body
+from ..store import EXTREME, STATE, row_of_body
 
 _user_data = function("cpSpaceGetUserData", "uintp(uintp)")
 _call_user = caller("void(uintp, uintp)")
@@ -168,6 +168,7 @@ def read_joint(s: Any, joint: Any) -> None:
     given = array_at(joint.address + kind[3], (kind[4],), np.float64)
     for i in range(kind[4]):
         joint.p[i] = given[i]
+        s.fragile |= abs(given[i]) > EXTREME
     impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
     joint.jx = impulse[0]
     joint.jy = impulse[kind[2] - 1]

@@ -10,6 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, centre_of, joint_impulse, put_centre
 from ..kernel.broad import drop_pairs, put_in_tree
@@ -138,8 +139,8 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         told=np.zeros(len(pairs), np.int32),
     )
     store.renew_rows()
-    tables = store.tables
     store.sync()
+    tables = store.tables
     for i in mine[known]:
         put_in_tree(tables, int(i), int(tables.shapes[i]["tree"]))
     tables.bodies["since"] = np.inf
@@ -149,6 +150,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for p in np.flatnonzero(lost):  # one of its shapes is gone
         end_pair(tables, int(p))
     rehash(tables)
+    _take_arbiters(store, space)
     awake = _body_rows(store, space)[memory.awake]
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
@@ -163,6 +165,21 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for joint, impulse in zip(space.constraints, memory.joints):
         joint_impulse(joint)[:] = impulse
     _keep_apart(store, space)
+
+
+def _take_arbiters(store: Store, space: pymunk.Space) -> None:
+    """Pairs have the arbiters of the copy, not those of its original."""
+    pairs = store.tables.pairs
+    pairs["arbiter"] = 0
+    used = np.flatnonzero(pairs["a"] >= 0)
+    found = dict(zip(zip(pairs["a"][used].tolist(), pairs["b"][used].tolist()), used))
+    one, other = ffi.new("cpShape *[1]"), ffi.new("cpShape *[1]")
+    for arbiter in space._get_arbiters():
+        lib.cpArbiterGetShapes(arbiter, one, other)
+        a, b = (int(store.slots[lib.cpShapeGetHashID(shape[0])]) for shape in (one, other))
+        p = found.get((a, b), found.get((b, a)))
+        if p is not None:
+            pairs[p]["arbiter"] = address_of(arbiter)
 
 
 def _keep_apart(store: Store, space: pymunk.Space) -> None:

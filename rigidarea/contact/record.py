@@ -37,9 +37,10 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import MOVING
 from ..kernel.verdict import lasts
-from ..store import STATE, load_pool, load_tables, row_of_body
+from ..store import EXTREME, STATE, load_pool, load_tables, load_work, row_of_body
 from .joints import joints_of, partners_known, take_joints
 from .phases import WATCHING, lap, start
+from .shown import show, shown_of
 
 #: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
 REGISTER, GROW, BROKEN, NORMAL = range(4)
@@ -315,6 +316,7 @@ def add_to_awake(tables: Tables, i: int, body: Any) -> None:
 def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
     """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
     counters = tables.counters
+    moved = True  # Chipmunk has moved what it has listed before the first that is held: that begins the frame
     for address in members(space, s.space_bodies):
         i = row_of_body(s, address)
         if i < 0:
@@ -334,10 +336,11 @@ def _watch(s: Any, tables: Tables, space: int, dt: float) -> bool:
             add_to_awake(tables, i, body)
         function = words(address + s.body_position_func, 1)
         body.kind = DRIFTS if function[0] == s.hold_at else LED
+        moved &= body.kind == LED
         if (function[0] == s.position_func or function[0] == s.position_func_again) and s.explicit == 0:
             # Chipmunk's own: a body that is new here. It will have been moved by a whole frame before the solve.
             body.kind = DRIFTS
-            if s.held != s.frame:
+            if moved:
                 _take_back(body, dt)
         if met and body.kind == LED and not math.isfinite(body.x + body.y + body.angle):
             body.old_x = x  # it has been moved before the frame began for us: where the last one has left it
@@ -432,7 +435,7 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and lasts(tables, pair, s.frame, dt):
+        if pair.a >= 0 and pair.arbiter != 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
             pair.lasting = s.frame
             array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
@@ -445,6 +448,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     g = floats(space + s.space_gravity, 2)
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
+    s.fragile = 0
     s.broken = -1
     hook = words(s.global_handler + s.handler_pre_solve, 1)
     heard = words(s.global_handler + s.handler_pre_solve - 8, 4)  # begin, pre_solve, post_solve, separate
@@ -455,9 +459,9 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.user_pre_solve = np.uint64(0) if hook[0] == s.no_pre_solve else hook[0]
         hook[0] = s.pre_solve_at
         fresh = True
+    load_tables(s).counters[TOLD] = 0
     if (fresh or s.pending) and not ask(s, REGISTER):
         return False
-    load_tables(s).counters[TOLD] = 0
     forget_the_gone(load_tables(s))
     if not _watch(s, load_tables(s), space, dt):  # somebody came on a way of which pymunk has not told
         s.pending = 2
@@ -490,9 +494,7 @@ def hold(body: int, dt: float) -> None:
     if space == 0 or user_data(space) == 0:
         return
     s = state_of(space)
-    now = np.int64(timestamp(space))
-    if s.held != now:
-        s.held = now
+    if s.frame != np.int64(timestamp(space)):
         begin(s, space, dt)
 
 
@@ -519,14 +521,22 @@ def _note_normal(s: Any, pair: Any, arbiter: int) -> None:
     pair.steer_c = 1.0
     pair.steer_s = 0.0
     called = s.user_pre_solve == s.pythons_pre_solve
+    t = shown_of(s)
     for handler in words(arbiter + s.arbiter_handlers, 4):
-        called |= handler != 0 and words(handler + s.handler_pre_solve, 1)[0] == s.pythons_pre_solve
+        if handler != 0:
+            function = words(handler + s.handler_pre_solve, 1)[0]
+            called |= function == s.pythons_pre_solve or function == t.first_at
     if not called:
         return
-    s.asked_arbiter = arbiter
-    if not ask(s, NORMAL):
-        return
     n = floats(arbiter + s.arbiter_normal, 2)
+    if t.arbiter == arbiter:
+        sign = 1.0 if words(arbiter + s.arbiter_shape_a, 1)[0] == t.shape_a else -1.0
+        s.asked_x = sign * t.nx
+        s.asked_y = sign * t.ny
+    else:
+        s.asked_arbiter = arbiter
+        if not ask(s, NORMAL):
+            return
     c = s.asked_x * n[0] + s.asked_y * n[1]
     d = s.asked_x * n[1] - s.asked_y * n[0]
     length = math.hypot(c, d)
@@ -542,6 +552,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
         return
     s = state_of(space)
     now = np.int64(timestamp(space))
+    show(s, space, arbiter)
     if s.user_pre_solve != 0:
         _call_hook(s.user_pre_solve, arbiter, space, data)
     if s.frame != now:
@@ -595,4 +606,5 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     sign = -1.0 if pair.swapped else 1.0
     pair.surface_x = sign * x
     pair.surface_y = sign * y
+    s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.stiffness > EXTREME
     _note_normal(s, pair, arbiter)

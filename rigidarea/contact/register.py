@@ -17,7 +17,6 @@ from pymunk._chipmunk_cffi import ffi, lib
 from ..chipmunk import address_of
 from ..outline import Outline
 from .arrays import Store
-from .geometry import PLACES
 
 if TYPE_CHECKING:
     from .hook import Hook
@@ -33,20 +32,21 @@ class Register:
 
         self._store = store
         self._state = store.state[0]
-        self._at = store.state.ctypes.data
+        self._pending = store.state[
+            "pending"
+        ]  # a view: reading a field of a record takes twenty times as long
         self._hook = hook
-        self._where = np.array([int(self._state[name]) for name in PLACES], np.int64)
-        self._calls = {
-            name: ffi.cast(kind, getattr(entering, name).address)
-            for name, kind in (
-                ("shapes_come", "void(*)(uintptr_t, uintptr_t, uintptr_t, long long)"),
-                ("shapes_go", "void(*)(uintptr_t, uintptr_t, long long)"),
-                ("bodies_come", "void(*)(uintptr_t, uintptr_t, long long, long long)"),
-                ("bodies_go", "void(*)(uintptr_t, uintptr_t, long long)"),
-                ("placed_anew", "void(*)(uintptr_t, uintptr_t, long long)"),
-            )
-        }
+        self._shapes_come = ffi.cast(
+            "long long(*)(uintptr_t, void *, int *, long long)", entering.shapes_come.address
+        )
+        self._shape_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.shape_goes.address)
+        self._bodies_come = ffi.cast(
+            "long long(*)(uintptr_t, void *, long long, long long)", entering.bodies_come.address
+        )
+        self._body_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.body_goes.address)
+        self._placed_anew = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.placed_anew.address)
         self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
         self._new: dict[pymunk.Shape, None] = {}  # not entered yet
         self._gone: list[int] = []  # ids of shapes that are entered still
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
@@ -54,8 +54,8 @@ class Register:
 
     def _pend(self) -> None:
         """There is something to enter, or to forget, before the next frame."""
-        if self._state["pending"] == 0:
-            self._state["pending"] = 1
+        if self._pending[0] == 0:
+            self._pending[0] = 1
 
     # --- what pymunk tells ---
 
@@ -65,11 +65,12 @@ class Register:
         self._new[shape] = None
         if shape.body is not None and shape.body.body_type == _STATIC:
             try:
-                heads = self._outlines([shape])
-            except ValueError:  # said when the space is stepped
+                read = self._outlines([shape])
+                self.forget()
+                self._enter([shape], *read)
+            # said when the space is stepped: pymunk is in the midst of adding
+            except (ValueError, MemoryError):
                 return
-            self.forget()
-            self._enter([shape], heads)
             del self._new[shape]
 
     def shape_goes(self, shape: pymunk.Shape) -> None:
@@ -101,12 +102,11 @@ class Register:
         known = [shape for shape in shapes if self.shapes.get(shape._hashid) is shape]
         rows, slots = self._store.known_shapes, self._store.slots
         for shape in known:
-            if self._outlines([shape])[0] != rows["outline"][slots[shape._hashid]]:
+            if self._outlines([shape])[1][0] != rows["outline"][slots[shape._hashid]]:
                 self.refresh(shape)
                 rows = self._store.known_shapes
-        bodies = {address_of(shape.body._body) for shape in known if shape.body is not None}
-        if bodies:
-            self._call("placed_anew", bodies)
+        bodies = {shape.body: None for shape in known if shape.body is not None}
+        self._placed_anew(self._store.at, _pointers(body._body for body in bodies), len(bodies))
 
     def refresh(self, shape: pymunk.Shape) -> None:
         """Read a shape's geometry again: `AreaContact.refresh`.
@@ -115,54 +115,59 @@ class Register:
         """
         if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
             raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
-        self._outlines([shape])  # says what is wrong with it while nothing has changed
-        self._call("shapes_go", [shape._hashid])
-        self._enter([shape])
+        read = self._outlines([shape])  # says what is wrong with it while nothing has changed
+        self._shape_goes(self._store.at, shape._hashid)
+        self._enter([shape], *read)
 
     # --- entering ---
 
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         state = self._state
-        told = state["pending"] == 1
+        pending = int(self._pending[0])
         count = len(self.shapes) + len(self._new) - len(self._gone)
-        pending = state["pending"]
         if count != len(space._shapes) or pending == 2:
             self._look_through(space)
         new = list(self._new)
-        heads = self._outlines(new)  # says what is wrong with one while nothing has changed
-        state["pending"] = 2  # until all is done: whoever is interrupted looks through the space
+        read = self._outlines(new)  # says what is wrong with one while nothing has changed
+        self._pending[0] = 2  # until all is done: whoever is interrupted looks through the space
         self.forget()
         if self._bodies:
-            addresses = [address_of(body._body) for body in self._bodies]
-            self._store.room(0, len(addresses), 0)
             # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
-            self._call("bodies_come", addresses, state["shape_count"] < 0 and not state["explicit"])
-            for body in self._bodies:
-                self._hook.hold(body)
+            held = state["shape_count"] < 0 and not state["explicit"]
+            self._hook.hold(self._bodies)
+            self._enter_bodies((body._body for body in self._bodies), held)
             self._bodies.clear()
-        if pending >= 2:
-            self._enter_partners(space)
-        self._enter(new, heads)
+        if (
+            pending >= 2
+        ):  # bodies that joints hold and that are not among the space's: its static one, the user's
+            self._enter_bodies(_held(space), False)
+        self._enter(new, *read)
         self._new.clear()
-        if not told:  # what begins a frame has noticed something else, of callbacks perhaps
+        if pending != 1:  # what begins a frame has noticed something else, of callbacks perhaps
             for name, value in self._hear(space).items():
                 state[name] = value
         state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
         state["shape_count"] = len(self.shapes)
-        state["pending"] = 0
+        self._pending[0] = 0
 
     def forget(self) -> None:
         """What has gone is not in the tables any more: nothing of it is read or written from now on."""
+        for ident in self._gone:
+            if ident in self.proxies:
+                self._store.known_shapes["proxy"][self._store.slots[ident]] = 0
+                self.proxies.discard(ident)
+            self._shape_goes(self._store.at, ident)
+            self.shapes.pop(ident, None)
         if self._gone:
-            self._call("shapes_go", self._gone)
-            for ident in self._gone:
-                self.shapes.pop(ident, None)
             self._gone.clear()
-            self._store.tidy()
-        if self._left:
-            self._call("bodies_go", self._left)
-            self._left.clear()
+            try:
+                self._store.tidy()
+            except MemoryError:  # another time: pymunk is in the midst of removing
+                pass
+        for address in self._left:
+            self._body_goes(self._store.at, address)
+        self._left.clear()
 
     def _look_through(self, space: pymunk.Space) -> None:
         """What there is that pymunk has not told of, and what is no more."""
@@ -173,58 +178,61 @@ class Register:
         self._gone = [ident for ident in known if ident not in present]
         self._new = {shape: None for ident, shape in present.items() if ident not in known}
         bodies = {address_of(body._body): body for body in space._bodies}
-        held = {address_of(body._body) for joint in space._constraints for body in (joint.a, joint.b)}
+        held = {address_of(body) for body in _held(space)}
         found = self._store.tables.bodies
         entered = set(found["address"][found["entered"] == 1].tolist())
         self._left = [address for address in entered if address not in bodies and address not in held]
         self._bodies = {body: None for address, body in bodies.items() if address not in entered}
 
-    def _enter_partners(self, space: pymunk.Space) -> None:
-        """Bodies that joints hold and that are not among the space's: its static one, those that the user moves."""
-        held = {address_of(body._body) for joint in space._constraints for body in (joint.a, joint.b)}
-        addresses = sorted(address for address in held if self._store.row_of(address) < 0)
-        self._store.room(0, len(addresses), 0)
-        self._call("bodies_come", addresses, 0)
+    def _enter_bodies(self, bodies: Iterable[Any], hold: bool) -> None:
+        """Enter bodies (cffi pointers) that are not entered yet."""
+        addresses = _pointers(bodies)
+        done, n = 0, len(addresses)
+        while (
+            done < n
+            and (done := done + self._bodies_come(self._store.at, addresses + done, n - done, hold)) < n
+        ):
+            self._store.grow()
 
-    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> np.ndarray:
-        """The numbers of the shapes' outlines in the pool, in which they are then. ValueError if one has no area."""
-        heads = np.zeros(len(shapes), np.int32)
-        plain = [i for i, shape in enumerate(shapes) if not _given(shape)]
-        chosen = shapes if len(plain) == len(shapes) else [shapes[i] for i in plain]
-        addresses = _words(address_of(shape._shape) for shape in chosen)
-        heads[plain], bad = self._store.read(addresses, self._where)
+    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any]:
+        """Chipmunk's addresses of shapes, and the numbers in the pool of their outlines, in which they are then.
+
+        ValueError if one has no area.
+        """
+        addresses = _pointers(shape._shape for shape in shapes)
+        heads = ffi.new("int[]", [self._given(shape) for shape in shapes])
+        bad = self._store.read(address_of(addresses), address_of(heads), len(shapes))
         if bad >= 0:
-            Outline.from_pymunk(chosen[bad])  # says what is wrong
-            raise ValueError(f"expected shapes with an area, got {chosen[bad]!r:.80}")
-        if len(plain) < len(shapes):
-            for i, shape in enumerate(shapes):
-                if _given(shape):
-                    heads[i] = self._given(Outline.from_pymunk(shape))
-        return heads
+            Outline.from_pymunk(shapes[bad])  # says what is wrong
+            raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
+        return addresses, heads
 
-    def _given(self, outline: Outline) -> int:
-        """The number in the pool of an outline that somebody has made."""
+    def _given(self, shape: pymunk.Shape) -> int:
+        """The number in the pool of the outline that somebody has put on a shape; -1: nobody has."""
+        if not isinstance(getattr(shape, "outline", None), Outline):
+            return -1
+        outline = Outline.from_pymunk(shape)
         head = self._store.outline(outline, outline.smallest_extent)
         if outline.mirror is not None:
             self._store.forms.mirror[head] = self._store.outline(outline.mirror, outline.smallest_extent)
         return head
 
-    def _enter(self, shapes: Sequence[pymunk.Shape], heads: np.ndarray | None = None) -> None:
-        """Enter shapes into the tables, whose outlines have these numbers."""
-        if not shapes:
-            return
-        heads = self._outlines(shapes) if heads is None else heads
-        idents = [shape._hashid for shape in shapes]
-        bodies = {address_of(shape.body._body) for shape in shapes if shape.body is not None}
-        unknown = sum(self._store.row_of(address) < 0 for address in bodies)  # static ones are in no list
-        self._store.room(len(shapes), unknown, max(idents))
-        addresses = _words(address_of(shape._shape) for shape in shapes)
-        self._calls["shapes_come"](self._at, addresses.ctypes.data, heads.ctypes.data, len(shapes))
-        self.shapes.update(zip(idents, shapes))
-
-    def _call(self, name: str, values: Iterable[int], *more: int) -> None:
-        words = ffi.new("uintptr_t[]", list(values))  # (numpy takes ten times as long for one)
-        self._calls[name](self._at, ffi.cast("uintptr_t", words), len(words), *more)
+    def _enter(self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any) -> None:
+        """Enter shapes into the tables (`_outlines`)."""
+        done, n = 0, len(shapes)
+        while done < n:
+            done += self._shapes_come(self._store.at, addresses + done, heads + done, n - done)
+            if done < n:
+                self._store.grow()
+        self.shapes.update((shape._hashid, shape) for shape in shapes)
+        proxies = [
+            shape._hashid
+            for shape in shapes
+            if isinstance(getattr(shape, "outline", None), Outline) and Outline.from_pymunk(shape).proxied
+        ]
+        if proxies:
+            self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
+            self.proxies.update(proxies)
 
     def largest(self) -> float:
         """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""
@@ -263,9 +271,13 @@ class Register:
         return {"handler_count": int(entries[0][0]), **self._hook.callbacks()}
 
 
-def _given(shape: pymunk.Shape) -> bool:
-    """Whether somebody has put an outline on a shape."""
-    return isinstance(getattr(shape, "outline", None), Outline)
+def _held(space: pymunk.Space) -> set[Any]:
+    """Chipmunk's bodies that joints hold."""
+    return {body._body for joint in space._constraints for body in (joint.a, joint.b)}
+
+
+def _pointers(cdata: Iterable[Any]) -> Any:
+    return ffi.new("void *[]", list(cdata))
 
 
 def _words(values: Iterable[Any]) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -10,10 +11,11 @@ import pymunk
 
 from ..kernel.bed import stored
 from ..kernel.tables import SUBSTEP
+from ..outline import Outline
+from ..pictures import FILL, STATIC, path_data, svg
 from ..store import load_law
 from .arrays import Store
 
-#: One row a contact region, as `AreaContact.regions` gives them.
 REGIONS = np.dtype(
     [
         ("shape_a", "O"),
@@ -31,6 +33,7 @@ REGIONS = np.dtype(
         ("slip", "f8"),  # tangential speed of A relative to B, surface velocity included (length/time)
     ]
 )
+"""One row a contact region, as `AreaContact.regions` gives them."""
 
 
 def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:
@@ -53,6 +56,26 @@ def regions_of(store: Store, shapes: dict[int, pymunk.Shape]) -> np.ndarray:
     for name in ("area", "chord", "stiffness", "force", "friction", "speed", "slip"):
         out[name] = live[name]
     return out
+
+
+def picture_of(space: pymunk.Space) -> str:
+    """All shapes where they are, as SVG: outlines with their holes; segments without thickness are lines."""
+    paths, boxes = [], []
+    for shape in space.shapes:
+        body = shape.body
+        if body is None:
+            continue
+        outline = Outline.from_pymunk(shape)
+        (c, s), (x, y) = body.rotation_vector, body.position
+        place = f"matrix({c:.9g},{s:.9g},{-s:.9g},{c:.9g},{x:.9g},{y:.9g})"
+        rings: Sequence[np.ndarray] = [outline.rings[0][:2]] if outline.two_sided else outline.rings
+        colour = STATIC if body.body_type == pymunk.Body.STATIC else FILL
+        paths.append((path_data(rings, () if outline.two_sided else outline.arcs), place, colour))
+        boxes.append(shape.cache_bb())
+    if not boxes:
+        return svg([], (0.0, 0.0, 1.0, 1.0))
+    low, high = np.min(boxes, axis=0), np.max(boxes, axis=0)
+    return svg(paths, (*low[:2].tolist(), *high[2:].tolist()), down=space.gravity.y > 0)
 
 
 def total_energy(space: pymunk.Space, store: Store) -> float:

@@ -6,6 +6,10 @@ from typing import TYPE_CHECKING, Any
 
 import pymunk
 
+from ..debug_draw import true_outlines
+from ..pictures import figure
+from .report import picture_of
+
 if TYPE_CHECKING:
     from .attach import AreaContact
 
@@ -66,9 +70,20 @@ def attached_class(plain: Any) -> type:
             if not self._locked:
                 self.__dict__[KEY]._register.forget()
 
-        own: dict[str, Any] = {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
+        def debug_draw(self: Any, options: pymunk.SpaceDebugDrawOptions) -> None:
+            with true_outlines(options):
+                plain.debug_draw(self, options)
+
+        def _repr_svg_(self: Any) -> str:
+            return picture_of(self)
+
+        def _repr_html_(self: Any) -> str:
+            return figure(picture_of(self), repr(self.__dict__[KEY]))
+
+        own: dict[str, Any] = {"_repr_svg_": _repr_svg_, "_repr_html_": _repr_html_}
+        own |= {"__reduce_ex__": reduce, "__doc__": plain.__doc__}
         own |= {method.__name__: method for method in (_add_shape, _remove_shape, _add_body, _remove_body)}
-        for method in (step, reindex_static, reindex_shape, reindex_shapes_for_body):
+        for method in (step, debug_draw, reindex_static, reindex_shape, reindex_shapes_for_body):
             method.__doc__ = getattr(plain, method.__name__).__doc__
             own[method.__name__] = method
         _classes[plain] = type(plain.__name__, (plain,), own)

@@ -46,7 +46,7 @@ def near_pairs(s: Any, space: int, h: float, time: float, ordered: bool = True) 
             g = floats(space + s.space_gravity, 2)
             arrange(tables, g[0], g[1])
     lap(s, PAIRS)
-    return bool(s.begun or has_room(tables))
+    return bool(s.begun or has_room(tables, time))
 
 
 @kernel
@@ -89,7 +89,8 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     came = kinetic(tables, 0.0, 0.0) if tables.counters[BOUNCES] > 0 else 0.0
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
-    lessen(tables, h)
+    if jointed:
+        lessen(tables, h)
     enough = mass * (SETTLED * small) ** 2
     searches = whole // SEARCH_SWEEPS
     sweeps = max(1, whole - 2 * searches - _relaxing(whole))

@@ -9,7 +9,7 @@ from rigidarea.flexible.nodal import contact as area_contact
 from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.flexible.search import NEAR, holds, narrow, renew, seen
+from rigidarea.flexible.search import NEAR, holds, narrow, renew, rounding, seen
 from rigidarea.flexible.segment import contact as segment_contact
 from rigidarea.flexible.tension import draw
 from rigidarea.kernel.jit import entry, kernel
@@ -79,6 +79,7 @@ def _near(bodies, sy, buf, pairs, st, s, found, p):  # type: ignore[no-untyped-d
     pa, pb = buf.pose[ia], buf.pose[ib]
     dx, dy = pb[0] - pa[0], pb[1] - pa[1]
     bend = buf.bend[ia] + buf.bend[ib] + (st.q if st.sts else 0.0)
+    bend += rounding(pa, pb, sy.size[ia] + sy.size[ib])
     if np.sqrt(dx * dx + dy * dy) > sy.size[ia] + sy.size[ib] + bend:
         found.found[p] = -1
         return 0, bend
@@ -139,7 +140,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
         sp = of_pair(s, found, p)
         if not st.sts:  # near now: within twice the last deformation, as it grows from one to the next
             yields = len(a.modes[0]) + len(b.modes[0]) + len(a.flexibility) + len(b.flexibility) > 0
-            reach = NEAR * st.margin + 2.0 * bend if yields else 0.0
+            reach = 2.0 * bend + (NEAR * st.margin if yields else 0.0)
             n_pairs = narrow(a.boxes, b.boxes, seen(pa, pb), reach, found, p, n_pairs, sp.close)
             if n_pairs == 0:
                 continue

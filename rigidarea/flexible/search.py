@@ -25,6 +25,15 @@ def seen(pa: Array, pb: Array) -> Relative:
     return relative(pa[0], pa[1], pa[2], pa[3], pb[0], pb[1], pb[2], pb[3], 0.0, 0.0, 0.0, 0.0)
 
 
+@kernel(forceinline=True)
+def rounding(pa: Array, pb: Array, size: float) -> float:
+    """What places of points in the world may be off (length): eight roundings; size: of both bodies together.
+
+    A leaf that only touches another may cross it to rounding, and of a boundary's crossings none may be missed.
+    """
+    return 8.0 * 2.0**-52 * (size + abs(pa[0]) + abs(pa[1]) + abs(pb[0]) + abs(pb[1]))
+
+
 @kernel
 def _aside(a: Boundary, i: int, b: Boundary, j: int, rel: Relative) -> float:
     """How far leaf j of b is on one side of the strip that holds leaf i of a; below 0 if it is not.
@@ -86,6 +95,10 @@ def search(a: Boundary, pose_a: Array, b: Boundary, pose_b: Array, margin: float
     Poses are (x, y, cos θ, sin θ). ``margin`` (length) covers the deformation and, where the list is kept for several
     evaluations, the motion between them.
     """
+    size = 0.0
+    for k in range(4):
+        size += abs(a.boxes[1, k]) + abs(b.boxes[1, k])
+    margin += rounding(pose_a, pose_b, size)
     count = _look(a, b, seen(pose_a, pose_b), margin, 0.0, pose_b, s.work.stack, s.pairs, s.gap, s.far)
     for k in range(count):
         s.close[k, 0], s.close[k, 1] = s.pairs[k, 0], s.pairs[k, 1]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from .constants import AHEAD, LOOK, MARGIN
+from .constants import AHEAD, HUGE, LOOK, MARGIN
 from .jit import entry, kernel
 from .pool import Pool
 from .tables import (
@@ -120,9 +120,20 @@ def _widen(shape: Any, body: Any, h: float, time: float) -> None:
             shape.high_y -= min(0.0, dy)
 
 
+@kernel(forceinline=True)
+def _is_huge(shape: Any, body: Any, time: float) -> bool:
+    """Whether a shape's box has far more room than it would be given now."""
+    room = shape.high_x - shape.low_x - (shape.right - shape.left) + shape.high_y - shape.low_y
+    room -= shape.top - shape.bottom
+    motion = time * (AHEAD * (abs(body.vx) + abs(body.vy)) + 4.0 * swing(shape, body))
+    return bool(room > HUGE * (4.0 * MARGIN * shape.extent + motion))
+
+
 @kernel
 def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
-    """Give each shape of the turn that leaves its box within h another, for `time` of motion, and ask about it."""
+    """Give each shape of the turn that leaves its box within h, or has shrunk its need of room, another, for `time` of
+    motion, and ask about it.
+    """
     turn = tables.counters[TURN]
     for k in range(tables.counters[MOVERS]):
         i = tables.movers[k]
@@ -145,6 +156,7 @@ def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
             or low_y - carried + min(0.0, dy, dy + gained_y) < shape.low_y
             or high_x + carried + max(0.0, dx, dx + gained_x) > shape.high_x
             or high_y + carried + max(0.0, dy, dy + gained_y) > shape.high_y
+            or _is_huge(shape, body, time)
         ):
             _widen(shape, body, h, time)
             put_in_tree(tables, i, MOVING)
@@ -222,8 +234,9 @@ def _boxes_part(one: Any, other: Any) -> bool:
 
 @entry
 def drop_pairs(tables: Tables, frame: int) -> None:
-    """Forget the pairs whose boxes have parted, but for those of which Chipmunk has told in this frame: a blow may have
-    parted them, and its impulse is yet to be reported. Those of which nobody is awake are remembered, but near no more.
+    """Forget the pairs of what has gone, or whose boxes have parted, but for those of which Chipmunk has told in this
+    frame: a blow may have parted them, and its impulse is yet to be reported. Those of which nobody is awake are
+    remembered, but near no more.
     """
     counters = tables.counters
     k = 0
@@ -234,7 +247,9 @@ def drop_pairs(tables: Tables, frame: int) -> None:
             continue
         one = tables.shapes[pair.a]
         other = tables.shapes[pair.b]
-        if not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
+        if one.outline < 0 or other.outline < 0:
+            end_pair(tables, p)
+        elif not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
             pair.near = -1
         elif _boxes_part(one, other) and pair.stamp != frame:
             end_pair(tables, p)
@@ -252,11 +267,6 @@ def forget_the_gone(tables: Tables) -> None:
         return
     counters[GONE] = 0
     counters[UNSORTED] = 1
-    for n in range(counters[BOXED]):
-        p = tables.near[n].pair
-        pair = tables.pairs[p]
-        if pair.a >= 0 and (tables.shapes[pair.a].outline < 0 or tables.shapes[pair.b].outline < 0):
-            end_pair(tables, p)
     drop_pairs(tables, -2)
     n = 0
     for k in range(counters[AWAKE]):

@@ -53,6 +53,8 @@ FEATURE = 0.15
 MARGIN = 0.1
 #: And for so many frames of its motion: what flies on is then asked about, and its box moved, in every third frame.
 AHEAD = 3.0
+#: A box with more than so many times that room is made smaller: what was fast and lies still is near few.
+HUGE = 2.0
 #: Square of the sine of the angle (8 degrees) up to which the next side of a chain is the same smooth curve for a disc
 #: that lies on it: a plastic corner of that angle would take no more than this part of its energy.
 SMOOTH = 0.02
@@ -98,6 +100,9 @@ SETTLED = 5e-3
 ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
-CALM = 0.2
+CALM = 0.05
+#: Of what a solve has taken from a contact's impulse, the next takes this part again before it begins: bodies that
+#: brace one another go on with less in a few substeps, where the sweeps alone would need hundreds.
+OVERTAKE = 0.3
 #: A solve that has not converged goes on for so many times as many sweeps.
 MORE_SWEEPS = 3

@@ -42,7 +42,7 @@ from .verdict import allowed
 from .work import Work
 
 #: Rows to spare, of pairs and of regions, beside a pair for each shape that moves, a region for every other one and for
-#: each near pair that has none; regions for each concave shape too.
+#: each pair that has none and may come to touch in the frame; regions for each concave shape too.
 SPARE = 24
 
 
@@ -199,8 +199,8 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
 
 
 @kernel
-def has_room(tables: Tables) -> bool:
-    """Whether there is room for what a frame may come to find beyond what it starts with; if not, for how much more.
+def has_room(tables: Tables, time: float) -> bool:
+    """Whether there is room for what `time` may bring beyond what there is; if not, for how much more.
 
     Asked before a frame changes anything: hardly ever does one have to be run again from further on.
     """
@@ -208,7 +208,8 @@ def has_room(tables: Tables) -> bool:
     pairs = counters[MOVERS] + SPARE - counters[FREE_PAIRS]
     regions = counters[MOVERS] // 2 + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
     for i in range(counters[NEAR]):
-        regions += tables.pairs[tables.near[i].pair].head < 0
+        pair = tables.pairs[tables.near[i].pair]
+        regions += pair.head < 0 and may_touch(tables, pair, -time)
     counters[MORE_PAIRS] = max(0, pairs)
     counters[MORE_REGIONS] = max(0, regions)
     return bool(pairs <= 0 and regions <= 0)

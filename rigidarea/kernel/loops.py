@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from .arc import across, on_arc
+from .arc import across, on_arc, top
 from .crossings import crossings, link
 from .jit import kernel
 from .locate import inside_outline
@@ -107,23 +107,28 @@ def _in_loop(work: Work, n: int, x: float, y: float) -> bool:
 
 
 @kernel
-def _off_corner(work: Work, start: int, stop: int) -> tuple[float, float]:
-    """The middle of a loop's longest edge: holes may touch a ring in a corner, where inside is undecided."""
+def _off_corner(work: Work, n: int) -> tuple[float, float]:
+    """The middle of loop n's longest edge: holes may touch a ring in a corner, where inside is undecided."""
     longest = -1.0
     x = 0.0
     y = 0.0
-    ux = work.polygon[stop - 1, 0]
-    uy = work.polygon[stop - 1, 1]
-    for i in range(start, stop):
+    arcs = work.loops[n].arcs > 0
+    stop = work.loops[n].stop
+    k = stop - 1
+    for i in range(work.loops[n].start, stop):
+        ux = work.polygon[k, 0]
+        uy = work.polygon[k, 1]
         vx = work.polygon[i, 0]
         vy = work.polygon[i, 1]
         length = abs(vx - ux) + abs(vy - uy)
         if length > longest:
             longest = length
-            x = 0.5 * (ux + vx)
-            y = 0.5 * (uy + vy)
-        ux = vx
-        uy = vy
+            if arcs and work.bows[k, 2] != 0.0:  # a chord's middle may be beyond what the hole is in
+                x, y = top(ux, uy, vx, vy, work.bows[k, 0], work.bows[k, 1], work.bows[k, 2])
+            else:
+                x = 0.5 * (ux + vx)
+                y = 0.5 * (uy + vy)
+        k = i
     return x, y
 
 
@@ -143,7 +148,7 @@ def _gather(work: Work, n: int, most: float) -> int:
         hole = loops[i]
         if hole.area > 0.0:
             continue
-        x, y = _off_corner(work, hole.start, hole.stop)
+        x, y = _off_corner(work, i)
         best = -1
         for j in range(n):
             if loops[j].area > -hole.area and (holes == n - 1 or _in_loop(work, j, x, y)):

@@ -240,13 +240,41 @@ def _chords(points: np.ndarray, arcs: np.ndarray) -> np.ndarray:
 
 
 @njit
+def _through_ends(points: np.ndarray, arcs: np.ndarray, following: np.ndarray, disc: bool) -> None:
+    """Make ends lie on their circles where they are further off than the signs at arcs allow for (`arc`).
+
+    Far from the body's origin, ends and centres are rounded by that much. An arc then goes through its ends, its
+    middle where it is across the chord; of a disc the ends move.
+    """
+    size = np.abs(points).max()
+    for i in range(len(points)):
+        r = arcs[i, 2]
+        if r == 0.0:
+            continue
+        px, py = points[i, 0] - arcs[i, 0], points[i, 1] - arcs[i, 1]
+        qx, qy = points[following[i], 0] - arcs[i, 0], points[following[i], 1] - arcs[i, 1]
+        off = max(abs(math.hypot(px, py) - abs(r)), abs(math.hypot(qx, qy) - abs(r)))
+        if off <= 8.0 * 2.0**-52 * max(size, abs(r)):
+            continue
+        if disc:
+            points[i] *= r / math.hypot(px, py)
+            continue
+        ux = qx - px
+        uy = qy - py
+        along = 0.5 * ((px + qx) * ux + (py + qy) * uy) / (ux * ux + uy * uy)
+        arcs[i, 0] += along * ux
+        arcs[i, 1] += along * uy
+        arcs[i, 2] = math.copysign(math.hypot(px - along * ux, py - along * uy), r)
+
+
+@njit
 def _prepare(
     points: np.ndarray, arcs: np.ndarray, starts: np.ndarray, x: float, y: float
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray, tuple[int, bool, int, bool, float, float, float]]:
     """Everything of one outline but its rings: following, ring_of, boxes, and the numbers of its head.
 
-    From its points and arcs about the middle of its box, where its rings start in them, and its centroid (x, y). The
-    arcs' last column is filled in.
+    From its points and arcs about the middle of its box, where its rings start in them, and its centroid (x, y). Arcs
+    are put through their ends, and their last column is filled in.
     """
     n = len(points)
     following = np.arange(1, n + 1).astype(np.int32)
@@ -254,13 +282,15 @@ def _prepare(
     for r in range(len(starts) - 1):
         following[starts[r + 1] - 1] = starts[r]
         ring_of[starts[r] : starts[r + 1]] = r
-    bent = 0
     disc = len(starts) == 2 and arcs[0, 2] > 0.0
+    for i in range(n):
+        disc = disc and arcs[i, 0] == 0.0 and arcs[i, 1] == 0.0 and arcs[i, 2] == arcs[0, 2]
+    _through_ends(points, arcs, following, disc)
+    bent = 0
     radius = 0.0
     for i in range(n):
         radius = max(radius, math.hypot(points[i, 0], points[i, 1]))
         r = arcs[i, 2]
-        disc = disc and arcs[i, 0] == 0.0 and arcs[i, 1] == 0.0 and r == arcs[0, 2]
         if r == 0.0:
             continue
         bent += 1
@@ -270,13 +300,12 @@ def _prepare(
         reach = far + abs(r)
         if far > 0.0 and _on_arc(p, q, r, arcs[i, 0] * reach / far, arcs[i, 1] * reach / far):
             radius = max(radius, reach)
-        half = 0.5 * math.hypot(q[0] - p[0], q[1] - p[1])
-        bow = (
-            abs(r)
-            if half >= abs(r)
-            else half * half / (abs(r) + math.sqrt((abs(r) - half) * (abs(r) + half)))
-        )
-        arcs[i, 3] = bow + 16.0 * 2.0**-52 * (reach + half)
+        # by the centre: of a half turn, half the chord and the radius say the height to half the digits only
+        ux = q[0] - p[0]
+        uy = q[1] - p[1]
+        chord = math.hypot(ux, uy)
+        apothem = (ux * (arcs[i, 1] - p[1]) - uy * (arcs[i, 0] - p[0])) / chord
+        arcs[i, 3] = abs(r) - (apothem if r > 0.0 else -apothem) + 16.0 * 2.0**-52 * (reach + chord)
     if disc:
         radius = arcs[0, 2]
     boxes, leaves = boxes_of(points, following, arcs)

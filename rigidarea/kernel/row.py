@@ -30,6 +30,7 @@ from .birth import drives, flies_off
 from .constants import (
     HIT,
     LOOK,
+    OVERTAKE,
     PLACED_LOADS,
     RELEASE_SPEED,
     RELEASE_STEPS,
@@ -73,6 +74,7 @@ ROW = record(
         ("l1", "f8"),
         ("lt", "f8"),
         ("weight", "f8"),  # 1/m_eff
+        ("began", "f8"),  # normal impulse with which it began
         # of two ends:
         ("e1", "f8"),
         ("e2", "f8"),
@@ -422,6 +424,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
                 row.t1 += _turn_along(r, a, b, 0.0)
                 row.nx = r.nx
                 row.ny = r.ny
+    row.began = row.l1 + row.l2
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
@@ -605,9 +608,12 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
         r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
     # sent back while it flies off: that is not borne
     flying = r.mode == REST and row.alpha == 0.0 and row.theta == 0.0
-    r.l1 = 0.0 if flying else row.l1
-    r.l2 = 0.0 if flying else row.l2
-    r.lt = 0.0 if flying else row.lt
+    ahead = (
+        0.0 if flying or normal <= 0.0 else max(0.0, 1.0 - OVERTAKE * max(0.0, row.began - normal) / normal)
+    )
+    r.l1 = ahead * row.l1
+    r.l2 = ahead * row.l2
+    r.lt = ahead * row.lt
     r.step = h
     r.force = normal / h
     r.friction = row.lt / h

@@ -56,7 +56,7 @@ def over(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> tuple[
 
 
 @kernel
-def _faces(
+def faces(
     pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int, kept: int, way: float
 ) -> int:
     """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
@@ -98,13 +98,13 @@ def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pos
     if sa.mirror >= 0:
         if pair.head < 0 or pair.side_a == 0:
             way = _way(a, pose_a, b, pose_b)
-            pair.side_a = _faces(pool, ia, pose_a, ib, pose_b, pair.side_a, pair.kept_a, way)
+            pair.side_a = faces(pool, ia, pose_a, ib, pose_b, pair.side_a, pair.kept_a, way)
         if pair.side_a < 0:
             ia = sa.mirror
     if sb.mirror >= 0:
         if pair.head < 0 or pair.side_b == 0:
             way = _way(a, pose_a, b, pose_b)
-            pair.side_b = _faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b, pair.kept_b, way)
+            pair.side_b = faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b, pair.kept_b, way)
         if pair.side_b < 0:
             ib = sb.mirror
     return ia, ib

@@ -105,11 +105,13 @@ def usable(body: Any, h: float) -> float:
 
 @kernel
 def lessen(tables: Tables, h: float) -> None:
-    """Of what rows begin with, only what is usable."""
+    """Of what rows begin with where bodies hang in joints, which hold what they press, only what is usable."""
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
+        if a.calm >= 0 and b.calm >= 0:
+            continue
         part = min(usable(a, h), usable(b, h))
         if part < 1.0:
             d1, d2, dt = (part - 1.0) * row.l1, (part - 1.0) * row.l2, (part - 1.0) * row.lt

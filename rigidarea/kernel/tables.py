@@ -22,7 +22,26 @@ BODY = record(
     [
         ("address", "u8"),  # of Chipmunk's body; 0: none
         ("stamp", "i8"),  # frame in which it was last met
-        ("kind", "i8"),  # FIXED, DRIFTS or LED
+        ("listed", "i8"),  # which list of those that are live has it, of what does not move
+        ("kind", "i1"),  # FIXED, DRIFTS or LED
+        ("awake", "i1"),  # 1: it is in `Tables.awake`
+        ("mobile", "i1"),  # 1: contacts may move it (when it is awake)
+        ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
+        ("calm", "i1"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
+        ("was_calm", "i1"),  # 1: calm, a frame before
+        ("pushed", "i1"),  # BOUNCED or BORNE: what contacts did to it in the substep before; 0: nothing
+        ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
+        ("joined", "i1"),  # 1: a joint keeps it from colliding with somebody
+        ("entered", "i1"),  # 1: it is in the space
+        ("unmeasured", "i1"),  # 1: its shapes have changed since `extent` and `reach` were found
+        ("wants", "i4"),  # substeps that it wants in this frame
+        ("steps", "i4"),  # that its island takes; 0: it does not move
+        ("taken", "i4"),  # that it took in the last frame; 0: it was not there
+        ("asked", "i4"),  # that the user wants for its island, at least; 0: none
+        ("island", "i4"),  # row of a body of the same island (`islands`)
+        ("held", "i4"),  # for how many of its shapes, and for the space itself, it has its row
+        ("joints", "i4"),  # of them, those that have no place in the order of the sweeps yet (`order_joints`)
+        ("sum_of_joints", "i4"),  # and the sum of their numbers: of one that is left, its own
         ("x", "f8"),  # centre of gravity (length)
         ("y", "f8"),
         ("angle", "f8"),
@@ -32,34 +51,33 @@ BODY = record(
         ("oy", "f8"),
         ("cog_x", "f8"),  # centre of gravity, body frame (length)
         ("cog_y", "f8"),
-        ("reach", "f8"),  # no point of its shapes is farther from its origin (length)
-        ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
-        ("came_vy", "f8"),
-        ("came_w", "f8"),
         ("vx", "f8"),  # (length/time)
         ("vy", "f8"),
         ("w", "f8"),  # (1/time)
         ("inverse_mass", "f8"),  # 0 for what no contact moves
         ("inverse_moment", "f8"),
-        ("own_inverse_moment", "f8"),  # while joints have it turn more slowly (`geometric_stiffness`)
-        ("tension", "f8"),  # sum over its joints of force times arm (force length)
+        ("extent", "f8"),  # smallest extent of its shapes (length)
+        ("reach", "f8"),  # no point of its shapes is farther from its origin (length)
+        ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
+        ("kick_y", "f8"),
+        ("kick_w", "f8"),
+        ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
+        ("came_vy", "f8"),
+        ("came_w", "f8"),
         ("way", "f8"),  # how far a point of it may go in the next drift (length)
         ("strayed", "f8"),  # how far the sweeps may send a point of it off its way in the next drift (length)
+        ("shift_x", "f8"),  # what impacts within the substep move it by (length)
+        ("shift_y", "f8"),
+        ("shift_a", "f8"),
+        ("load", "f8"),  # the largest that a contact of its bears (force)
+        ("own_inverse_moment", "f8"),  # while joints have it turn more slowly (`geometric_stiffness`)
+        ("tension", "f8"),  # sum over its joints of force times arm (force length)
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
         ("gain_w", "f8"),
         ("thrust", "f8"),  # how much that changed its velocity, whoever did it: the user's functions too
-        ("load", "f8"),  # the largest that a contact of its bears (force)
-        ("kick_x", "f8"),  # and in a substep
-        ("kick_y", "f8"),
-        ("kick_w", "f8"),
-        ("pushed", "i4"),  # BOUNCED or BORNE: what contacts did to it in the substep before; 0: nothing
-        ("free", "i4"),  # 1: what gives way to a blow: no joint or kinematic body presses it
-        ("calm", "i4"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
-        ("was_calm", "i4"),  # 1: calm, a frame before
-        ("shift_x", "f8"),  # what impacts within the substep move it by (length)
-        ("shift_y", "f8"),
-        ("shift_a", "f8"),
+        # how long it has moved by itself: since the user last set its place or velocity (time)
+        ("since", "f8"),
         ("old_x", "f8"),  # state at the frame's start
         ("old_y", "f8"),
         ("old_a", "f8"),
@@ -70,26 +88,6 @@ BODY = record(
         ("old_fx", "f8"),  # force and torque that the user has given it
         ("old_fy", "f8"),
         ("old_torque", "f8"),
-        (
-            "since",
-            "f8",
-        ),  # how long it has moved by itself: since the user last set its place or velocity (time)
-        ("extent", "f8"),  # smallest extent of its shapes (length)
-        ("mobile", "i4"),  # 1: contacts may move it (when it is awake)
-        ("joints", "i4"),  # of them, those that have no place in the order of the sweeps yet (`order_joints`)
-        ("sum_of_joints", "i4"),  # and the sum of their numbers: of one that is left, its own
-        ("joined", "i4"),  # 1: a joint keeps it from colliding with somebody
-        ("asked", "i4"),  # substeps a frame that the user wants for its island, at least; 0: none
-        ("wants", "i4"),  # substeps that it wants in this frame
-        ("steps", "i4"),  # that its island takes; 0: it does not move
-        ("taken", "i4"),  # that it took in the last frame; 0: it was not there
-        ("island", "i4"),  # row of a body of the same island (`islands`)
-        ("awake", "i4"),  # 1: it is in `Tables.awake`
-        ("changed", "i4"),  # 1: in this frame it has come to be awake, or mobile
-        ("held", "i4"),  # for how many of its shapes, and for the space itself, it has its row
-        ("entered", "i4"),  # 1: it is in the space
-        ("unmeasured", "i4"),  # 1: its shapes have changed since `extent` and `reach` were found
-        ("listed", "i8"),  # which list of those that are live has it, of what does not move
     ]
 )
 
@@ -130,6 +128,7 @@ SHAPE = record(
         ("low_y", "f8"),
         ("high_x", "f8"),
         ("high_y", "f8"),
+        ("proxy", "i4"),  # 1: Chipmunk sees another shape than the outline
     ],
 )
 
@@ -138,48 +137,42 @@ PAIR = record(
         ("a", "i4"),  # rows of the two shapes; -1: none
         ("b", "i4"),
         ("head", "i4"),  # first region; -1: none
-        ("seats", "i4"),  # 1: it touches, and may do so elsewhere as well without turning
         ("next", "i4"),  # in the free list
+        ("near", "i4"),  # counters[SEARCH]: it is in `Tables.near`
+        ("seats", "i1"),  # 1: it touches, and may do so elsewhere as well without turning
+        ("verdict", "i1"),  # 1: the user lets it collide, 0: not
+        ("side_a", "i1"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
+        ("side_b", "i1"),
+        ("kept_a", "i1"),  # side of it on which the other one has stayed when a frame ended; 0: not known
+        ("kept_b", "i1"),
+        ("now_a", "i1"),  # the same of this frame
+        ("now_b", "i1"),
+        ("swapped", "i1"),  # 1: the arbiter's A is our B
+        ("points", "i1"),  # how many contact points it had
         ("axis_x", "f8"),  # what parted them last, A's frame, A to B (`apart`); (0, 0): nothing known
         ("axis_y", "f8"),
         ("gap", "f8"),  # how far apart along it, and in which substep (length)
         ("parted", "i8"),
         ("stamp", "i8"),  # frame in which Chipmunk last reported it
         ("lasting", "i8"),  # the frame in which it was taken to touch still, by a hair apart
-        ("verdict", "i4"),  # 1: the user lets it collide, 0: not
-        ("side_a", "i4"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror
-        ("kept_a", "i4"),  # side of it on which the other one has stayed when a frame ended; 0: not known
-        ("kept_b", "i4"),
-        ("now_a", "i4"),  # the same of this frame
-        ("now_b", "i4"),
-        ("side_b", "i4"),
-        ("near", "i8"),  # counters[SEARCH]: it is in `Tables.near`
-        (
-            "waiting",
-            "i8",
-        ),  # frame in which it last waited for that, since a callback of the user's will hear of it
+        # frame in which it last waited for its verdict, since a callback of the user's will hear of it
+        ("waiting", "i8"),
         ("waited", "f8"),  # how long, in that frame (time)
-        ("swapped", "i4"),  # 1: the arbiter's A is our B
-        ("points", "i4"),  # how many contact points it had
         ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
         ("friction", "f8"),
         ("elasticity", "f8"),
         ("surface_x", "f8"),  # surface velocity, B's minus A's
         ("surface_y", "f8"),
-        (
-            "steer_c",
-            "f8",
-        ),  # by how much the user has turned the arbiter's normal in that frame: cosine and sine
+        # by how much the user has turned the arbiter's normal in that frame: cosine and sine
+        ("steer_c", "f8"),
         ("steer_s", "f8"),
         ("jx", "f8"),  # impulse on B in this frame
         ("jy", "f8"),
         ("stiffness", "f8"),  # k (force/length^2); 0: not chosen yet
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
-        (
-            "firm",
-            "f8",
-        ),  # k that its load of the last frame asks for: what resists, where k has not grown to it yet
+        # k that its load of the last frame asks for: what resists, where k has not grown to it yet
+        ("firm", "f8"),
         ("carrying", "f8"),  # normal impulse in this frame
         ("area", "f8"),  # what its regions' area would be now at the depth allowed (length^2)
     ],
@@ -285,15 +278,15 @@ REGION = record(
 #: least, and 1 where the scratch is too small, or there is none for
 #: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
-#: as they were made.
+#: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
 BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(20, 30)
 JOINTS, REJOINED, GONE = range(30, 33)
 MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(33, 40)
-USED_PAIRS, USED_REGIONS = range(40, 42)
-COUNTERS = 42
+USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(40, 45)
+COUNTERS = 45
 
 
 class Law(NamedTuple):
@@ -334,8 +327,7 @@ class Tables(NamedTuple):
     )  # (k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; the last for sorting
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     joints: np.ndarray  # (n,) JOINT
-    keys: np.ndarray  # (m,) int64: hash table of pairs, a << 32 | b, a < b; -1: empty
-    values: np.ndarray  # (m,) int32
+    table: np.ndarray  # (m,) int32: hash table of pairs by their shapes; -1: empty
     counters: np.ndarray  # (COUNTERS,) int64
 
 
@@ -346,66 +338,55 @@ def pairs_in_use(tables: Tables) -> int:
 
 
 @kernel(forceinline=True)
-def _home(key: int, mask: int) -> int:
-    return int(((key >> 32) * 73856093 ^ (key & 0xFFFFFFFF) * 19349663) & mask)
+def _home(tables: Tables, a: int, b: int) -> int:
+    return int((min(a, b) * 73856093 ^ max(a, b) * 19349663) & (len(tables.table) - 1))
+
+
+@kernel
+def _place(tables: Tables, a: int, b: int) -> int:
+    """Where in the hash table the pair of shape rows a and b is, or would be entered."""
+    mask = len(tables.table) - 1
+    i = _home(tables, a, b)
+    while tables.table[i] >= 0:
+        pair = tables.pairs[tables.table[i]]
+        if (pair.a == a and pair.b == b) or (pair.a == b and pair.b == a):
+            break
+        i = (i + 1) & mask
+    return i
 
 
 @kernel
 def find_pair(tables: Tables, a: int, b: int) -> int:
     """The pair of shape rows a and b; -1: there is none."""
-    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
-    mask = len(tables.keys) - 1
-    i = _home(key, mask)
-    while tables.keys[i] != -1:
-        if tables.keys[i] == key:
-            return int(tables.values[i])
-        i = (i + 1) & mask
-    return -1
-
-
-@kernel
-def _enter(tables: Tables, a: int, b: int, p: int) -> None:
-    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
-    mask = len(tables.keys) - 1
-    i = _home(key, mask)
-    while tables.keys[i] != -1:
-        i = (i + 1) & mask
-    tables.keys[i] = key
-    tables.values[i] = p
+    return int(tables.table[_place(tables, a, b)])
 
 
 @kernel
 def _leave(tables: Tables, a: int, b: int) -> None:
-    """Take a pair's key out: those that would be found by it move up (Knuth, vol. 3, 6.4, algorithm R)."""
-    key = (np.int64(min(a, b)) << 32) | np.int64(max(a, b))
-    mask = len(tables.keys) - 1
-    i = _home(key, mask)
-    while tables.keys[i] != key:
-        if tables.keys[i] == -1:
-            return
-        i = (i + 1) & mask
+    """Take a pair out: those that would be found by it move up (Knuth, vol. 3, 6.4, algorithm R)."""
+    mask = len(tables.table) - 1
+    i = _place(tables, a, b)
     k = (i + 1) & mask
-    while tables.keys[k] != -1:
-        home = _home(tables.keys[k], mask)
-        if ((k - home) & mask) >= ((k - i) & mask):
-            tables.keys[i] = tables.keys[k]
-            tables.values[i] = tables.values[k]
+    while tables.table[k] >= 0 and tables.table[i] >= 0:
+        pair = tables.pairs[tables.table[k]]
+        if ((k - _home(tables, pair.a, pair.b)) & mask) >= ((k - i) & mask):
+            tables.table[i] = tables.table[k]
             i = k
         k = (k + 1) & mask
-    tables.keys[i] = -1
+    tables.table[i] = -1
 
 
 @entry
 def rehash(tables: Tables) -> None:
     """Make the hash table anew from the pairs in use."""
-    tables.keys[:] = -1
+    tables.table[:] = -1
     left = pairs_in_use(tables)
     for p in range(len(tables.pairs)):
         if left == 0:
             break
         if tables.pairs[p].a >= 0:
             left -= 1
-            _enter(tables, tables.pairs[p].a, tables.pairs[p].b, p)
+            tables.table[_place(tables, tables.pairs[p].a, tables.pairs[p].b)] = p
 
 
 @kernel
@@ -471,7 +452,7 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         pair.jx = 0.0
         pair.jy = 0.0
         _renew(pair)
-        _enter(tables, a, b, p)
+        tables.table[_place(tables, a, b)] = p
     return int(p)
 
 

@@ -36,14 +36,6 @@ STILL, MOVING, FREE = 0, 1, 2
 FAR = 1.5
 
 
-def new_nodes(n: int) -> np.ndarray:
-    """(2 n,) NODE: room for n shapes, all nodes free, the first one first."""
-    nodes = np.zeros(2 * n, NODE)
-    nodes["parent"] = np.arange(1, 2 * n + 1)
-    nodes["parent"][-1:] = -1
-    return nodes
-
-
 @kernel(forceinline=True)
 def _take(nodes: np.ndarray, roots: np.ndarray) -> int:
     i = int(roots[FREE])

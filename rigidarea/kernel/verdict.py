@@ -9,12 +9,13 @@ from __future__ import annotations
 from typing import Any
 
 from .birth import size_of
+from .clearance import clearance
 from .constants import PUT_FOLLOWED
 from .jit import kernel
 from .meet import earlier, jumped, overlap_before
-from .motion import afford
+from .motion import afford, pose_of
 from .overlap import OVERFLOW
-from .place import place
+from .place import place, seen_from
 from .pool import Pool
 from .region import closing
 from .sides import shown_sides
@@ -54,7 +55,7 @@ def allowed(tables: Tables, pair: Any, frame: int) -> bool:
 
 
 @kernel
-def lasts(tables: Tables, pair: Any, frame: int, dt: float) -> bool:
+def lasts(pool: Pool, tables: Tables, work: Work, pair: Any, frame: int, dt: float) -> bool:
     """Whether a pair that touched in the frame before still does, for the user: no farther apart than a solve leaves.
 
     And what turns about a corner leaves it by its centripetal way in a frame of dt. What has begun to touch would be
@@ -71,8 +72,15 @@ def lasts(tables: Tables, pair: Any, frame: int, dt: float) -> bool:
         return False  # put there by hand
     slop = PUT_FOLLOWED * min(size_of(a), size_of(b))
     slop += 0.5 * dt * dt * (a.w * a.w * a.reach + b.w * b.w * b.reach)
-    if pair.head < 0:
+    if pair.head < 0 and pair.gap > 0.0:
         return bool(pair.parted == tables.counters[SUBSTEP] and pair.gap <= slop)
+    if pair.head < 0:  # no axis parts concave outlines
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        ia = sa.mirror if pair.side_a < 0 else sa.outline
+        ib = sb.mirror if pair.side_b < 0 else sb.outline
+        rel = seen_from(pool.heads[ia], pose_of(a), pool.heads[ib], pose_of(b))
+        return bool(clearance(pool, ia, pool, ib, rel, 2.0 * slop, work) <= slop)
     r = pair.head
     while r >= 0:  # as the middle of the last substep has found them, and half of it later
         region = tables.regions[r]

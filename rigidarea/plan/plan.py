@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
 
 import numpy as np
 import pymunk
@@ -41,7 +41,20 @@ SLOP = 0.1
 """Of the tolerance: the share that Chipmunk's slop may have of it."""
 SECONDS = 10.0
 """Time that is planned for, unless it is said."""
-SETTINGS = ("level", "steps", "sweeps", "penetration", "stiffness", "sampling")
+
+
+class Overrides(TypedDict, total=False):
+    """What may be said otherwise; None takes a word back."""
+
+    level: Literal["rigid", "compliant", "modal", "pymunk"] | None
+    steps: int | None
+    sweeps: int | None
+    penetration: float | None
+    stiffness: float | None
+    sampling: float | None
+
+
+SETTINGS = tuple(Overrides.__annotations__)
 
 
 class Plan:
@@ -260,7 +273,9 @@ class Plan:
 
     # --- overriding ---
 
-    def override(self, target: pymunk.Shape | pymunk.Body | None = None, **settings: Any) -> Plan:
+    def override(
+        self, target: pymunk.Shape | pymunk.Body | None = None, **settings: Unpack[Overrides]
+    ) -> Plan:
         """Say otherwise, and plan the rest around it; None takes a word back. Returns the plan.
 
         target None: the whole space: level ("rigid", "pymunk"), steps, sweeps, penetration, stiffness. A shape:

@@ -166,6 +166,8 @@ def _bench(arguments: argparse.Namespace) -> int:
         if arguments.docs:
             shown = {"everyday.png": pictures[0]} if pictures else {}
             page.renew(arguments.docs, {"everyday": page.everyday(report)}, shown)
+            page.renew(arguments.docs.parent, {"moving": page.moving(report)}, {}, "README.md")
+            page.keep(arguments.docs, "everyday", report)
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
         if arguments.json != "-":
             print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))

@@ -49,6 +49,8 @@ TOLD = (
 """Keys of a row that the command prints as a table; the files have all."""
 LAST_S = 1.0
 """The time at the end in which a scene is asked whether it has come to rest (s)."""
+MOVING_S = 4.0
+"""The time at the start in which things fall, collapse and come to rest (s)."""
 LOOK_EVERY = 6
 """Frames between two looks at the speeds then: reading 10,000 bodies takes longer than moving them."""
 BLOCK = 10
@@ -65,6 +67,8 @@ class Course:
 
     run: Run
     start: Array
+    frame: float
+    """Simulated time of a frame (s)."""
     frame_ms: list[float] = field(default_factory=list)
     contacts: list[int] = field(default_factory=list)
     speed_left: float = 0.0
@@ -75,7 +79,10 @@ class Course:
     def row(self) -> Row:
         """As a row of the output has it."""
         times = self.frame_ms[min(WARM, len(self.frame_ms) - 1) :]
+        moving = sorted(times[: max(1, round(MOVING_S / self.frame) - WARM)])
         return {
+            "moving_ms": statistics.mean(moving),
+            "moving_worst_ms": statistics.mean(moving[-max(1, len(moving) // 10) :]),
             "steps_per_frame": self.run.steps,
             "frame_ms_median": statistics.median(times),
             "frame_ms_p99": float(np.percentile(times, 99)),
@@ -94,7 +101,7 @@ def race(scene: Scene, engines: Mapping[str, tuple[str, Settings]]) -> dict[str,
     courses = {}
     for name, (peer, settings) in engines.items():
         run = get_peer(peer).build(scene, settings)
-        courses[name] = Course(run, run.state()[moving])
+        courses[name] = Course(run, run.state()[moving], scene.frame)
     second = round(1 / scene.frame)
     last = scene.frames - round(LAST_S / scene.frame)
     with one_core():
@@ -139,8 +146,9 @@ def everyday(
     native_4_ms, box2d_ms, ratio (to native_1, median over seeds), ratio_worst, speed_left (the fastest body of the
     last second, the seeds' worst; likewise native_1_speed_left ...), contacts (pairs a frame), native_contacts (of
     native_1, whose frame is the measure), native_4_contacts, inside (whether every body of every seed stayed in the
-    room; native_1_inside ...), shift (sideways, over a body's side). `runs`: a row a scene, seed and engine. `summary`:
-    median and worst ratio of the judged scenes, and which fell short in what.
+    room; native_1_inside ...), shift (sideways, over a body's side), moving_ms and moving_worst_ms (of the first
+    `MOVING_S`: the mean frame, and the mean of the slowest tenth; native_1_moving_ms ...). `runs`: a row a scene, seed
+    and engine. `summary`: median and worst ratio of the judged scenes, and which fell short in what.
     """
     chosen = list(names) or list(EVERYDAY)
     for name in chosen:
@@ -199,6 +207,8 @@ def summed(described: Everyday, here: Sequence[Mapping[str, Row]]) -> Row:
         "steps_per_frame": over(OURS, "steps_per_frame", max),
         "frame_ms_median": over(OURS, "frame_ms_median", middle),
         "frame_ms_worst": over(OURS, "frame_ms_worst", max),
+        "moving_ms": over(OURS, "moving_ms", middle),
+        "moving_worst_ms": over(OURS, "moving_worst_ms", middle),
         "native_1_ms": over("native_1", "frame_ms_median", middle),
         "native_4_ms": over("native_4", "frame_ms_median", middle),
         "box2d_ms": over("box2d", "frame_ms_median", middle),
@@ -215,6 +225,8 @@ def summed(described: Everyday, here: Sequence[Mapping[str, Row]]) -> Row:
         "judged": described.judged,
     }
     for engine in ("native_1", "native_4", "box2d"):
+        row[f"{engine}_moving_ms"] = over(engine, "moving_ms", middle)
+        row[f"{engine}_moving_worst_ms"] = over(engine, "moving_worst_ms", middle)
         row[f"{engine}_speed_left"] = over(engine, "speed_left", max)
         row[f"{engine}_inside"] = over(engine, "inside", all)
         row[f"{engine}_shift"] = over(engine, "shift", max)

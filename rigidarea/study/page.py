@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from ..report import write_json
 from . import atlas, front
 from .causes import CAUSES
 from .chart import points
@@ -139,6 +140,24 @@ def everyday(report: Row) -> str:
     columns = ["scene", "bodies", "substeps", "rigidarea", "pymunk, 1 step", "pymunk, 4", "Box2D", "ratio"]
     columns += ["fastest at the end", "pymunk's, 4", "Box2D's", "contacts", "pymunk's, 1", "all inside"]
     return markdown(columns, rows)
+
+
+def moving(report: Row) -> str:
+    """Game scenes while they move: the mean frame and the mean of the slowest tenth (ms) of each engine."""
+    engines = ("", "native_1_", "native_4_", "box2d_")
+    rows = []
+    for row in report["results"]:
+        cells = [row["title"]]
+        for engine in engines:
+            mean, worst = row[f"{engine}moving_ms"], row[f"{engine}moving_worst_ms"]
+            cells.append("–" if mean is None else f"{number(mean)}, {number(worst)}")
+        rows.append(cells)
+    return markdown(["scene", "rigidarea", "pymunk, 1 step", "pymunk, 4", "Box2D v3"], rows)
+
+
+def keep(docs: Path, name: str, report: Row) -> None:
+    """Keep what a command has measured, from which the pages' tables are made: `docs/results/name.json`."""
+    write_json(report, docs / "results" / f"{name}.json")
 
 
 def dominated(report: Row) -> str:

@@ -41,7 +41,9 @@ SVG = """<svg xmlns="http://www.w3.org/2000/svg" width="10cm" height="80" viewBo
 <g transform="rotate(30 5 5) scale(2,3) skewX(10) matrix(1 0 0 1 2 3)"><path class="b" d="M0,0 C 3,-2 7,-2 10,0 S 13 7
 10 10 Q 7,12 5,10 T 0,10 A 6 7 0 0 1 0 0 z m 3 3 l 2 0 0 2z"/><rect id="c" x="1" y="2" width="3mm" height="4" rx="1"/>
 </g><ellipse cx="3" cy="30%" rx="2" ry="1" style="display:block;fill:#123"/><polygon points="0,0 1,1 2,0"/>
-<svg x="5" viewBox="0 0 2 2" width="4" preserveAspectRatio="xMinYMax slice"><circle r=".5"/></svg><!-- end --></svg>"""
+<svg x="5" viewBox="0 0 2 2" width="4" preserveAspectRatio="xMinYMax slice"><circle r=".5"/></svg><!-- end --><g id="d"
+fill="none" stroke="red" stroke-width="2" stroke-linecap="round"><path d="M0,0 C 3,-2 7,-2 10,0 H4"/>
+<line x2="5%"/></g><use href="#d" x="9"/></svg>"""
 TOML = """rigidarea = 1 # one
 gravity = [0, -9.81]
 [contact]

@@ -6,6 +6,7 @@ import random
 import time
 
 import numpy as np
+import pymunk
 import pytest
 
 from rigidarea import bring
@@ -66,7 +67,23 @@ def test_finer_tolerance_is_closer(tmp_path):
     [
         ('<path d="M0,0 L10,10 L10,0 L0,10 Z"/>', "does not cross itself"),
         ('<path d="M0,0 H20 V20 H0 Z M10,10 H30 V30 H10 Z"/>', "cross"),
-        ('<use href="#a"/>', "expected a plain drawing, got '<use"),
+        ('<use href="#a"/>', "line 1, <use>: expected href to name an element"),
+        ('<g id="a"><use href="#a"/></g>', "elements"),
+        (
+            '<g id="a"><rect width="1" height="1"/></g><g id="b">'
+            + 9 * '<use href="#a"/>'
+            + "</g>"
+            + 9 * '<use href="#b"/>',
+            "at most 50 elements",
+        ),
+        ('\n<rect/>\n<path id="spawn" d="M0,0 L10,10 L10,0 L0,10 Z"/>', "line 3, <path id='spawn'>: ring 0"),
+        (
+            '<polyline fill="none" stroke="red" points="'
+            + " ".join(f"{math.cos(i * 3.138):.5f},{math.sin(i * 3.138):.5f}" for i in range(400))
+            + '"/>',
+            "pairs of edges of a stroke",
+        ),
+        ('<g fill="none" stroke="red"><path d="M0,0' + "h1v1" * 600 + '"/></g>', "at most"),
         ("<script>alert(1)</script>", "expected a plain drawing"),
         ("<rect width='1' height='1'>", "expected an SVG drawing"),
         ("<g>" * 20 + "</g>" * 20, "within each other, got"),
@@ -308,3 +325,65 @@ def test_a_checkerboard_is_bounded():
     board = np.indices((300, 300)).sum(axis=0) % 2
     with pytest.raises(ValueError, match=r"at most (50 solids|500 points)"):
         bring.outlines_from_mask(board, limits=LIMITED._replace(pixels=100_000))
+
+
+# --- names, strokes, what is used again ---
+
+LABELLED = """
+<g id="layer1" inkscape:label="ground" transform="translate(10,0)"><rect id="floor" width="30" height="4"/>
+  <g id="inner"><circle inkscape:label="lamp" cx="5" cy="20" r="2"/></g></g>
+<rect id="spawn" x="50" y="60" width="2" height="2"/>
+"""
+INKSCAPE = (
+    'xmlns="http://www.w3.org/2000/svg" width="100" height="100" '
+    'xmlns:inkscape="http://www.inkscape.org/namespaces/inkscape" xmlns:xlink="http://www.w3.org/1999/xlink"'
+)
+
+
+def test_names_and_layers_are_carried(tmp_path):
+    floor, lamp, spawn = bring.elements_from_svg(svg(tmp_path, LABELLED, INKSCAPE))
+    assert (floor.id, floor.name, floor.layers) == ("floor", "floor", ("ground",))
+    assert (lamp.id, lamp.name, lamp.layers) == ("", "lamp", ("ground", "inner"))
+    assert (spawn.name, spawn.layers) == ("spawn", ()) and spawn.outline.centroid == pytest.approx((51, 61))
+    shape = spawn.add_to(pymunk.Body(1, 1), friction=0.5)
+    assert shape.name == "spawn" and shape.layers == () and shape.friction == 0.5
+
+
+@pytest.mark.parametrize(
+    ("body", "area"),
+    [
+        ('<line x1="0" y1="0" x2="30" y2="40" stroke="red" stroke-width="2"/>', 100),
+        ('<path d="M0,0 H50" fill="none" stroke="red" stroke-width="2" stroke-linecap="square"/>', 104),
+        (
+            '<path d="M0,0 H50" fill="none" stroke="red" stroke-width="2" stroke-linecap="round"/>',
+            100 + math.pi,
+        ),
+        ('<path d="M0,0 H50" style="fill:none;stroke:red;stroke-width:2"/>', 100),
+        ('<g fill="none" stroke="red" stroke-width="2"><path d="M0,0 H20 V20"/></g>', 80),
+        ('<g fill="none" stroke="red" transform="scale(2)"><path d="M0,0 H20"/></g>', 80),
+        ('<rect width="20" height="10" fill="none" stroke="red" stroke-width="2"/>', 22 * 12 - 18 * 8),
+        ('<path d="M0,0 H20 V10 H0 Z" fill="none" stroke="red" stroke-width="2"/>', 22 * 12 - 18 * 8),
+        ('<circle r="10" fill="none" stroke="red" stroke-width="2"/>', math.pi * (11**2 - 9**2)),
+        ('<path d="M0,0 H20 V10 H0 Z" stroke="red" stroke-width="2"/>', 200),
+        ('<line x1="0" y1="0" x2="30" y2="40"/>', 0),
+    ],
+)
+def test_strokes_are_as_wide_as_they_are_drawn(body, area, tmp_path):
+    found = bring.outlines_from_svg(svg(tmp_path, body), tolerance=1e-4)
+    assert sum(outline.area for outline in found) == pytest.approx(area, abs=2e-2)
+
+
+@pytest.mark.parametrize("href", ["href", "xlink:href"])
+def test_use_draws_what_it_names(href, tmp_path):
+    body = (
+        '<defs><g id="pair"><rect width="2" height="3"/><circle cx="10" r="1"/></g></defs>'
+        f'<use id="left" {href}="#pair" x="5" y="6"/><use id="right" {href}="#pair" transform="scale(2)"/>'
+        '<symbol id="s" viewBox="0 0 1 1"><rect width="1" height="1"/></symbol>'
+        f'<use {href}="#s" x="50" y="50" width="8" height="8"/>'
+    )
+    found = bring.elements_from_svg(svg(tmp_path, body, INKSCAPE), tolerance=1e-4)
+    areas = [element.outline.area for element in found]
+    assert areas == pytest.approx([6, math.pi, 24, 4 * math.pi, 64], abs=1e-2)
+    assert found[0].outline.bounds == pytest.approx((5, 6, 7, 9))
+    assert found[4].outline.bounds == pytest.approx((50, 50, 58, 58))
+    assert [element.layers for element in found] == [("left",)] * 2 + [("right",)] * 2 + [()]

@@ -62,7 +62,7 @@ def test_the_readmes_film_of_ones_own_shape(tmp_path):
     imageio = pytest.importorskip("imageio.v2")
     pytest.importorskip("pygame")
     (block,) = (
-        b for b in (ROOT / "README.md").read_text().split("```python\n")[1:] if "hook = ra.Outline" in b
+        b for b in (ROOT / "README.md").read_text().split("```python\n")[1:] if "for i in range(3)" in b
     )
     program = block.split("```")[0]
     assert len([line for line in program.splitlines() if line.strip()]) <= 15

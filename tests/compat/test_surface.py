@@ -15,6 +15,7 @@ LEFT_OUT = {
     "rigidarea.Plan": "made by plan",
     "rigidarea.SimulationError": "is raised",
     "shapes.Geneva": "a record of what geneva made",
+    "bring.Element": "a record of what a drawing holds",
     "bring.Scene": "a record of what a file held",
     "flexible.Body": "a record; Simulation checks it",
     "flexible.Record": "a record of a run",

@@ -286,3 +286,44 @@ def test_a_steep_corner_takes_what_a_plastic_blow_takes(degrees, speed):
     climbed = ball.position.y - 12.0
     want = math.sqrt((speed * math.cos(slope)) ** 2 - 2 * 900 * climbed)
     assert ball.velocity.length == pytest.approx(want, abs=0.03 * speed)
+
+
+def heap(count, kinds, elasticity, seed, gravity=900.0):
+    """Bodies of 16 to 36 px, in rows above the floor of a box into which they fall."""
+    draw = random.Random(seed)
+    space = pymunk.Space()
+    space.gravity = 0, -gravity
+    width = 26 * math.sqrt(count)
+    lines(space, [(0, 6000), (0, 0), (width, 0), (width, 6000)], radius=5, friction=0.7, elasticity=1.0)
+    columns = int(width // 42)
+    for i in range(count):
+        radius, kind = draw.uniform(8, 18), draw.choice(kinds)
+        mass = radius**2 / 150
+        if kind == 0:
+            body = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, radius))
+            shape = pymunk.Circle(body, radius)
+        else:
+            turns = [2 * math.pi * (j + 0.5) / kind for j in range(kind)]
+            corners = [(radius * math.cos(t), radius * math.sin(t)) for t in turns]
+            body = pymunk.Body(mass, pymunk.moment_for_poly(mass, corners))
+            shape = pymunk.Poly(body, corners)
+        body.position = 21 + 42 * (i % columns) + draw.uniform(-2, 2), 30 + 42 * (i // columns)
+        body.angle = draw.uniform(0, 6)
+        shape.friction, shape.elasticity = 0.6, elasticity
+        space.add(body, shape)
+    return space
+
+
+@pytest.mark.parametrize(
+    "kinds, elasticity", [((0,), 0.3), ((0, 4, 6), 0.1), ((4,), 0.0)], ids="discs mixed boxes".split()
+)
+def test_a_heap_comes_to_rest(kinds, elasticity):
+    """200 of them, 12 s: the energy a body, the median of five (each heap falls by a course of its own)."""
+    left = []
+    for seed in range(5):
+        space = heap(200, kinds, elasticity, seed)
+        ra.attach(space)
+        for _ in range(720):
+            space.step(DT)
+        left.append(kinetic(space) / 200)
+    assert sorted(left)[2] <= 1e-3

@@ -1,6 +1,9 @@
 """The page's tables: renewed between their markers, everything else kept; numbers and why."""
 
+import json
 import math
+import re
+from pathlib import Path
 
 import pytest
 
@@ -89,6 +92,22 @@ def test_causes_are_of_scenes():
 def test_numbers(value, text):
     """Two digits; powers where they are shorter."""
     assert page.number(value) == text
+
+
+@pytest.mark.parametrize(
+    "name, table, made",
+    [("study.md", "everyday", page.everyday), ("../README.md", "moving", page.moving)],
+)
+def test_tables_are_those_of_their_results(name, table, made):
+    """A page older than its results fails: `python -m rigidarea bench everyday --docs docs`."""
+    docs = Path(__file__).parents[2] / "docs"
+    report = json.loads((docs / "results" / f"{RESULTS[table]}.json").read_text())
+    text = (docs / name).read_text()
+    (shown,) = re.findall(f"<!-- {table} -->\n(.*?)<!-- /{table} -->", text, re.DOTALL)
+    assert shown == made(report)
+
+
+RESULTS = {"everyday": "everyday", "moving": "everyday"}
 
 
 def test_renewed_between_markers(tmp_path):
