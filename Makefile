@@ -3,7 +3,7 @@ PYTHON ?= python3
 BIN := .venv/bin
 OUT ?= out
 
-.PHONY: run test test-all lint studies docs reference constraints clean
+.PHONY: run test test-all lint wheel test-wheel studies docs reference constraints clean
 .DEFAULT_GOAL := run
 
 # A dot a second while a command says nothing for long.
@@ -29,6 +29,24 @@ test: .venv/.installed lint
 
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
+
+# Machine code ahead of time (minutes), and dist/*.whl with it; on Linux audited as what its name promises.
+wheel: .venv/.installed
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt ziglang auditwheel
+	$(BIN)/python -m rigidarea.compile $(OUT)/library
+	rm -rf dist
+	RIGIDAREA_LIBRARY=$(OUT)/library $(BIN)/python -m pip wheel -q --no-deps --no-build-isolation -w dist .
+	$(BIN)/python tools/audit.py dist/*.whl
+
+# The wheel in an environment of its own, without numba, tested by all tests that do not build anything.
+test-wheel:
+	rm -rf $(OUT)/installed
+	$(ALIVE) $(PYTHON) -m venv $(OUT)/installed
+	$(ALIVE) $(OUT)/installed/$(notdir $(BIN))/python -m pip install -q --disable-pip-version-check dist/*.whl
+	$(OUT)/installed/$(notdir $(BIN))/python tools/first_frame.py
+	$(ALIVE) $(OUT)/installed/$(notdir $(BIN))/python -m pip install -q --disable-pip-version-check pytest pytest-xdist hypothesis mpmath scipy threadpoolctl
+	cp -r tests docs README.md pyproject.toml $(OUT)/installed
+	cd $(OUT)/installed && $(notdir $(BIN))/pytest -n 2 -m 'not slow' $(INSTALLED)
 
 # Redraws all that README.md and docs/study.md show: chart, atlas, game scenes, growth, comparison, stills, into docs/ ($(OUT) has the rest).
 studies: .venv/.installed

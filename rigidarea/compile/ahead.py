@@ -6,15 +6,17 @@ does with the package what its users do, and every call is noted.
 
 numba has by then made LLVM's code of each together with all that it calls (`whole`); here it gets a way in that knows
 neither Python nor numba, and is turned into machine code for the instruction sets of `LEVELS`. The way in of a
-callback is the callback. That of the others takes two addresses: of its arguments, one number of 64 bits after the other
-(an array is its address and its shape, and its strides if it may have any; a tuple is what is in it), and of what it
-returns, likewise. It returns 0, or what numba's calling convention has for an exception, whose address is then returned.
+callback is the callback. That of the others takes two addresses: of its arguments, one number of 64 bits after the
+other (an array is its address and its shape, and its strides if it may have any; a tuple is what is in it), and of what
+it returns, likewise. It returns 0, or what numba's calling convention has for an exception, whose address is then
+returned.
 `library` is the other side of it.
 """
 
 from __future__ import annotations
 
 import copy
+import dis
 import importlib
 import importlib.util
 import inspect
@@ -43,7 +45,10 @@ from .chosen import FILES
 #: Instruction sets by processor: the first is what every one has that is worth while, `runtime.c` says which is best.
 LEVELS = {"x86_64": ("x86-64-v2", "x86-64-v3")}
 #: Rooms whose functions judge the package, or show it, and need numba where they call kernels of their own.
-BESIDE = ("study", "compat", "draw", "demos", "compile", "gym", "gallery", "__main__", "reference")
+BESIDE = (
+    "study", "compat", "draw", "demos", "compile", "gym", "gallery", "__main__",
+    "pygame_util", "pyglet_util", "matplotlib_util",
+)  # fmt: skip
 
 _WORD = ir.IntType(64)
 
@@ -101,41 +106,50 @@ def called_from_python() -> dict[str, Any]:
             ):
                 continue
             for code in _codes(thing):
-                for name in code.co_names:
-                    there = own.get(name)
-                    inner = (
-                        [vars(there).get(n) for n in code.co_names] if isinstance(there, ModuleType) else []
-                    )
-                    for kernel in filter(_is_kernel, [there, *inner]):
-                        found[name_of(kernel)] = kernel
+                for kernel in filter(_is_kernel, _named(code, own)):
+                    found[name_of(kernel)] = kernel
     return found
+
+
+def _named(code: CodeType, own: dict[str, Any]) -> Iterator[Any]:
+    """What code names of its module's globals, and of modules that are among them."""
+    there = None
+    for step in dis.get_instructions(code):
+        if step.opname in ("LOAD_GLOBAL", "LOAD_NAME"):
+            there = own.get(step.argval)
+            yield there
+        elif step.opname in ("LOAD_ATTR", "LOAD_METHOD"):
+            there = vars(there).get(step.argval) if isinstance(there, ModuleType) else None
+            yield there
+        else:
+            there = None
 
 
 class Calls:
     """Notes, while it is entered, what Python calls with which types."""
 
     def __init__(self) -> None:
-        self.noted: dict[
-            str, dict[Any, Any]
-        ] = {}  # by name: types -> the compiled function (numba's CompileResult)
+        #: By name: types -> (the compiled function, which is numba's CompileResult; the types one by one).
+        self.noted: dict[str, dict[Any, tuple[Any, tuple[Any, ...]]]] = {}
 
     def __enter__(self) -> Calls:
-        calls, plain, part = self, compiled.Whole.__bases__[0].__call__, compiled._Part.__call__
+        calls, plain = self, compiled.Whole.__bases__[0].__call__
 
         def note(dispatcher: Any, *arguments: Any, **named: Any) -> Any:
             out = plain(dispatcher, *arguments, **named)
-            given = inspect.signature(dispatcher.py_func).bind(*arguments, **named).args
-            kinds = tuple(dispatcher.typeof_pyval(value) for value in given)
-            if dispatcher.py_func.__qualname__.endswith("way_in"):  # of a kernel that kernels call
-                kinds = (types.StarArgTuple.from_types(kinds),)  # type: ignore[attr-defined]
-                name = name_of(dispatcher.py_func.__closure__[0].cell_contents)
-            else:
-                name = name_of(dispatcher)
-            if kinds in dispatcher.overloads:
-                calls.noted.setdefault(name, {})[kinds] = dispatcher.overloads[kinds]
-            return out
+            python = dispatcher.py_func
+            takes = inspect.signature(python)
+            kinds = tuple(dispatcher.typeof_pyval(v) for v in takes.bind(*arguments, **named).args)
+            spread = any(p.kind is p.VAR_POSITIONAL for p in takes.parameters.values())
+            if python.__qualname__.endswith("way_in"):  # of a kernel that kernels call
+                python = python.__closure__[0].cell_contents
+            for compiled_for, result in dispatcher.overloads.items():
+                flat = (*compiled_for[:-1], *compiled_for[-1].types) if spread else compiled_for
+                if flat == kinds:
+                    calls.noted.setdefault(name_of(python), {})[compiled_for] = result, flat
+                    return out
+            raise RuntimeError(f"expected {name_of(python)} to be compiled for {kinds}, it is not")
 
-        self._part = part
         compiled.Whole.__call__ = note  # type: ignore[method-assign]
         return self
 
@@ -277,25 +291,18 @@ class Unit:
     """One function of the library."""
 
     def __init__(
-        self, name: str, number: int, compiled_code: bytes, native: str, result: Any, kinds: Any, c: bool
+        self, name: str, number: int, code: bytes, native: str, result: Any, kinds: Any, flat: Any
     ) -> None:
+        """kinds: the types of its arguments; flat: of each of them, where some are one tuple; None: it is C's."""
         self.symbol = f"{name.replace('.', '_').lstrip('_')}_{number}"
-        self._code, self._native, self._result, self._kinds, self._c = (
-            compiled_code,
-            native,
-            result,
-            tuple(kinds),
-            c,
-        )
+        self._code, self._native, self._result = code, native, result
+        self._kinds, self._flat = tuple(kinds), flat
 
     def described(self) -> dict[str, Any]:
         """What `library` is told."""
-        kinds = self._kinds
-        if kinds and isinstance(kinds[-1], types.StarArgTuple):
-            kinds = (*kinds[:-1], *kinds[-1].types)
         return {
             "symbol": self.symbol,
-            "takes": [describe(kind) for kind in kinds],
+            "takes": [describe(kind) for kind in self._flat],
             "returns": describe(self._result),
         }
 
@@ -304,11 +311,13 @@ class Unit:
         symbol = f"{self.symbol}_{level}"
         context = cpu_target.target_context
         module = binding.parse_bitcode(self._code)
-        text = _way_in(context, symbol, self._native, self._result, self._kinds, self._c)
+        text = _way_in(context, symbol, self._native, self._result, self._kinds, self._flat is None)
         module.link_in(binding.parse_assembly(text))
         for function in module.functions:
             if not function.is_declaration and function.name != symbol:
                 function.linkage = "internal"
+            elif function.name == symbol and sys.platform == "win32":
+                function.storage_class = "dllexport"
         for variable in module.global_variables:
             if not variable.is_declaration:
                 variable.linkage = "internal"
@@ -326,21 +335,13 @@ def units(
     for function in callbacks:
         native = function.native_name.removeprefix("cfunc.")
         back[name_of(function)] = Unit(
-            name_of(function), 0, kept[native], native, function._sig.return_type, function._sig.args, True
+            name_of(function), 0, kept[native], native, function._sig.return_type, function._sig.args, None
         )
     called: dict[str, list[Unit]] = {}
     for name, noted in sorted(calls.noted.items()):
-        for kinds, result in noted.items():
-            native = result.fndesc.llvm_func_name
-            unit = Unit(
-                name,
-                len(called.get(name, ())),
-                kept[native],
-                native,
-                result.signature.return_type,
-                kinds,
-                False,
-            )
+        for kinds, (result, flat) in noted.items():
+            native, number = result.fndesc.llvm_func_name, len(called.get(name, ()))
+            unit = Unit(name, number, kept[native], native, result.signature.return_type, kinds, flat)
             called.setdefault(name, []).append(unit)
     return back, called
 
@@ -377,6 +378,8 @@ def _trampolines(codegen: Any) -> bytes:
         value = builder.call(target, function.args, tail=True)
         builder.ret_void() if result == ir.VoidType() else builder.ret(value)
     made = binding.parse_assembly(str(module))
+    if sys.platform == "win32":
+        made.get_global_variable(table.name).storage_class = "dllexport"
     for function in made.functions:
         function.visibility = "hidden"
     return codegen._tm.emit_object(made)  # type: ignore[no-any-return]
@@ -416,10 +419,13 @@ def write(folder: Path, back: dict[str, Unit], called: dict[str, list[Unit]]) ->
         objects.append(Path(scratch) / "externals.o")
         objects[-1].write_bytes(_trampolines(_codegen(levels[0])))
         linker, tag = _linker()
-        command = [*linker, "-shared", "-O2", "-s", "-fvisibility=hidden", "-o", str(library)]
+        command = ["-shared", "-O2", "-s", "-fvisibility=hidden", "-o", str(library)]
         command += [str(Path(__file__).with_name("runtime.c")), *map(str, objects)]
         if sys.platform == "linux":
             command += ["-fPIC", "-Wl,-z,defs", "-Wl,--gc-sections", "-lm"]
+        told = Path(scratch) / "told"  # a command of Windows may not be as long
+        told.write_text("\n".join(f'"{word}"' for word in command).replace("\\", "/"))
+        command = [*linker, f"@{told}"]
         subprocess.run(command, check=True)
     contents = {
         "library": library.name,
@@ -437,10 +443,14 @@ def _linker() -> tuple[list[str], str]:
 
     zig from PyPI, which knows old C libraries too; else the system's `cc`.
     """
-    tag = sysconfig.get_platform().replace("-", "_").replace(".", "_")
-    if importlib.util.find_spec("ziglang") is None:
-        return ["cc"], tag
-    zig = [sys.executable, "-m", "ziglang", "cc"]
-    if sys.platform != "linux":
-        return zig, tag
-    return [*zig, "-target", f"{platform.machine()}-linux-gnu.2.17"], f"manylinux_2_17_{platform.machine()}"
+    machine = platform.machine().lower()
+    linker = (
+        ["cc"] if importlib.util.find_spec("ziglang") is None else [sys.executable, "-m", "ziglang", "cc"]
+    )
+    if sys.platform == "darwin":
+        target = ["-target", f"{machine.replace('arm64', 'aarch64')}-macos.11.0"]
+        least = ["-mmacosx-version-min=11.0"]
+        return [*linker, *(least if linker == ["cc"] else target)], f"macosx_11_0_{machine}"
+    if sys.platform == "linux" and linker != ["cc"]:
+        return [*linker, "-target", f"{machine}-linux-gnu.2.17"], f"manylinux_2_17_{machine}"
+    return linker, sysconfig.get_platform().replace("-", "_").replace(".", "_")

@@ -9,6 +9,7 @@ import inspect
 import json
 import pickle
 import struct
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -202,6 +203,31 @@ def _said(value: Any) -> str:
     return f"({', '.join(map(_said, value))})" if isinstance(value, tuple) else type(value).__name__
 
 
+class Text:
+    """A kernel that only kernels call, which have it in their machine code: called from Python it is interpreted."""
+
+    _within = False
+
+    def __init__(self, function: Any) -> None:
+        functools.update_wrapper(self, function)
+        self.py_func = function
+
+    def __call__(self, *arguments: Any, **named: Any) -> Any:
+        if Text._within:  # what is interpreted calls the text of others
+            return self.py_func(*arguments, **named)
+        warnings.warn(
+            f"{self.__qualname__} is not in the library of machine code: it is interpreted, which is slow"
+            " (RIGIDAREA_BACKEND=compiled has numba compile it)",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        Text._within = True
+        try:
+            return self.py_func(*arguments, **named)
+        finally:
+            Text._within = False
+
+
 class Callback:
     """What C calls, in machine code."""
 
@@ -243,9 +269,9 @@ class Library:
             self._table[self._slots[name]] = address
 
     def function(self, function: Any) -> Any:
-        """A kernel: machine code, if Python calls it; else as it is."""
+        """A kernel: machine code, if the package's Python calls it, else its text, which says so when it runs."""
         described = self._contents["functions"].get(f"{function.__module__}.{function.__qualname__}")
-        return Function(self, function, described) if described else function
+        return Function(self, function, described) if described else Text(function)
 
     def callback(self, function: Any) -> Callback:
         """A callback, which all are in the library."""

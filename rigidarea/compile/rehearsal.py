@@ -67,6 +67,8 @@ def _contacts() -> None:
         contact.energy()
         twin = copy.deepcopy(space)
         twin.step(1 / 60)
+        space.remove(*[s for s in space.shapes if s.body is space.static_body])
+        copy.deepcopy(space).step(1 / 60)  # what is gone touched something
         gone = list(space.bodies)[:2]
         space.remove(*{thing for body in gone for thing in (body, *body.shapes, *body.constraints)})
         space.remove(*list(space.shapes)[3:6])
@@ -116,6 +118,7 @@ def _mechanism(level: str, contact: str, rings: bool) -> None:
         m.revolute(below, (-0.5, 0.0))
         m.spring(above, (0.05, 0.45), (0.0, 1.0), stiffness=10.0, damping=1.0)
     record = m.run(0.02, 1e-3, shapes=True)
+    m.simulation.contact_seconds(record.x[:2], 1)
     if level != "rigid":
         m.state(record, -1, above)
 

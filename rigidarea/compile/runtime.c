@@ -97,6 +97,15 @@ int numba_attempt_nocopy_reshape(ptrdiff_t nd, const ptrdiff_t *shape, const ptr
     return 1;
 }
 
+/* Where an exception has arguments, numba adds a function that makes objects of Python's of them, which may fail. The
+ * library has no way in that calls it, and knows no Python: these are its own. */
+void *PyExc_RuntimeError;
+
+void PyErr_SetString(void *kind, const char *text) {
+    (void)kind;
+    (void)text;
+}
+
 /* An array that a kernel has given to Python has been copied: count it down. Only that thread has it. */
 VISIBLE void rigidarea_release(MemInfo *info) {
     if (--info->count == 0)
