@@ -25,7 +25,8 @@ from numba.core.sigutils import normalize_signature
 from . import cache, whole
 
 _ROOT = Path(__file__).resolve().parent.parent
-
+#: What has no part in what numba compiles, though what is compiled imports it.
+_ELSEWHERE = {_ROOT / "__init__.py", _ROOT / "compile/plain.py", _ROOT / "compile/chosen.py"}
 
 #: An import from this package (nothing in it imports another way): dots, module, names. Reading syntax trees takes 1 s.
 _IMPORT = re.compile(rf"^ *from (\.+|{_ROOT.name}\.?)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
@@ -43,7 +44,7 @@ def _imports(source: Path) -> tuple[bytes, tuple[Path, ...]]:
         found.update(
             path for path in (*inner, folder.with_suffix(".py"), folder / "__init__.py") if path.is_file()
         )
-    return text, tuple(sorted(found - {_ROOT / "__init__.py"}))
+    return text, tuple(sorted(found - _ELSEWHERE))
 
 
 @functools.cache
