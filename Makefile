@@ -1,6 +1,7 @@
 # Two commands do everything on a fresh machine with Python 3.11 and make: `make run`, `make test`.
 PYTHON ?= python3
-BIN := .venv/bin
+IN := $(if $(filter Windows_NT,$(OS)),Scripts,bin)
+BIN := .venv/$(IN)
 OUT ?= out
 
 .PHONY: run test test-all lint wheel test-wheel studies docs reference constraints clean
@@ -42,11 +43,10 @@ wheel: .venv/.installed
 test-wheel:
 	rm -rf $(OUT)/installed
 	$(ALIVE) $(PYTHON) -m venv $(OUT)/installed
-	$(ALIVE) $(OUT)/installed/$(notdir $(BIN))/python -m pip install -q --disable-pip-version-check dist/*.whl
-	$(OUT)/installed/$(notdir $(BIN))/python tools/first_frame.py
-	$(ALIVE) $(OUT)/installed/$(notdir $(BIN))/python -m pip install -q --disable-pip-version-check pytest pytest-xdist hypothesis mpmath scipy threadpoolctl
-	cp -r tests docs README.md pyproject.toml $(OUT)/installed
-	cd $(OUT)/installed && $(notdir $(BIN))/pytest -n 2 -m 'not slow' $(INSTALLED)
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check dist/*.whl
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check pytest pytest-xdist hypothesis mpmath scipy threadpoolctl
+	cp -r tests docs demos README.md pyproject.toml $(OUT)/installed
+	cd $(OUT)/installed && $(IN)/python -m pytest -n 2 -m 'not slow'
 
 # Redraws all that README.md and docs/study.md show: chart, atlas, game scenes, growth, comparison, stills, into docs/ ($(OUT) has the rest).
 studies: .venv/.installed
