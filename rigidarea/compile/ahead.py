@@ -422,7 +422,7 @@ def write(folder: Path, back: dict[str, Unit], called: dict[str, list[Unit]]) ->
         command = ["-shared", "-O2", "-s", "-fvisibility=hidden", "-o", str(library)]
         command += [str(Path(__file__).with_name("runtime.c")), *map(str, objects)]
         if sys.platform == "linux":
-            command += ["-fPIC", "-Wl,-z,defs", "-Wl,--gc-sections", "-lm"]
+            command += ["-fPIC", "-Wl,-z,defs", "-Wl,--gc-sections", "-lm", "-lc"]
         told = Path(scratch) / "told"  # a command of Windows may not be as long
         told.write_text("\n".join(f'"{word}"' for word in command).replace("\\", "/"))
         command = [*linker, f"@{told}"]
@@ -452,5 +452,7 @@ def _linker() -> tuple[list[str], str]:
         least = ["-mmacosx-version-min=11.0"]
         return [*linker, *(least if linker == ["cc"] else target)], f"macosx_11_0_{machine}"
     if sys.platform == "linux" and linker != ["cc"]:
-        return [*linker, "-target", f"{machine}-linux-gnu.2.17"], f"manylinux_2_17_{machine}"
+        # zig has sines and exponentials of its own: without them they are the system's, as numba's are
+        target = ["-target", f"{machine}-linux-gnu.2.17", "-rtlib=none"]
+        return [*linker, *target], f"manylinux_2_17_{machine}"
     return linker, sysconfig.get_platform().replace("-", "_").replace(".", "_")

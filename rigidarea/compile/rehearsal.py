@@ -72,7 +72,9 @@ def _contacts() -> None:
         space.remove(*{thing for body in gone for thing in (body, *body.shapes, *body.constraints)})
         space.remove(*list(space.shapes)[3:6])
         for number in (300, 10):  # tables grow, outlines that nobody has are forgotten
-            space.remove(*{thing for body in space.bodies for thing in (body, *body.shapes, *body.constraints)})
+            space.remove(
+                *{thing for body in space.bodies for thing in (body, *body.shapes, *body.constraints)}
+            )
             for i in range(number):
                 body = pymunk.Body(1, 1)
                 body.position = 2 * (i % 20), 20 + 2 * (i // 20)

@@ -113,15 +113,25 @@ VISIBLE void rigidarea_release(MemInfo *info) {
 }
 
 /* 0: what all processors of this kind have; 1: what gcc and LLVM call x86-64-v3. */
+#ifdef __x86_64__
+#include <cpuid.h>
+
 VISIBLE int rigidarea_level(void) {
-#if defined(__x86_64__) && !defined(__APPLE__)
-    return __builtin_cpu_supports("avx2") && __builtin_cpu_supports("fma") && __builtin_cpu_supports("bmi") &&
-           __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("f16c") && __builtin_cpu_supports("lzcnt") &&
-           __builtin_cpu_supports("movbe");
-#else
-    return 0;
-#endif
+    const unsigned v3_1c = bit_FMA | bit_MOVBE | bit_OSXSAVE | bit_AVX | bit_F16C;
+    const unsigned v3_7b = bit_BMI | bit_AVX2 | bit_BMI2;
+    unsigned a, b, c, d, low, high;
+    if (!__get_cpuid(1, &a, &b, &c, &d) || (c & v3_1c) != v3_1c)
+        return 0;
+    __asm__("xgetbv" : "=a"(low), "=d"(high) : "c"(0));
+    if ((low & 6) != 6) /* whether the system keeps the wider registers */
+        return 0;
+    if (!__get_cpuid_count(7, 0, &a, &b, &c, &d) || (b & v3_7b) != v3_7b)
+        return 0;
+    return __get_cpuid(0x80000001, &a, &b, &c, &d) && (c & bit_LZCNT) != 0;
 }
+#else
+VISIBLE int rigidarea_level(void) { return 0; }
+#endif
 
 #ifdef _WIN32
 #include <windows.h>
