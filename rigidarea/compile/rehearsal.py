@@ -68,21 +68,19 @@ def _contacts() -> None:
         contact.energy()
         twin = copy.deepcopy(space)
         twin.step(1 / 60)
+        tables = ra.attached(twin)._store.tables  # type: ignore[union-attr]
+        for p in np.flatnonzero(tables.pairs["a"] >= 0):  # as in a copy of a space that is made within its step
+            end_pair(tables, int(p))
         gone = list(space.bodies)[:2]
         space.remove(*{thing for body in gone for thing in (body, *body.shapes, *body.constraints)})
         space.remove(*list(space.shapes)[3:6])
         for number in (300, 10):  # tables grow, outlines that nobody has are forgotten
-            space.remove(
-                *{thing for body in space.bodies for thing in (body, *body.shapes, *body.constraints)}
-            )
+            space.remove(*space.bodies, *space.shapes, *space.constraints)
             for i in range(number):
                 body = pymunk.Body(1, 1)
                 body.position = 2 * (i % 20), 20 + 2 * (i // 20)
                 space.add(body, pymunk.Poly.create_box(body, (1 + 0.001 * i + 0.0001 * number, 1)))
             space.step(1 / 60)
-        tables = contact._store.tables
-        for p in np.flatnonzero(tables.pairs["a"] >= 0):  # as in a copy that is made within a step
-            end_pair(tables, int(p))
         contact.detach()
 
 
