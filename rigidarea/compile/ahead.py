@@ -33,7 +33,8 @@ from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 from llvmlite import binding, ir
-from numba.core import cgutils, types
+from numba.core import cgutils
+from numba.core import types as numba_types
 from numba.core.ccallback import CFunc
 from numba.core.registry import cpu_target
 from numba.np import arrayobj
@@ -50,6 +51,7 @@ BESIDE = (
     "pygame_util", "pyglet_util", "matplotlib_util",
 )  # fmt: skip
 
+types: Any = numba_types  # mypy knows some of it
 _WORD = ir.IntType(64)
 
 
@@ -328,7 +330,7 @@ class Unit:
 
 
 def units(
-    calls: Calls, callbacks: list[CFunc], kept: dict[str, bytes]
+    calls: Calls, callbacks: list[Any], kept: dict[str, bytes]
 ) -> tuple[dict[str, Unit], dict[str, list[Unit]]]:
     """(callbacks, functions) by name."""
     back = {}

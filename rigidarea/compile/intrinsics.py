@@ -5,10 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 from llvmlite import ir
-from numba.core import cgutils, types
+from numba.core import cgutils
+from numba.core import types as numba_types
 from numba.core.sigutils import normalize_signature
 from numba.extending import intrinsic
 from numba.np import arrayobj
+
+types: Any = numba_types  # mypy knows some of it
 
 
 @intrinsic

@@ -74,7 +74,7 @@ def _taker(kind: Any) -> tuple[str, Callable[[Any, list[Any]], None]]:
     code, ndim, strides, written = kind["array"], kind["ndim"], kind["strides"], kind["written"]
     seen: list[np.dtype] = [np.dtype(code)]
 
-    def put(value: Any, words: list[Any]) -> None:
+    def put_array(value: Any, words: list[Any]) -> None:
         if not isinstance(value, np.ndarray) or value.ndim != ndim:
             raise _Other
         dtype, flags = value.dtype, value.flags
@@ -89,7 +89,7 @@ def _taker(kind: Any) -> tuple[str, Callable[[Any, list[Any]], None]]:
         if strides:
             words.extend(value.strides)
 
-    return "Q" + (2 if strides else 1) * ndim * "q", put
+    return "Q" + (2 if strides else 1) * ndim * "q", put_array
 
 
 def _giver(kind: Any, release: Callable[[int], None]) -> tuple[str, Callable[[Any], Any]]:
@@ -191,7 +191,9 @@ class Function:
                 pass
         expected = " or ".join(json.dumps(one["takes"]) for one in self._described)
         given = ", ".join(_said(value) for value in arguments)
-        raise TypeError(f"{self.__qualname__} of the library of machine code takes {expected}, got {given}")
+        raise TypeError(
+            f"{self.py_func.__qualname__} of the library of machine code takes {expected}, got {given}"
+        )
 
     def _in_order(self, arguments: tuple[Any, ...], named: dict[str, Any]) -> tuple[Any, ...]:
         return inspect.signature(self.py_func).bind(*arguments, **named).args
@@ -216,7 +218,7 @@ class Text:
         if Text._within:  # what is interpreted calls the text of others
             return self.py_func(*arguments, **named)
         warnings.warn(
-            f"{self.__qualname__} is not in the library of machine code: it is interpreted, which is slow"
+            f"{self.py_func.__qualname__} is not in the library of machine code: it is interpreted, which is slow"
             " (RIGIDAREA_BACKEND=compiled has numba compile it)",
             RuntimeWarning,
             stacklevel=2,

@@ -69,7 +69,9 @@ def _contacts() -> None:
         twin = copy.deepcopy(space)
         twin.step(1 / 60)
         tables = ra.attached(twin)._store.tables  # type: ignore[union-attr]
-        for p in np.flatnonzero(tables.pairs["a"] >= 0):  # as in a copy of a space that is made within its step
+        for p in np.flatnonzero(
+            tables.pairs["a"] >= 0
+        ):  # as in a copy of a space that is made within its step
             end_pair(tables, int(p))
         gone = list(space.bodies)[:2]
         space.remove(*{thing for body in gone for thing in (body, *body.shapes, *body.constraints)})
