@@ -212,7 +212,6 @@ print(len(contact.regions), contact.energy() != 0, regions["area"].size)
 
 FIRST = """
 import time
-since = time.perf_counter()
 import pymunk, rigidarea
 space = pymunk.Space()
 space.gravity = 0, -10
@@ -221,19 +220,18 @@ body.position = 0, 0.6
 space.add(pymunk.Segment(space.static_body, (-9, 0), (9, 0), 0.1), body, pymunk.Poly.create_box(body, (1, 1)))
 rigidarea.attach(space)
 space.step(1 / 60)
-took = time.perf_counter() - since
-import resource, sys
-print(took, resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / (1e6 if sys.platform == "darwin" else 1e3))
+told = dict(line.split(":", 1) for line in open("/proc/self/status"))
+print(time.process_time(), int(told["VmHWM"].split()[0]) / 1e3)
 """
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no resource module")
+@pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="memory is read from Linux's /proc")
 def test_the_first_frame_is_at_once() -> None:
-    """A second and 80 MB from `import` to the first frame's end, the best of three new processes."""
+    """A second and 80 MB from Python's start to the first frame's end: processor time, the machine has other work."""
     if rigidarea.backend() != "library":
         pytest.skip("there is no library")
-    seen = [tuple(map(float, run(FIRST).stdout.split())) for _ in range(3)]
-    assert min(took for took, _ in seen) <= 1.0 and min(memory for _, memory in seen) <= 80.0, seen
+    took, memory = map(float, run(FIRST).stdout.split())
+    assert took <= 1.0 and memory <= 80.0
 
 
 def test_what_is_not_in_a_library_says_so() -> None:
