@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import copy
 import math
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -74,7 +75,8 @@ def _contacts() -> None:
         ):  # as in a copy of a space that is made within its step
             end_pair(tables, int(p))
         gone = list(space.bodies)[:2]
-        space.remove(*{thing for body in gone for thing in (body, *body.shapes, *body.constraints)})
+        things: set[Any] = {thing for body in gone for thing in (body, *body.shapes, *body.constraints)}
+        space.remove(*things)
         space.remove(*list(space.shapes)[3:6])
         for number in (300, 10):  # tables grow, outlines that nobody has are forgotten
             space.remove(*space.bodies, *space.shapes, *space.constraints)
@@ -124,6 +126,7 @@ def _mechanism(level: str, contact: str, rings: bool) -> None:
         m.revolute(below, (-0.5, 0.0))
         m.spring(above, (0.05, 0.45), (0.0, 1.0), stiffness=10.0, damping=1.0)
     record = m.run(0.02, 1e-3, shapes=True)
+    assert m.simulation is not None  # it has run
     m.simulation.contact_seconds(record.x[:2], 1)
     if level != "rigid":
         m.state(record, -1, above)
