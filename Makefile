@@ -1,9 +1,10 @@
 # Two commands do everything on a fresh machine with Python 3.11 and make: `make run`, `make test`.
 PYTHON ?= python3
-BIN := .venv/bin
+IN := $(if $(filter Windows_NT,$(OS)),Scripts,bin)
+BIN := .venv/$(IN)
 OUT ?= out
 
-.PHONY: run test test-all lint studies measured cases docs constraints clean
+.PHONY: run test test-all lint wheel test-wheel studies measured cases docs constraints clean
 .DEFAULT_GOAL := run
 
 # A dot a second while a command says nothing for long.
@@ -29,6 +30,23 @@ test: .venv/.installed lint
 
 test-all: .venv/.installed lint
 	$(BIN)/python -m pytest
+
+# Machine code ahead of time (minutes), and dist/*.whl with it; on Linux audited as what its name promises.
+wheel: .venv/.installed
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt ziglang auditwheel
+	$(BIN)/python -m rigidarea.compile $(OUT)/library
+	rm -rf dist
+	RIGIDAREA_LIBRARY=$(OUT)/library $(BIN)/python -m pip wheel -q --no-deps --no-build-isolation -w dist .
+	$(BIN)/python tools/audit.py dist/*.whl
+
+# The wheel in an environment of its own, without numba, tested by all tests that do not build anything.
+test-wheel:
+	rm -rf $(OUT)/installed
+	$(ALIVE) $(PYTHON) -m venv $(OUT)/installed
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check dist/*.whl
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check pytest pytest-xdist hypothesis mpmath scipy threadpoolctl
+	cp -r tests docs demos README.md pyproject.toml $(OUT)/installed
+	cd $(OUT)/installed && $(IN)/python -m pytest -n 2 -m 'not slow'
 
 # Measures anew all that README.md and docs/ show, and renews those pages: hours. `make docs` says what is of another
 # solver; one part alone: its line here, without $(OUT).

@@ -6,13 +6,14 @@ space.step(1 / 60)  # as ever
 """
 
 from . import shapes
+from .compile.chosen import backend
 from .contact import REGIONS, AreaContact, SimulationError, attach, attached
 from .outline import Outline
 from .overlap import OVERLAP, OVERLAPS, covers, overlap, overlaps
 from .plan import Plan, plan
 from .queries import point_query, segment_query
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
 __all__ = [
     "OVERLAP",
@@ -24,6 +25,7 @@ __all__ = [
     "SimulationError",
     "attach",
     "attached",
+    "backend",
     "covers",
     "overlap",
     "overlaps",

@@ -14,13 +14,11 @@ import math
 from functools import lru_cache
 from typing import Any, NamedTuple
 
-import llvmlite.binding as llvm
 import numpy as np
 import pymunk
-from numba import config, types
 from pymunk._chipmunk_cffi import ffi, lib
 
-from .kernel.memory import prototype
+from .kernel.jit import external
 
 #: Bytes of a struct that are looked at; all are longer.
 _WINDOW = {
@@ -43,16 +41,12 @@ def address_of(cdata: object) -> int:
     return int(ffi.cast("uintptr_t", cdata))
 
 
-def function(name: str, signature: Any) -> Any:
-    """The function `name` of pymunk's C library, callable from machine code.
+def function(name: str, signature: str) -> Any:
+    """The function `name` of pymunk's C library, callable from kernels.
 
-    signature: numba's, of pointers (`uintp`) and scalars.
+    signature: as numba writes it, of pointers (`uintp`) and scalars.
     """
-    address = address_of(ffi.addressof(lib, name))
-    if config.DISABLE_JIT:
-        return prototype(signature)(address)
-    llvm.add_symbol(f"rigidarea_{name}", address)
-    return types.ExternalFunction(f"rigidarea_{name}", signature)
+    return external(name, signature, address_of(ffi.addressof(lib, name)))
 
 
 def _bytes(pointer: object, kind: str, dtype: Any) -> np.ndarray:

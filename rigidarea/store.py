@@ -7,14 +7,12 @@ views without reference counting, which alone would cost as much as clipping two
 
 from __future__ import annotations
 
-import ctypes
 from typing import Any
 
 import numpy as np
-from numba import config, types
 
 from .kernel.conjugate import FACTOR, MOBILITY
-from .kernel.jit import entry, kernel
+from .kernel.jit import copy_memory, entry, kernel
 from .kernel.joint import JOINT
 from .kernel.memory import array_at, record
 from .kernel.overlap import LOOP, Work
@@ -129,21 +127,10 @@ STATE = record(
 )
 
 
-def _interpreted(to: int, source: int, size: int) -> int:
-    return int(ctypes.memmove(int(to), int(source), int(size)))
-
-
-_memcpy: Any = (
-    _interpreted
-    if config.DISABLE_JIT
-    else types.ExternalFunction("memcpy", types.uintp(types.uintp, types.uintp, types.uintp))
-)
-
-
 @kernel
 def _copy(to: int, source: int, size: int) -> None:
     """Copy so many words."""
-    _memcpy(to, source, np.uint64(8 * size))
+    copy_memory(to, source, np.uint64(8 * size))
 
 
 @kernel

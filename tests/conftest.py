@@ -14,17 +14,32 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any, NamedTuple
 
-import numba
 import numpy as np
 import pytest
 from hypothesis import settings
 
+import rigidarea
 from rigidarea.report import envelope, solver, write_json
+
+BACKEND = rigidarea.backend()
 
 
 def kernel_module(name: str) -> ModuleType:
     """A kernel module by its short name: the one line that knows where in the package kernels live."""
     return importlib.import_module(f"rigidarea.kernel.{name}")
+
+
+def _compiled(function: Callable[..., Any]) -> Any:
+    """A kernel of the tests' own: as the package's that call kernels, but kept nowhere."""
+    if BACKEND != "compiled":
+        return function
+    import numba
+
+    from rigidarea.compile.compiled import Whole
+
+    made = numba.njit(function)
+    made.__class__ = Whole
+    return made
 
 
 class Found(NamedTuple):
@@ -62,7 +77,7 @@ class Kernel:
         regions_of = self.place.overlap_of_outlines
         Pose = self.place.Pose
 
-        @numba.njit
+        @_compiled
         def run(
             pool: Any, ia: Any, ib: Any, pa: Any, pb: Any, work: Any, begin: int, m: int,
             counts: Any, where: Any, out: Any,
@@ -96,8 +111,6 @@ class Kernel:
                 counts[i] = n
             return len(ia), m
 
-        if isinstance(run, numba.core.registry.CPUDispatcher):
-            run.__class__ = kernel_module("jit").Whole  # as the package's own kernels that call kernels
         self._run = run
 
     def work(self, outlines: Sequence[Any]) -> Any:
@@ -144,7 +157,7 @@ class Kernel:
         overlap_kernel, seen_from, Pose = self.overlap.overlap_kernel, self.place.seen_from, self.place.Pose
         tangled, caught = self.overlap.TANGLED, self.overlap.CAUGHT
 
-        @numba.njit
+        @_compiled
         def count(pool: Any, ia: Any, ib: Any, pa: Any, pb: Any, work: Any, out: Any) -> None:
             for i in range(len(ia)):
                 a = Pose(pa[i, 0], pa[i, 1], pa[i, 2], pa[i, 3])
@@ -156,8 +169,6 @@ class Kernel:
                 if n == caught:
                     out[1] += 1
 
-        if isinstance(count, numba.core.registry.CPUDispatcher):
-            count.__class__ = kernel_module("jit").Whole
         out = np.zeros(2, np.int64)
         count(self.pool.pack(outlines), ia, ib, pa, pb, self.work(outlines), out)
         return int(out[0]), int(out[1])
@@ -207,11 +218,13 @@ class Kernel:
 
 @pytest.fixture(scope="session")
 def kernel() -> Kernel:
+    if BACKEND == "library":
+        pytest.skip("kernels one by one: a library has what Python calls")
     return Kernel()
 
 
 #: Without compilation everything is a hundred times slower: fewer examples.
-PURE_PYTHON = bool(numba.config.DISABLE_JIT)
+PURE_PYTHON = BACKEND == "interpreted"
 settings.register_profile("fixed", derandomize=True, deadline=None, max_examples=8 if PURE_PYTHON else 60)
 settings.load_profile("fixed")
 

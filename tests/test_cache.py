@@ -7,10 +7,10 @@ import tempfile
 import time
 from pathlib import Path
 
-import numba
 import pytest
 
-from rigidarea.kernel import cache
+numba = pytest.importorskip("numba")
+cache = pytest.importorskip("rigidarea.compile.cache")
 
 ROOT = Path(__file__).parent.parent
 
@@ -22,18 +22,18 @@ DAMAGES = {
 }
 
 TINY = """
-from numba import types
+import ctypes
 from rigidarea.kernel.jit import callback, njit
 
 @njit
 def twice(x):
     return 2 * x
 
-@callback(types.float64(types.float64))
+@callback("float64(float64)")
 def plus_one(x):
     return x + 1.0
 
-print(twice(21), plus_one.ctypes(1.0))
+print(twice(21), ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(plus_one.address)(1.0))
 """
 
 
@@ -74,12 +74,13 @@ def test_what_cannot_be_kept_is_said_once(tmp_path, quiet):
     assert said.startswith("rigidarea: compiled code cannot be kept: ")
 
 
-def tiny(folder: Path) -> tuple[str, str]:
+def tiny(folder: Path, kept: Path | None = None) -> tuple[str, str]:
     (folder / "tiny.py").write_text(TINY)
     os.utime(folder / "tiny.py", (1e9, 1e9))  # the same file to numba, which looks at its date
     program = f"import rigidarea; rigidarea.__path__.append({str(folder)!r}); import rigidarea.tiny"
-    environment = {**os.environ, "NUMBA_CACHE_DIR": str(folder / "cache"), "PYTHONPATH": str(ROOT)}
+    environment = {**os.environ, "NUMBA_CACHE_DIR": str(kept or folder / "cache"), "PYTHONPATH": str(ROOT)}
     environment.pop("NUMBA_DISABLE_JIT", None)
+    environment["RIGIDAREA_BACKEND"] = "compiled"
     done = subprocess.run(
         [sys.executable, "-c", program], capture_output=True, text=True, env=environment, timeout=300
     )
@@ -180,8 +181,16 @@ def test_the_users_own_folder_comes_first(homeless, tmp_path, monkeypatch):
     assert cache.folder("abc") == str(tmp_path / "mine" / "rigidarea" / "abc")
 
 
+def test_another_environment_compiles_nothing(tmp_path):
+    """The cache goes by what is compiled, not by where it lies."""
+    for name in ("here", "there"):
+        (tmp_path / name).mkdir()
+    assert "compiling" in tiny(tmp_path / "here", tmp_path / "cache")[1]
+    assert tiny(tmp_path / "there", tmp_path / "cache") == ("42 2.0\n", "")
+
+
 def test_a_module_is_compiled_again_when_what_it_imports_changes(tmp_path):
-    from rigidarea.kernel import jit
+    from rigidarea.compile import compiled as jit
 
     def imported(source: str) -> set[str]:
         (tmp_path / "some.py").write_text(source)

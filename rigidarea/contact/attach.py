@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict
 
 import numpy as np
 import pymunk
-from numba.core.compiler_lock import global_compiler_lock
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
 from ..gate import not_negative, one_of, whole
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
+from ..kernel.jit import lock_for_fork
 from ..kernel.join import SPARE
 from ..kernel.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..outline import positive
@@ -43,11 +43,8 @@ ATTENTION = 0.1
 
 
 if hasattr(os, "register_at_fork"):  # a child in which a thread that it has not would compile for ever
-    os.register_at_fork(
-        before=global_compiler_lock.acquire,
-        after_in_parent=global_compiler_lock.release,
-        after_in_child=global_compiler_lock.release,
-    )
+    _before, _after = lock_for_fork()
+    os.register_at_fork(before=_before, after_in_parent=_after, after_in_child=_after)
 
 
 class SimulationError(RuntimeError):

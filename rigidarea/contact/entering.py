@@ -8,7 +8,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..kernel.broad import (
     ask_about,
@@ -184,7 +183,7 @@ def _has_room(s: Any, tables: Tables, addresses: int, n: int) -> bool:
     return bool(counters[MORE_SLOTS] == 0 and counters[MORE_SHAPES] == 0)
 
 
-@callback(types.int64(types.uintp, types.uintp, types.uintp, types.int64))
+@callback("int64(uintp, uintp, uintp, int64)")
 def shapes_come(state: int, addresses: int, heads: int, n: int) -> int:
     """Enter n of Chipmunk's shapes; how many there was room for (MORE_...), the first ones.
 
@@ -226,7 +225,7 @@ def shapes_come(state: int, addresses: int, heads: int, n: int) -> int:
     return done
 
 
-@callback(types.void(types.uintp, types.uintp))
+@callback("void(uintp, uintp)")
 def shape_goes(state: int, ident: int) -> None:
     """Forget one of Chipmunk's shapes, by its id, if it is known."""
     s = array_at(state, (1,), STATE)[0]
@@ -255,7 +254,7 @@ def shape_goes(state: int, ident: int) -> None:
     counters[GONE] = 1
 
 
-@callback(types.int64(types.uintp, types.uintp, types.int64, types.int64))
+@callback("int64(uintp, uintp, int64, int64)")
 def bodies_come(state: int, addresses: int, n: int, hold: int) -> int:
     """Enter n of Chipmunk's bodies; how many there was room for (MORE_BODIES), the first ones.
 
@@ -281,7 +280,7 @@ def bodies_come(state: int, addresses: int, n: int, hold: int) -> int:
     return done
 
 
-@callback(types.void(types.uintp, types.uintp))
+@callback("void(uintp, uintp)")
 def body_goes(state: int, address: int) -> None:
     """Forget one of Chipmunk's bodies, if it is known."""
     s = array_at(state, (1,), STATE)[0]
@@ -293,7 +292,7 @@ def body_goes(state: int, address: int) -> None:
     tables.counters[GONE] = 1
 
 
-@callback(types.void(types.uintp, types.uintp, types.int64))
+@callback("void(uintp, uintp, int64)")
 def placed_anew(state: int, addresses: int, n: int) -> None:
     """n of Chipmunk's bodies, static or asleep, are where they are now: they have been reindexed."""
     s = array_at(state, (1,), STATE)[0]

@@ -14,7 +14,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..chipmunk import function
 from ..kernel.constants import MOST_SUBSTEPS
@@ -98,8 +97,8 @@ from .substep import find_contacts, near_pairs, substeps
 #: A body that goes so many of its sizes in a frame may come near more others than has been made room for.
 FAST = 30.0
 
-_cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
-_step = function("cpSpaceStep", types.void(types.uintp, types.float64))
+_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
+_step = function("cpSpaceStep", "void(uintp, float64)")
 
 
 @kernel(forceinline=True)
@@ -107,7 +106,7 @@ def _space_of(constraint: int) -> int:
     return words(constraint + 8, 1)[0]
 
 
-@callback(types.void(types.uintp, types.float64))
+@callback("void(uintp, float64)")
 def silence(constraint: int, dt: float) -> None:
     """Chipmunk's own solver gets no contact points: every pair is ours."""
     space = _space_of(constraint)
@@ -475,7 +474,7 @@ def _whole_frame(s: Any, space: int) -> None:
     lap(s, REPORTING)
 
 
-@callback(types.void(types.uintp, types.float64))
+@callback("void(uintp, float64)")
 def solve(constraint: int, coefficient: float) -> None:
     """The frame, once velocities are integrated."""
     space = _space_of(constraint)
@@ -491,7 +490,7 @@ def solve(constraint: int, coefficient: float) -> None:
         hide(s)
 
 
-@callback(types.void(types.uintp, types.uintp))
+@callback("void(uintp, uintp)")
 def report(constraint: int, space: int) -> None:
     """After Chipmunk's sweeps: arbiters get their contact points again, with the impulse of the frame."""
     if user_data(space) == 0:
@@ -526,7 +525,7 @@ def report(constraint: int, space: int) -> None:
     lap(s, REPORTING)
 
 
-@callback(types.int64(types.uintp, types.float64, types.int64))
+@callback("int64(uintp, float64, int64)")
 def advance(space: int, dt: float, frames: int) -> int:
     """So many frames on end, until somebody has fallen asleep (`waking.rouse`); returns how many went well."""
     for i in range(frames):

@@ -15,7 +15,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..chipmunk import function
 from ..kernel.jit import callback, kernel
@@ -24,9 +23,9 @@ from ..kernel.memory import array_at, caller
 from ..kernel.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
 from ..store import EXTREME, STATE, row_of_body
 
-_user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
-_call_user = caller(types.void(types.uintp, types.uintp))
-_call_force = caller(types.float64(types.uintp, types.float64))
+_user_data = function("cpSpaceGetUserData", "uintp(uintp)")
+_call_user = caller("void(uintp, uintp)")
+_call_force = caller("float64(uintp, float64)")
 
 #: Numbers of a `chipmunk.JointKind`.
 KIND_WORDS = 7
@@ -43,12 +42,12 @@ def joints_of(s: Any) -> np.ndarray:
     return array_at(s.joints_at, (s.joint_count,), JOINT)
 
 
-@callback(types.void(types.uintp, types.float64))
+@callback("void(uintp, float64)")
 def idle(constraint: int, x: float) -> None:
     """A function of a joint that is taken."""
 
 
-@callback(types.float64(types.uintp))
+@callback("float64(uintp)")
 def no_impulse(constraint: int) -> float:
     """The impulse of a joint that is taken."""
     return 0.0
@@ -65,7 +64,7 @@ def _joint_of(s: Any, constraint: int) -> int:
     return -1
 
 
-@callback(types.void(types.uintp, types.float64))
+@callback("void(uintp, float64)")
 def prepared(constraint: int, dt: float) -> None:
     """In the place of a joint's preparation: nothing is done, and the joint has its own class again."""
     s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
@@ -235,7 +234,7 @@ def hide(s: Any) -> None:
             _words(joint.address, 1)[0] = s.idle_kind
 
 
-@callback(types.void(types.uintp, types.uintp))
+@callback("void(uintp, uintp)")
 def seize(constraint: int, space: int) -> None:
     """In the place of a joint's pre_solve: the user's first, then Chipmunk is to leave it alone."""
     s = array_at(_user_data(space), (1,), STATE)[0]

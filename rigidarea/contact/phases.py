@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-import time
 from typing import Any
 
 import numpy as np
-from numba import config, types
 
-from ..kernel.jit import kernel
+from ..kernel.jit import clock_gettime, kernel
 from ..kernel.memory import array_at
 
 #: Where the state record's array of times (s) has each phase's; the last is when the last one ended.
@@ -17,21 +15,9 @@ WATCHING, PAIRS, OVERLAPS, SPECULATIVE, ITERATIONS, POSITIONS, REPORTING = range
 _PROCESSOR = 3  # CLOCK_THREAD_CPUTIME_ID: of the thread that steps
 
 
-def _interpreted(clock: int, at: int) -> int:
-    array_at(at, (2,), np.int64)[:] = divmod(time.thread_time_ns(), 10**9)
-    return 0
-
-
-_clock_gettime: Any = (
-    _interpreted
-    if config.DISABLE_JIT
-    else types.ExternalFunction("clock_gettime", types.int32(types.int32, types.uintp))
-)
-
-
 @kernel
 def _now(s: Any) -> float:
-    _clock_gettime(_PROCESSOR, s.scratch_at)
+    clock_gettime(_PROCESSOR, s.scratch_at)
     read = array_at(s.scratch_at, (2,), np.int64)
     return float(read[0] + 1e-9 * read[1])
 

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pymunk
-from numba import types
 from pymunk._chipmunk_cffi import ffi
 
 from ..chipmunk import address_of
@@ -29,9 +28,9 @@ from .shown import SHOWN, show, shown_of
 #: Words of a class of Chipmunk's indices, all functions (cpSpatialIndex.h), and which of them asks for pairs.
 FUNCTIONS, REINDEX_QUERY = 11, 8
 
-_call_collide = caller(types.uint32(types.uintp, types.uintp, types.uint32, types.uintp))
-_call_reindex = caller(types.void(types.uintp, types.uintp, types.uintp))
-_call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
+_call_collide = caller("uint32(uintp, uintp, uint32, uintp)")
+_call_reindex = caller("void(uintp, uintp, uintp)")
+_call_hook = caller("void(uintp, uintp, uintp)")
 
 
 @kernel
@@ -116,7 +115,7 @@ def _look(s: Any, tables: Tables, i: int, j: int) -> int:
     return int(n)
 
 
-@callback(types.uint32(types.uintp, types.uintp, types.uint32, types.uintp))
+@callback("uint32(uintp, uintp, uint32, uintp)")
 def collide(one: int, other: int, ident: int, space: int) -> int:
     """Two of Chipmunk's shapes whose boxes meet: it is told of them, unless their outlines are apart."""
     s = state_of(space)
@@ -140,7 +139,7 @@ def collide(one: int, other: int, ident: int, space: int) -> int:
     return ident
 
 
-@callback(types.void(types.uintp, types.uintp, types.uintp))
+@callback("void(uintp, uintp, uintp)")
 def first_begin(arbiter: int, space: int, data: int) -> None:
     """Python's `begin`, after the arbiter has been made to show the outlines' regions."""
     s = state_of(space)
@@ -148,7 +147,7 @@ def first_begin(arbiter: int, space: int, data: int) -> None:
     _call_hook(shown_of(s).begin_at, arbiter, space, data)
 
 
-@callback(types.void(types.uintp, types.uintp, types.uintp))
+@callback("void(uintp, uintp, uintp)")
 def first_pre_solve(arbiter: int, space: int, data: int) -> None:
     """The same of `pre_solve`."""
     s = state_of(space)
@@ -156,7 +155,7 @@ def first_pre_solve(arbiter: int, space: int, data: int) -> None:
     _call_hook(shown_of(s).pre_solve_at, arbiter, space, data)
 
 
-@callback(types.void(types.uintp, types.uintp, types.uintp))
+@callback("void(uintp, uintp, uintp)")
 def reindex(index: int, each: int, space: int) -> None:
     """What Chipmunk asks its index for in a step: all pairs whose boxes meet. The index has its class again."""
     t = shown_of(state_of(space))

@@ -12,7 +12,6 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..chipmunk import function
 from ..kernel.broad import ask_about, forget_the_gone, list_pair, measure, put_in_tree
@@ -46,15 +45,15 @@ from .shown import show, shown_of
 #: What machine code asks Python for: all of it before a frame has changed anything, or when it has ended.
 REGISTER, GROW, BROKEN, NORMAL = range(4)
 
-user_data = function("cpSpaceGetUserData", types.uintp(types.uintp))
-timestamp = function("cpSpaceGetTimestamp", types.uint32(types.uintp))
-shape_counter = function("cpSpaceGetShapeIDCounter", types.uintp(types.uintp))
-time_step = function("cpSpaceGetCurrentTimeStep", types.float64(types.uintp))
-space_of = function("cpBodyGetSpace", types.uintp(types.uintp))
-body_type = function("cpBodyGetType", types.int32(types.uintp))
-_call_ask = caller(types.void(types.uintp))
-_call_hook = caller(types.void(types.uintp, types.uintp, types.uintp))
-_call_count = caller(types.int32(types.uintp))
+user_data = function("cpSpaceGetUserData", "uintp(uintp)")
+timestamp = function("cpSpaceGetTimestamp", "uint32(uintp)")
+shape_counter = function("cpSpaceGetShapeIDCounter", "uintp(uintp)")
+time_step = function("cpSpaceGetCurrentTimeStep", "float64(uintp)")
+space_of = function("cpBodyGetSpace", "uintp(uintp)")
+body_type = function("cpBodyGetType", "int32(uintp)")
+_call_ask = caller("void(uintp)")
+_call_hook = caller("void(uintp, uintp, uintp)")
+_call_count = caller("int32(uintp)")
 
 #: A normal has been set if it is turned by more than this (rad): Chipmunk's own search ends within 1e-9 of another one.
 SET = 1e-6
@@ -488,7 +487,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
     return True
 
 
-@callback(types.void(types.uintp, types.float64))
+@callback("void(uintp, float64)")
 def hold(body: int, dt: float) -> None:
     """Chipmunk's position function of every body: it stays where it is. The first call begins the frame."""
     space = space_of(body)
@@ -546,7 +545,7 @@ def _note_normal(s: Any, pair: Any, arbiter: int) -> None:
         pair.steer_s = d / length
 
 
-@callback(types.void(types.uintp, types.uintp, types.uintp))
+@callback("void(uintp, uintp, uintp)")
 def pre_solve(arbiter: int, space: int, data: int) -> None:
     """One touching pair: note it, with what the user's callbacks have made of it."""
     if user_data(space) == 0:

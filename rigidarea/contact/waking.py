@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-from numba import types
-
 from ..chipmunk import function
 from ..kernel.broad import forget_the_gone
 from ..kernel.jit import callback
@@ -17,14 +15,14 @@ from ..store import load_pool, load_tables, load_work, row_of_body
 from .record import members, notice, state_of, user_data
 from .substep import near_pairs
 
-_activate = function("cpBodyActivate", types.void(types.uintp))
+_activate = function("cpBodyActivate", "void(uintp)")
 
 #: What sleeps wakes for somebody who comes by more than this in a frame, of its own smallest extent. Whoever is slower
 #: comes to overlap it a little, for which Chipmunk wakes it.
 WAKING = 0.01
 
 
-@callback(types.int32(types.uintp, types.float64))
+@callback("int32(uintp, float64)")
 def rouse(space: int, dt: float) -> int:
     """Before a step of Chipmunk's: wake what is asleep and will be hit within the frame. 0: the tables are too small.
 

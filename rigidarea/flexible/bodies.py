@@ -6,18 +6,16 @@ its arrays are. ``boundary_at`` and ``work_at`` make the named tuples again, whi
 
 from __future__ import annotations
 
-import ctypes
 from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from numba import config
 from numpy.typing import NDArray
 
 from rigidarea.flexible.blocks import WIDE
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.kernel.jit import kernel
-from rigidarea.kernel.memory import array_at as compiled_array_at
+from rigidarea.kernel.memory import array_at
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -27,17 +25,6 @@ SIZES = 11  # points, FE nodes, boxes of the hierarchy, modes, rows of flexibili
 WORK = SIZES + len(Boundary._fields)  # first column of the work arrays
 COUPLING = WORK + len(Work._fields)
 GEOMETRIC = COUPLING + 1
-
-
-def _array_at(address: int, shape: tuple[int, ...], dtype: Any) -> Any:
-    """``kernel.memory.array_at`` without machine code."""
-    size = int(np.prod(shape)) * np.dtype(dtype).itemsize
-    if size == 0:
-        return np.zeros(shape, dtype)
-    return np.frombuffer((ctypes.c_char * size).from_address(int(address)), dtype).reshape(shape)
-
-
-array_at: Any = _array_at if config.DISABLE_JIT else compiled_array_at
 
 
 def table(

@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import functools
-from typing import Any
-
-import numba
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import cached, kernel
+from rigidarea.kernel.jit import kernel, vectorized
 
 Array = NDArray[np.float64]
 
@@ -17,13 +13,7 @@ Array = NDArray[np.float64]
 _SUMS = {"reassoc", "contract"}
 
 
-def _vectorized(signatures: Any, **options: Any) -> Any:
-    """Decorator: compiled for ``signatures`` with loops vectorized, which kernels otherwise are not (``kernel.whole``):
-    here they go over dozens of numbers."""
-    return cached(functools.partial(numba.njit, signatures, error_model="numpy", _nrt=False, **options))
-
-
-@_vectorized(
+@vectorized(
     [f"f8(f8[{a}], f8[{b}])" for a in (":", "::1") for b in (":", "::1")],
     fastmath=_SUMS,
 )
@@ -72,7 +62,7 @@ def eliminate(a: Array, n: int, columns: int) -> None:
 SINGULAR = 1e-12  # of a diagonal: what rounding leaves of one that other rows have taken up
 
 
-@_vectorized("void(f8[:, ::1], f8[:, ::1], i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
+@vectorized("void(f8[:, ::1], f8[:, ::1], i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
 def factor(k: Array, c: Array, n: int, work: Array, last: NDArray[np.int64]) -> None:
     """Of I + K C, for ``yielded``: into work (3, n, n) and last (n,). K, C (n, n) symmetric, K ≥ 0.
 
@@ -125,7 +115,7 @@ def factor(k: Array, c: Array, n: int, work: Array, last: NDArray[np.int64]) -> 
             a[i, i] -= a[i, j] * t[i, j]
 
 
-@_vectorized("void(f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
+@vectorized("void(f8[:, ::1], i8, i8, f8[:, :, ::1], i8[::1])", fastmath=_SUMS)
 def yielded(right: Array, n: int, columns: int, work: Array, last: NDArray[np.int64]) -> None:
     """Solves (I + K C) y = −K r for the first ``columns`` rows r of ``right``, in place, after ``factor``."""
     u, t, a = work[0], work[1], work[2]

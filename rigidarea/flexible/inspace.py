@@ -11,7 +11,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 from numpy.typing import NDArray
 
 from rigidarea.flexible.bodies import work_at
@@ -56,7 +55,7 @@ PLACES = record([(name, "i8") for name in OFFSETS])
 #: stable while contacts are less than 2 / this - 1 times as stiff as the body between hub and contact.
 HUB_SHARE = 0.1
 
-_call = caller(types.void(types.uintp, types.float64))
+_call = caller("void(uintp, float64)")
 _PRE_STEP, _APPLY_CACHED, _APPLY = 0, 1, 2  # places of a joint's functions in its class
 
 

@@ -1,162 +1,51 @@
-"""How this package compiles: cached on disk by the content of its sources; kernels without reference counts.
+"""The decorators of kernels, whatever runs them (`compile.chosen`): one text, three ways."""
 
-numba's cache notices when the file of a function changes, not when a file that it calls into does. So the machine code
-of a module lives in a folder named after a hash of its source and of all of ours that it imports, directly or not: a
-new version never runs an old version's machine code, what has not changed is not compiled again, and an install that
-cannot be written to needs no writing. What is in the folder, and whose it is: `cache`.
-"""
+from ..compile.chosen import BACKEND, COMPILED, INTERPRETED, LIBRARY
 
-from __future__ import annotations
+if BACKEND == COMPILED:
+    from ..compile.compiled import (
+        callback,
+        clock_gettime,
+        copy_memory,
+        entry,
+        external,
+        kernel,
+        lock_for_fork,
+        njit,
+        vectorized,
+    )
+    from ..compile.intrinsics import array_at, caller, floats
+else:
+    from ..compile.plain import (
+        array_at,
+        callback,
+        caller,
+        clock_gettime,
+        copy_memory,
+        entry,
+        external,
+        floats,
+        kernel,
+        lock_for_fork,
+        njit,
+        vectorized,
+    )
 
-import ctypes
-import functools
-import hashlib
-import re
-from collections.abc import Callable
-from pathlib import Path
-from typing import Any
-
-import numba
-from numba.core import caching, types
-from numba.core.registry import CPUDispatcher, cpu_target
-
-from . import cache, whole
-
-_ROOT = Path(__file__).resolve().parent.parent
-
-
-#: An import from this package (nothing in it imports another way): dots, module, names. Reading syntax trees takes 1 s.
-_IMPORT = re.compile(rf"^ *from (\.+|{_ROOT.name}\.?)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
-
-
-@functools.cache
-def _imports(source: Path) -> tuple[bytes, tuple[Path, ...]]:
-    """A source's text, and the sources of this package that it imports, at its top or in functions."""
-    text = source.read_bytes()
-    found: set[Path] = set()
-    for dots, module, names in _IMPORT.findall(text.decode()):
-        folder = source.parents[len(dots) - 1] if dots[0] == "." else _ROOT
-        folder = folder.joinpath(*module.split("."))
-        inner = [folder / f"{name}.py" for name in re.findall(r"\w+", names)]
-        found.update(
-            path for path in (*inner, folder.with_suffix(".py"), folder / "__init__.py") if path.is_file()
-        )
-    return text, tuple(sorted(found - {_ROOT / "__init__.py"}))
-
-
-@functools.cache
-def cache_folder(source: Path) -> str:
-    """Where the machine code of a source's functions is kept: see `cache.folder`."""
-    met, left = {source}, [source]
-    while left:
-        new = set(_imports(left.pop())[1]) - met
-        met |= new
-        left += new
-    digest = hashlib.sha256(numba.__version__.encode() + cache.FORMAT)
-    for path in sorted(met):
-        name = path.relative_to(_ROOT) if _ROOT in path.parents else Path(path.name)
-        digest.update(name.as_posix().encode() + _imports(path)[0])
-    found = cache.folder(digest.hexdigest()[:16])
-    cache.notice.folder = str(Path(found).parent)
-    return found
-
-
-def cached(compiler: Callable[..., Any], at_once: bool = False) -> Callable[..., Any]:
-    """`compiler` (numba.njit, numba.cfunc(signature)) with cache=True, kept in `cache_folder` in checked files.
-
-    at_once: it compiles when it decorates, not at the first call.
-    """
-
-    def compile_cached(function: Any = None, **options: Any) -> Any:
-        if function is None:
-            return functools.partial(compile_cached, **options)
-        before = numba.config.CACHE_DIR, caching.IndexDataCacheFile
-        numba.config.CACHE_DIR = cache_folder(Path(function.__code__.co_filename).resolve())
-        caching.IndexDataCacheFile = cache.CheckedFile
-        try:
-            decorate = functools.partial(compiler(cache=True, **options), function)
-            if at_once:
-                with whole.compiling(cpu_target.target_context, part=False):
-                    made = cache.notice.eagerly(decorate)
-            else:
-                made = decorate()
-        finally:
-            numba.config.CACHE_DIR, caching.IndexDataCacheFile = before
-        if isinstance(made, CPUDispatcher):
-            made.__class__ = Whole
-        return made
-
-    return compile_cached
-
-
-def _general(kind: Any) -> Any:
-    """The type for which one is compiled, where numba would compile one for each constant and size of integer."""
-    kind = types.unliteral(kind)  # type: ignore[attr-defined]
-    return types.int64 if kind in (types.int32, types.uint8) else kind
-
-
-class Whole(CPUDispatcher):  # type: ignore[misc]
-    """What runs for itself, though a part may be what calls it first."""
-
-    part = False
-
-    def compile(self, sig: Any) -> Any:
-        with whole.compiling(self.targetctx, self.part):
-            return super().compile(sig)
-
-    def get_call_template(self, args: Any, kws: Any) -> Any:
-        return super().get_call_template(tuple(map(_general, args)), kws)
-
-
-#: `@njit` for functions that may allocate.
-njit: Any = cached(functools.partial(numba.njit, error_model="numpy"))
-#: Decorator for kernels that Python too calls. They look at arrays that somebody else keeps alive; counting references
-#: to them would cost more than clipping two boxes. The price: a kernel cannot allocate.
-entry: Any = functools.partial(njit, _nrt=False)
-
-
-class _Part(Whole):
-    """A kernel that is compiled into those that call it, and not for itself (`whole`)."""
-
-    part = True
-
-    def __call__(self, *arguments: Any) -> Any:
-        if "way_in" not in self.__dict__:
-            inner = self
-
-            def way_in(*given: Any) -> Any:
-                return inner(*given)
-
-            self.way_in = entry(way_in)
-        return self.way_in(*arguments)
-
-
-def kernel(function: Any = None, **options: Any) -> Any:
-    """Decorator for kernels that kernels call: `@kernel`, `@kernel(forceinline=True)`. As `entry`, but quicker made."""
-    if function is None:
-        return functools.partial(kernel, **options)
-    if numba.config.DISABLE_JIT:
-        return function
-    made = numba.njit(
-        _nrt=False, error_model="numpy", no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
-    )(function)
-    made.__class__ = _Part
-    return made
-
-
-class _Interpreted:
-    """A C callback that is interpreted: what numba's cfunc is with NUMBA_DISABLE_JIT."""
-
-    def __init__(self, function: Any, kind: Any) -> None:
-        self._keep = kind(function)
-        self.address = ctypes.cast(self._keep, ctypes.c_void_p).value
-
-
-def callback(signature: Any) -> Any:
-    """Decorator for C callbacks made of kernels; `.address` is where C finds them."""
-    if numba.config.DISABLE_JIT:
-        from .memory import prototype
-
-        return lambda function: _Interpreted(function, prototype(signature))
-    compiler = cached(functools.partial(numba.cfunc, signature), at_once=True)
-    return functools.partial(compiler, _nrt=False, error_model="numpy")
+__all__ = [
+    "BACKEND",
+    "COMPILED",
+    "INTERPRETED",
+    "LIBRARY",
+    "array_at",
+    "callback",
+    "caller",
+    "clock_gettime",
+    "copy_memory",
+    "entry",
+    "external",
+    "floats",
+    "kernel",
+    "lock_for_fork",
+    "njit",
+    "vectorized",
+]

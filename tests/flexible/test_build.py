@@ -4,9 +4,8 @@ import re
 
 import numpy as np
 import pytest
-from numba import config
 
-from rigidarea import Outline
+from rigidarea import Outline, backend
 from rigidarea.flexible import Material, Mechanism, build
 from rigidarea.flexible.run import run_steps
 from rigidarea.shapes import box, circle
@@ -77,7 +76,7 @@ def test_clamp_on_part_of_a_boundary():
     assert r.force[-100:, 1].mean() == pytest.approx(weight, rel=0.05)
 
 
-@pytest.mark.skipif(config.DISABLE_JIT, reason="nothing is compiled")
+@pytest.mark.skipif(backend() != "compiled", reason="nothing is compiled")
 def test_no_compilation_for_another_number_of_bodies():
     """One version of the stepper serves two bodies, three, and three with a joint."""
     for bodies, joint in ((2, False), (3, False), (3, True)):

@@ -1,12 +1,14 @@
 """A game's first frame with flexible parts is like its others."""
 
-import numba
 import pymunk
+import pytest
 
 import rigidarea as ra
 from rigidarea import shapes
 from rigidarea.flexible import Assembly, Material
 from rigidarea.flexible import assembly as module
+
+numba = pytest.importorskip("numba")
 
 
 def test_a_frame_compiles_nothing(monkeypatch):

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 from solve_world import area_only
 
-pytestmark = area_only
+from rigidarea import backend
+
+pytestmark = [area_only, pytest.mark.skipif(backend() != "compiled", reason="nothing is compiled")]
 
 PROGRAM = """
 import sys

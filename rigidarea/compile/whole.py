@@ -19,6 +19,10 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 
 from .interrupts import put_off
 
+#: Where code that runs is kept as it is before it is optimized (LLVM's bitcode), by the names of its functions:
+#: `ahead` makes machine code for others of it. None: nowhere.
+kept: dict[str, bytes] | None = None
+
 
 class _Part(JITCodeLibrary):  # type: ignore[misc]
     """Code to be linked into other code."""
@@ -45,10 +49,12 @@ class _Whole(JITCodeLibrary):  # type: ignore[misc]
         for f in self._final_module.functions:
             if not f.is_declaration and f.name not in self._own:
                 f.linkage = "internal"
+        if kept is not None:
+            kept.update(dict.fromkeys(self._own, self._final_module.as_bitcode()))
         super()._optimize_final_module()
 
 
-class _Codegen(JITCPUCodegen):  # type: ignore[misc]
+class Codegen(JITCPUCodegen):  # type: ignore[misc]
     """numba's own, with a library class that `compiling` sets.
 
     Loops are left as they are: they go over a handful of points, and vectorized and unrolled the code is half as long
@@ -72,7 +78,7 @@ def compiling(context: Any, part: bool) -> Iterator[None]:
     with put_off():
         before = context._internal_codegen
         context._internal_codegen = copy.copy(before)
-        context._internal_codegen.__class__ = _Codegen
+        context._internal_codegen.__class__ = Codegen
         context._internal_codegen._library_class = _Part if part else _Whole
         try:
             yield

@@ -196,15 +196,17 @@ atexit.register(notice.close)
 def folder(name: str) -> str:
     """A folder of that name that can be written to, made if need be.
 
-    Under NUMBA_CACHE_DIR, XDG_CACHE_HOME, or ~/.cache; else in the temporary directory, where a folder that somebody
-    else could have filled is never used, since loading runs what is in it: a private one is made instead, which is
-    gone for the next process.
+    Under NUMBA_CACHE_DIR, XDG_CACHE_HOME, or where the platform keeps caches; else in the temporary directory, where a
+    folder that somebody else could have filled is never used, since loading runs what is in it: a private one is made
+    instead, which is gone for the next process.
     """
     homes = [
         numba.config.CACHE_DIR,
         os.environ.get("XDG_CACHE_HOME"),
-        os.path.join(os.path.expanduser("~"), ".cache"),
+        os.path.join(os.path.expanduser("~"), "Library/Caches" if sys.platform == "darwin" else ".cache"),
     ]
+    if sys.platform == "win32":
+        homes[-1] = os.environ.get("LOCALAPPDATA")
     for home in filter(None, homes):
         found = os.path.join(home, "rigidarea", name)
         if _writable(found):
