@@ -14,10 +14,9 @@ import math
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..kernel.broad import forget_the_gone
-from ..kernel.jit import callback, kernel
+from ..kernel.jit import callback, copy_memory, kernel
 from ..kernel.join import SPARE
 from ..kernel.memory import array_at, caller, record
 from ..kernel.tables import (
@@ -33,7 +32,7 @@ from ..kernel.tables import (
     Tables,
     rehash,
 )
-from ..store import STATE, _memcpy, clear, enter_body, load_tables
+from ..store import STATE, clear, enter_body, load_tables
 from .joints import joints_of, read_joint, take_joints
 from .moved import HEAD, free_again
 from .record import (
@@ -67,15 +66,15 @@ WORLD = record(
         ("done", "i8"),  # frames of the last call
     ]
 )
-_call_solve = caller(types.void(types.uintp, types.float64))
-_call_report = caller(types.void(types.uintp, types.uintp))
+_call_solve = caller("void(uintp, float64)")
+_call_report = caller("void(uintp, uintp)")
 _STATE_WORDS = STATE.itemsize // 8
 
 #: What came of a frame: all of it; nothing, since tables are too small; nothing, since a state is not finite.
 DONE, TOO_SMALL, NOT_FINITE = range(3)
 
 
-@callback(types.void(types.uintp))
+@callback("void(uintp)")
 def no_answer(request: int) -> None:
     """Nobody can be asked: the frame ends as it began, and whoever stepped the world hears of it."""
 
@@ -196,9 +195,7 @@ def _read(s: Any, world: Any, out: np.ndarray) -> None:
         out[k + 5] = floats(body + s.body_spin, 1)[0]
 
 
-@callback(
-    types.int64(types.uintp, types.uintp, types.int64, types.uintp, types.float64, types.int64, types.uintp)
-)
+@callback("int64(uintp, uintp, int64, uintp, float64, int64, uintp)")
 def step(which: int, scratch: int, n: int, forces: int, dt: float, frames: int, states: int) -> int:
     """Step n worlds by so many frames each, one after the other; how many of them could not (WORLD.outcome).
 
@@ -235,7 +232,7 @@ def step(which: int, scratch: int, n: int, forces: int, dt: float, frames: int, 
     return failed
 
 
-@callback(types.void(types.uintp, types.int64, types.uintp))
+@callback("void(uintp, int64, uintp)")
 def read(which: int, n: int, states: int) -> None:
     """The states of n worlds: (n, bodies, 6)."""
     addresses = words(which, n)
@@ -244,7 +241,7 @@ def read(which: int, n: int, states: int) -> None:
         _read(_state(world), world, floats(states + 48 * i * world.count, 6 * world.count))
 
 
-@callback(types.void(types.uintp, types.int64, types.uintp))
+@callback("void(uintp, int64, uintp)")
 def write(which: int, n: int, states: int) -> None:
     """Put the bodies of n worlds there, as they are to move: (n, bodies, 6)."""
     addresses = words(which, n)
@@ -306,11 +303,7 @@ def _swap_parameters(world: Any, s: Any, kept: np.ndarray, back: bool) -> None:
         kept[k] = world.damping
 
 
-@callback(
-    types.void(
-        types.uintp, types.int64, types.uintp, types.int64, types.int64, types.uintp, types.int64, types.uintp
-    )
-)
+@callback("void(uintp, int64, uintp, int64, int64, uintp, int64, uintp)")
 def put(which: int, n: int, image: int, home: int, size: int, fixups: int, words_n: int, kept: int) -> None:
     """Have n worlds be as `image` is, of so many bytes, whose addresses are those of a world at `home`.
 
@@ -325,7 +318,7 @@ def put(which: int, n: int, image: int, home: int, size: int, fixups: int, words
         if kept != 0:
             own = floats(kept, 4 * world.count + 2 * world.shapes + 3)
             _swap_parameters(world, _state(world), own, False)
-        _memcpy(np.uint64(at), np.uint64(image), np.uint64(size))
+        copy_memory(np.uint64(at), np.uint64(image), np.uint64(size))
         memory = array_at(at, (size // 8,), np.int64)
         for k in range(words_n):
             memory[places[k]] += at - home
@@ -335,7 +328,7 @@ def put(which: int, n: int, image: int, home: int, size: int, fixups: int, words
         _find_bodies(s, load_tables(s))
 
 
-@callback(types.void(types.uintp, types.int64, types.uintp))
+@callback("void(uintp, int64, uintp)")
 def enlarged(which: int, n: int, head: int) -> None:
     """The tables of n worlds have more room for pairs and regions than `head` (HEAD) says: it is free, and last."""
     before = array_at(head, (1,), HEAD)[0]

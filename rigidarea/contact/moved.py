@@ -10,10 +10,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from numba import types
 
 from ..chipmunk import function
-from ..kernel.jit import callback, kernel
+from ..kernel.jit import callback, copy_memory, kernel
 from ..kernel.joint import JOINT, KINDS, RATCHET
 from ..kernel.memory import array_at, record
 from ..kernel.tables import (
@@ -44,7 +43,7 @@ from ..kernel.tables import (
     rehash,
 )
 from ..kernel.tree import NODE
-from ..store import _memcpy, load_tables
+from ..store import load_tables
 from .joints import KIND_WORDS
 from .record import floats, members, state_of, timestamp, words
 
@@ -75,16 +74,16 @@ _TABLES = _HEAD + 8 * COUNTERS
 _BODY, _SHAPE, _PAIR, _REGION, _NODE = (kind.itemsize for kind in (BODY, SHAPE, PAIR, REGION, NODE))
 _NEAR, _JOINED = NEIGHBOURS.itemsize, JOINT.itemsize
 
-_cache_box = function("cpShapeCacheBB", types.void(types.uintp, types.uintp))
+_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
 
 
 @kernel
 def _move(back: int, block: int, at: int, address: int, size: int) -> int:
     """So many bytes from memory into the block, or back; where the block goes on."""
     if back:
-        _memcpy(np.uint64(address), np.uint64(block + at), np.uint64(size))
+        copy_memory(np.uint64(address), np.uint64(block + at), np.uint64(size))
     else:
-        _memcpy(np.uint64(block + at), np.uint64(address), np.uint64(size))
+        copy_memory(np.uint64(block + at), np.uint64(address), np.uint64(size))
     return int(at + (size + 7) // 8 * 8)
 
 
@@ -166,7 +165,7 @@ def _list_sleepers(s: Any, space: int, idle: int, at: int) -> int:
     return n
 
 
-@callback(types.int64(types.uintp, types.int64, types.uintp, types.int64))
+@callback("int64(uintp, int64, uintp, int64)")
 def save(space: int, idle: int, block: int, room: int) -> int:
     """Take a snapshot; how many bytes it has. Nothing is written where there is no room for them.
 
@@ -219,7 +218,7 @@ def _after_tables(n: np.ndarray, nodes: int) -> int:
     return int(at + 8 * n[APART] + n[JOINTS] * _JOINED)
 
 
-@callback(types.int64(types.uintp, types.int64, types.uintp))
+@callback("int64(uintp, int64, uintp)")
 def compare(space: int, idle: int, block: int) -> int:
     """Whether a snapshot's bodies, shapes and joints are those of the space: SAME, or what is not."""
     s = state_of(space)
@@ -264,7 +263,7 @@ def compare(space: int, idle: int, block: int) -> int:
     return SAME if k == head.sleepers else DOZED
 
 
-@callback(types.int64(types.uintp))
+@callback("int64(uintp)")
 def sleepers(block: int) -> int:
     """Where a snapshot has its list of those that sleep (`HEAD.sleepers` words), from its beginning on (bytes)."""
     head = array_at(block, (1,), HEAD)[0]
@@ -272,7 +271,7 @@ def sleepers(block: int) -> int:
     return _after_tables(then, head.nodes) + head.constraints * _JOINT
 
 
-@callback(types.void(types.uintp, types.uintp))
+@callback("void(uintp, uintp)")
 def reorder(space: int, block: int) -> None:
     """Chipmunk's list of bodies in the order of then, once the same ones are awake: sums over them follow it."""
     s = state_of(space)
@@ -343,7 +342,7 @@ def _delay(tables: Tables, late: int) -> None:
             pair.waiting += late
 
 
-@callback(types.int64(types.uintp, types.int64, types.uintp))
+@callback("int64(uintp, int64, uintp)")
 def restore(space: int, idle: int, block: int) -> int:
     """Put a snapshot back that `compare` has found to fit. 1: what Chipmunk takes for static is elsewhere now."""
     s = state_of(space)

@@ -174,7 +174,8 @@ def _unthread(space: pymunk.Space) -> None:
         arbiter = _arbiter(ffi.cast("uintptr_t *", listed)[i])
         ffi.buffer(arbiter, _ARBITER)[first : first + 32] = bytes(32)
     count[0] = 0
-    for body in {*space.bodies, *(shape.body for shape in space.shapes), space.static_body}:
+    owners = {shape.body for shape in space.shapes if shape.body is not None}
+    for body in {*space.bodies, *owners, space.static_body}:
         ffi.cast("uintptr_t *", body._body)[off["body_shapes"] // 8 + 1] = 0
 
 
