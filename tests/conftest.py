@@ -232,6 +232,12 @@ settings.load_profile("fixed")
 NOT_YET = Path(__file__).with_name("not_yet.txt")
 
 
+@pytest.fixture
+def record_property(record_property: Callable[[str, object], None]) -> Callable[[str, object], None]:
+    """pytest's own; numpy's numbers go as Python's, since xdist's processes can hand on no others."""
+    return lambda name, value: record_property(name, value.item() if isinstance(value, np.generic) else value)
+
+
 def pytest_addoption(parser: pytest.Parser) -> None:
     parser.addoption("--results", metavar="FILE", help="keep there the figures that tests have measured")
 
