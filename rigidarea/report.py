@@ -65,12 +65,11 @@ def solver() -> str:
 
 
 def envelope(command: str, settings: Mapping[str, Any], results: Any, **more: Any) -> dict[str, Any]:
-    """The object: `command`, `settings`, `solver`, `versions`, `machine`, `results`, and what else the command has."""
+    """The object: `command`, `settings`, `versions` (with the solver's), `machine`, `results`, and what else there is."""
     return {
         "command": command,
         "settings": dict(settings),
-        "solver": solver(),
-        "versions": versions(),
+        "versions": {**versions(), "solver": solver()},
         "machine": machine(),
         "results": results,
         **more,

@@ -251,7 +251,7 @@ class Figures:
 
     def __init__(self, file: Path) -> None:
         before = json.loads(file.read_text()) if file.exists() else {}
-        kept = before.get("results", {}) if before.get("solver") == solver() else {}
+        kept = before.get("results", {}) if before.get("versions", {}).get("solver") == solver() else {}
         self.file, self.kept, self.found = file, kept, dict[str, float]()
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:

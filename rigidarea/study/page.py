@@ -123,7 +123,7 @@ def older(docs: Path) -> list[str]:
     """The results in `docs` that were measured on another solver than the one that is here."""
     now = solver()
     files = sorted((docs / "results").glob("*.json"))
-    return [file.stem for file in files if json.loads(file.read_text()).get("solver") != now]
+    return [file.stem for file in files if json.loads(file.read_text())["versions"].get("solver") != now]
 
 
 def markdown(columns: Sequence[str], rows: Sequence[Sequence[str]]) -> str:

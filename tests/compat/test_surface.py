@@ -14,6 +14,7 @@ LEFT_OUT = {
     "rigidarea.AreaContact": "made by attach",
     "rigidarea.Plan": "made by plan",
     "rigidarea.SimulationError": "is raised",
+    "rigidarea.backend": "takes nothing",
     "shapes.Geneva": "a record of what geneva made",
     "bring.Element": "a record of what a drawing holds",
     "bring.Scene": "a record of what a file held",

@@ -156,7 +156,7 @@ def test_made_anew_between_marks_and_nowhere_else(tmp_path):
 def test_results_of_another_solver_are_told(tmp_path):
     (tmp_path / "results").mkdir()
     for name, of in (("now", solver()), ("then", "0")):
-        (tmp_path / "results" / f"{name}.json").write_text(json.dumps({"solver": of}))
+        (tmp_path / "results" / f"{name}.json").write_text(json.dumps({"versions": {"solver": of}}))
     assert page.older(tmp_path) == ["then"]
 
 
