@@ -65,7 +65,7 @@ def solver() -> str:
 
 
 def envelope(command: str, settings: Mapping[str, Any], results: Any, **more: Any) -> dict[str, Any]:
-    """The object: `command`, `settings`, `versions` (with the solver's), `machine`, `results`, and what else there is."""
+    """The object: `command`, `settings`, `versions` (the solver too), `machine`, `results`, and what else there is."""
     return {
         "command": command,
         "settings": dict(settings),
