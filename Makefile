@@ -65,7 +65,7 @@ studies: .venv/.installed measured cases
 # What tests measure and pages show (SHOWN="shown": the slow ones too).
 SHOWN ?= shown and not slow
 measured: .venv/.installed
-	$(BIN)/python -m pytest -m '$(SHOWN)' --results docs/results/tests.json
+	$(BIN)/python -m pytest tests -m '$(SHOWN)' --results=docs/results/tests.json
 
 # The paper's examples.
 cases: .venv/.installed
