@@ -63,11 +63,8 @@ def touch(
     back: float,
     h: float,
     unseen: float,
-    turn: float,
 ) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
-
-    Nor if its direction was another there: by an angle whose cosine is no more than `turn` (0: whatever it was).
 
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
     it was u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so
@@ -77,8 +74,6 @@ def touch(
     """
     come = back > 0.0
     region.back = back
-    nx = region.nx
-    ny = region.ny
     for _ in range(3):
         d = region.depth
         u = closing(region, a, b, 0.5)
@@ -104,9 +99,6 @@ def touch(
         if best < 0:
             return come
         patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
-        if turn > 0.0 and patch.nx * nx + patch.ny * ny <= turn:
-            turn_to(region, nx, ny)
-            return False
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
         fill(region, patch, ax, ay, bx, by)
@@ -291,8 +283,7 @@ def enter(
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
-        turn = TURNS if back == 0.0 and region.depth <= height else 0.0
-        touched = touch(pool, tables, work, law, pair, region, ia, ib, a, b, back, h, unseen, turn)
+        touched = touch(pool, tables, work, law, pair, region, ia, ib, a, b, back, h, unseen)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
@@ -340,8 +331,7 @@ def expect(
     if stiffness * inverse * h * h <= law.followed:
         return False  # the steps follow it
     lying = _lying(law, pair, inverse)
-    sinks = law.gravity * h * h  # what carries it is not solved for yet
-    if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying + sinks, h):
+    if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying, h):
         return False  # it will be there, and say so itself
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
@@ -352,7 +342,7 @@ def expect(
         # positions are those of the middle of the substep: the drift yet to come is the half of it
         return (
             first
-            and touch(pool, tables, work, law, pair, region, ia, ib, a, b, -ahead, h, h, 0.0)
+            and touch(pool, tables, work, law, pair, region, ia, ib, a, b, -ahead, h, h)
             and region.back >= -0.5 * h
         )
     region.mode = NEARING

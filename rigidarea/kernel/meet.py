@@ -52,6 +52,7 @@ from .tables import (
     Tables,
     free_regions,
 )
+from .work import Relative
 
 #: Places at which a pair is looked at for one more that is to come.
 MOST_SEATS = 60
@@ -96,6 +97,14 @@ def _face(pool: Pool, sa: Any, sb: Any, a: Any, b: Any) -> float:
     if b.mobile:
         face = min(face, pool.heads[sb.outline].face)
     return face
+
+
+@kernel(forceinline=True)
+def _under_a_line(pool: Pool, work: Work, sa: Any, sb: Any, ia: int, ib: int, rel: Relative, k: int) -> bool:
+    """Whether loop k of the work reaches under a segment's line without crossing it."""
+    if sa.mirror >= 0 and length_on_first_edge(pool, ia, rel, A_EDGE, work, k) == 0.0:
+        return True
+    return bool(sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0)
 
 
 @kernel
@@ -144,16 +153,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     old = pair.head
     kept = -1
     for k in range(n):
-        area_cap = np.inf
-        if sa.mirror >= 0 or sb.mirror >= 0:
-            on_line = np.inf
-            if sa.mirror >= 0:
-                on_line = min(on_line, length_on_first_edge(pool, ia, rel, A_EDGE, work, k))
-            if sb.mirror >= 0:
-                on_line = min(on_line, length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k))
-            if on_line == 0.0:
-                continue  # reaches under the line without crossing it
-            area_cap = 2.0 * on_line * on_line  # only the line's end pokes in
+        if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
+            continue
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
         if patch.area == 0.0:
             continue
@@ -208,7 +209,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             y += wx * middle
             middle = 0.0
         patch = Patch(
-            min(patch.area, area_cap),
+            patch.area,
             x,
             y,
             wx,
@@ -229,9 +230,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         else:
             before = region.depth
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            hangs = a.calm < 0 or b.calm < 0  # in a joint, which may press it as deep as it was put
-            shallow = region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth
-            if shallow or (carried and not (hangs and region.placed == PLACED)):
+            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
                 region.placed = 0
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
@@ -365,9 +364,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     for k in range(n):
         if seat and there >> k & 1:
             continue
-        if sa.mirror >= 0 and length_on_first_edge(pool, ia, rel, A_EDGE, work, k) == 0.0:
-            continue
-        if sb.mirror >= 0 and length_on_first_edge(pool, ib, rel, 1 - A_EDGE, work, k) == 0.0:
+        if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
             continue
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
         if patch.blind or patch.reach <= deepest:

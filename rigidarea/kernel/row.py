@@ -43,7 +43,7 @@ from .jit import kernel
 from .joint import solve_joint
 from .memory import record
 from .region import beyond, closing, growth, inverse_mass, region_stiffness
-from .tables import BLOW, BOUNCED, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
+from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .turning import turning_speed
 
 ROW = record(
@@ -200,8 +200,7 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
     and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where others lie, who bore it a substep ago; off whom it only bounced
-    then, they are still near, and it is put no further than from one look to the next.
+    so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
     """
     back = r.back
     row.alpha = 0.0
@@ -227,19 +226,12 @@ def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float,
             row.t1 = target
         else:
             row.t2 = target
-    leaving = 0.5 * (row.t1 + row.t2) if row.ends == 2 else row.t1
     if e == 0.0 and row.ends == 1:
         row.t1 = _turn_along(r, a, b, max(0.0, row.t1))
     row.alpha_t = 0.0
     row.tt = surface
-    pushed = max(a.pushed if a.mobile else 0, b.pushed if b.mobile else 0)
-    least = least_extent(a, b)
-    way = abs(a.vx - b.vx) + abs(a.vy - b.vy) + (abs(a.w) + abs(b.w)) * least
-    near = abs(back) * way <= LOOK * least
-    if pushed == 0 or (pushed == BOUNCED and near):
+    if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
         row.shift = back
-    if leaving < 0.0:
-        row.tt += (slipping(r, a, b, 0.0) - slipping(r, a, b, 1.0)) / h * time
     if row.shift == 0.0:
         _one_point(r, a, b, row.friction)
 

@@ -15,7 +15,7 @@ from .jit import kernel
 from .joint import settle_joint
 from .place import place, shift
 from .row import push, settle, visit
-from .tables import AWAKE, BORNE, BOUNCED, DRIFTS, FIXED, LIVE, ROWS, STRUCK, Law, Tables
+from .tables import AWAKE, DRIFTS, FIXED, LIVE, ROWS, Law, Tables
 
 
 @kernel
@@ -223,11 +223,8 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if row.ends > 0 and row.l1 + row.l2 > 0.0:
-            what = BOUNCED if tables.regions[row.region].mode == STRUCK else BORNE
-            a = tables.bodies[row.a]
-            b = tables.bodies[row.b]
-            a.pushed = max(a.pushed, what)
-            b.pushed = max(b.pushed, what)
+            tables.bodies[row.a].pushed = 1
+            tables.bodies[row.b].pushed = 1
 
 
 @kernel

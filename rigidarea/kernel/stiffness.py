@@ -49,6 +49,7 @@ def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float)
     face: the chord on which it would lie (length).
     """
     pair.face = face
+    pair.firm = 0.0
     if law.stiffness > 0.0:
         pair.rate = region_stiffness(law, law.stiffness, face)
         return

@@ -32,7 +32,7 @@ BODY = record(
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
         ("calm", "i1"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
         ("was_calm", "i1"),  # 1: calm, a frame before
-        ("pushed", "i1"),  # BOUNCED or BORNE: what contacts did to it in the substep before; 0: nothing
+        ("pushed", "i1"),  # 1: contacts have pushed it in the substep before
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("joined", "i1"),  # 1: a joint keeps it from colliding with somebody
         ("entered", "i1"),  # 1: it is in the space
@@ -176,10 +176,7 @@ PAIR = record(
         ("face", "f8"),  # the chord on which one of them would lie (length)
         ("load", "f8"),  # normal force carried, averaged over LOAD_TIME (force)
         ("least", "f8"),  # of its load: the weight of the lighter body
-        (
-            "firm",
-            "f8",
-        ),  # the rate with which it resists, where its own has not grown to the load yet (force/length)
+        ("firm", "f8"),  # what it resists with until its rate has grown to the load (force/length)
         ("carrying", "f8"),  # normal impulse in this frame
     ],
 )
@@ -206,9 +203,6 @@ NEIGHBOURS = record(
 #: What a region is doing: resting; an impact that the steps follow; a bounce shorter than the step, over by its end;
 #: an overlap yet to come, that the next drift would bring.
 REST, IMPACT, STRUCK, NEARING = 0, 1, 2, 3
-
-#: What contacts have done to a body: it bounced; they bear it.
-BOUNCED, BORNE = 1, 2
 
 #: How a region at rest has come to be deeper than its load presses it: put there by hand; pressed in by a blow that has
 #: nothing to give back.

@@ -63,6 +63,18 @@ def test_boxes_at_ten_thousand_pixels_a_second_at_segments(steps):
             assert -15 < b.position.x < 615 and -15 < b.position.y < 415
 
 
+@pytest.mark.parametrize("radius, blocks", [(0.0, False), (5.0, False), (0.0, True)])
+@pytest.mark.parametrize("speed", [3e3, 1e5])
+def test_nobody_leaves_any_of_a_few_rooms(speed, radius, blocks):
+    """Ten of the rooms below: what only a frame's end tells to have passed (`passed`) is sent back."""
+    for seed in range(10):
+        world = room(seed, speed, radius, blocks)
+        for _ in range(90):
+            world.step(None)
+            for b in world.bodies:
+                assert -22.3 < b.position.x < 622.3 and -22.3 < b.position.y < 422.3, seed
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("radius, blocks", [(0.0, False), (5.0, False), (0.0, True)])
 @pytest.mark.parametrize("speed", [1e3, 3e3, 1e4])
