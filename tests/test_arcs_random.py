@@ -203,6 +203,16 @@ def test_tangent_and_coincident_pairs(kernel: Any, family: Any, record_property:
     check_tangent(kernel, record_property, family, 1, 3 if PURE_PYTHON else 100, 3 if PURE_PYTHON else 20)
 
 
+@pytest.mark.shown
+def test_flat_arcs_that_touch_leave_no_sliver(kernel: Any, record_property: Any) -> None:
+    """Their circles round like their radii, up to 1e5 of the size: 32 of these 24,000 were a region, one way round."""
+    for seed in (105, 109):
+        family = tangent_drawings.flat_arcs
+        check_tangent(
+            kernel, record_property, family, seed, 3 if PURE_PYTHON else 600, 3 if PURE_PYTHON else 10
+        )
+
+
 @pytest.mark.slow
 @pytest.mark.shown
 @by_family
