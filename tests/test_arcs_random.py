@@ -205,7 +205,7 @@ def test_tangent_and_coincident_pairs(kernel: Any, family: Any, record_property:
 
 @pytest.mark.shown
 def test_flat_arcs_that_touch_leave_no_sliver(kernel: Any, record_property: Any) -> None:
-    """Their circles round like their radii, up to 1e5 of the size: 32 of these 24,000 were a region, one way round."""
+    """Their circles round like their radii, up to 1e5 of the size: 32 findings among these 24,000 were red."""
     for seed in (105, 109):
         family = tangent_drawings.flat_arcs
         check_tangent(
