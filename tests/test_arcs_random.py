@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import exact_overlap
 import numpy as np
 import pytest
+import tangent_chains
 import tangent_drawings
 import tangent_families
 import tangent_pairs
@@ -193,7 +194,7 @@ def check_tangent(kernel: Any, record: Any, family: Any, seed: int, pairs: int, 
     assert not wrong, "\n".join([f"{len(wrong)} wrong of {2 * pairs * each}", *wrong[:20]])
 
 
-FAMILIES = (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS)
+FAMILIES = (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS, *tangent_chains.CHAINS)
 by_family = pytest.mark.parametrize("family", FAMILIES, ids=lambda family: family.__name__)
 
 
@@ -217,7 +218,7 @@ def test_flat_arcs_that_touch_leave_no_sliver(kernel: Any, record_property: Any)
 @pytest.mark.shown
 @by_family
 def test_a_million_tangent_and_coincident_pairs(kernel: Any, family: Any, record_property: Any) -> None:
-    """1,536,000 pairs of all families together, of random sizes each, and as many the other way round."""
+    """1,792,000 pairs of all families together, of random sizes each, and as many the other way round."""
     for seed in range(10):
         check_tangent(kernel, record_property, family, 100 + seed, 600, 10)
         check_tangent(kernel, record_property, family, 200 + seed, 20, 20)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tangent_chains
 import tangent_drawings
 import tangent_families
 import tangent_pairs
@@ -17,7 +18,7 @@ from rigidarea import shapes
 
 TOUCHING = [
     family
-    for family in (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS)
+    for family in (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS, *tangent_chains.CHAINS)
     if family is not tangent_families.capsule_over_bore
 ]
 
