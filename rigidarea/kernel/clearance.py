@@ -45,6 +45,30 @@ def _leaves2(
 
 
 @kernel
+def _beyond(
+    x: float, y: float, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
+) -> float:
+    """How far outside an arc's circle a point lies (length).
+
+    Of a flat arc by its ends and radius, as its centre rounds like its radius: X along the chord from its middle, Y
+    away from the centre, the squared distance from that is X^2 + (Y + apothem)^2.
+    """
+    a = abs(r)
+    d = math.sqrt((x - cx) ** 2 + (y - cy) ** 2)
+    ux = qx - px
+    uy = qy - py
+    chord2 = ux * ux + uy * uy
+    if chord2 > r * r:
+        return d - a
+    mx = x - 0.5 * (px + qx)
+    my = y - 0.5 * (py + qy)
+    twice_apothem = math.sqrt(4.0 * r * r - chord2)
+    high = (uy * mx - ux * my) / math.sqrt(chord2)
+    high = high if r > 0.0 else -high
+    return (mx * mx + my * my - 0.25 * chord2 + high * twice_apothem) / (d + a)
+
+
+@kernel
 def _to_arc2(
     x: float, y: float, px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float
 ) -> float:
@@ -56,7 +80,7 @@ def _to_arc2(
         return r * r
     f = abs(r) / d
     if on_arc(px, py, qx, qy, r, cx + f * dx, cy + f * dy):
-        return (d - abs(r)) ** 2
+        return _beyond(x, y, px, py, qx, qy, cx, cy, r) ** 2
     return min((x - px) ** 2 + (y - py) ** 2, (x - qx) ** 2 + (y - qy) ** 2)
 
 
@@ -92,6 +116,9 @@ def _arc_to_arc2(
             x = ex + f * dx
             y = ey + f * dy
             if on_arc(ax, ay, bx, by, r, x, y):
+                off = _beyond(x, y, ax, ay, bx, by, ex, ey, r) / math.copysign(d, f)
+                x -= off * dx
+                y -= off * dy
                 best = min(best, _to_arc2(x, y, px, py, qx, qy, cx, cy, u))
     return best
 

@@ -8,10 +8,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .apart import gap_along
+from .arc import ROUND
 from .direction import chord_direction
 from .jit import entry, kernel
 from .loops import exchange
-from .overlap import OVERFLOW, Relative, Work, overlap_kernel, relative
+from .overlap import A_EDGE, OVERFLOW, Relative, Work, overlap_kernel, relative
 from .pool import Pool
 from .work import noise_of
 
@@ -58,12 +59,14 @@ def seen_from(head: Any, pose: Pose, other: Any, other_pose: Pose) -> Relative:
 
 @kernel
 def _without_thin(work: Work, n: int, width: float) -> int:
-    """Leave out regions of no more area than a shift by `width` (length) makes along their boundary; the others'
-    number."""
+    """Leave out regions of no more area than a shift by `width` (length) makes along their boundary, or what their
+    arcs may be off their circles (ROUND); the others' number."""
     m = 0
     for k in range(n):
         loop = work.loops[k]
         around = 0.0
+        radius_a = 0.0
+        radius_b = 0.0
         ux = work.polygon[loop.stop - 1, 0]
         uy = work.polygon[loop.stop - 1, 1]
         for i in range(loop.start, loop.stop):
@@ -72,7 +75,11 @@ def _without_thin(work: Work, n: int, width: float) -> int:
             around += abs(vx - ux) + abs(vy - uy)
             ux = vx
             uy = vy
-        if loop.area > 0.5 * width * around:
+            if loop.arcs > 0 and work.label[i] == A_EDGE:
+                radius_a = max(radius_a, abs(work.bows[i, 2]))
+            elif loop.arcs > 0:
+                radius_b = max(radius_b, abs(work.bows[i, 2]))
+        if loop.area > 0.5 * (width + ROUND * (radius_a + radius_b)) * around:
             if m != k:
                 exchange(work.loops, m, k)
             m += 1
