@@ -28,7 +28,9 @@ def act(weights: NDArray[np.float64], observed: NDArray[np.float32]) -> NDArray[
     return np.tanh(seen @ weights.reshape(len(weights), -1, seen.shape[2]).transpose(0, 2, 1))
 
 
-def play(envs: gymnasium.vector.VectorEnv, weights: NDArray[np.float64], seed: int) -> tuple[NDArray, NDArray]:
+def play(
+    envs: gymnasium.vector.VectorEnv, weights: NDArray[np.float64], seed: int
+) -> tuple[NDArray, NDArray]:
     """Each candidate's mean return, and share of its episodes that succeed: from starts seed, seed + 1, ..."""
     k, n = len(weights), envs.num_envs
     observed, _ = envs.reset(seed=[seed + i % (n // k) for i in range(n)])
@@ -76,7 +78,9 @@ def draw(curves: dict[str, list], out: str, name: str) -> None:
     for (label, curve), colour, dash in zip(curves.items(), CURVES, ("-", "--", "-.", ":", (0, (5, 1)))):
         seconds, _, success = np.array(curve).T
         axes.plot(seconds, 100 * success, color=colour, linestyle=dash, label=label)
-    axes.set(xlabel="learning time (s)", ylabel=f"of {TESTS} new episodes succeed (%)", ylim=(-3, 103), title=name)
+    axes.set(
+        xlabel="learning time (s)", ylabel=f"of {TESTS} new episodes succeed (%)", ylim=(-3, 103), title=name
+    )
     axes.legend(frameon=False, loc="lower right")
     figure.savefig(out, dpi=120)
 
@@ -94,7 +98,9 @@ def main(arguments: list[str] | None = None) -> dict[str, list]:
     for seed in range(given.seeds):
         curves[f"seed {seed}"] = curve = learn(given.env, seed, given.seconds, given.generations)
         for gone, value, success in curve:
-            print(f"seed {seed}: {gone:5.1f} s, return {value:6.2f}, {100 * success:3.0f} % succeed", flush=True)
+            print(
+                f"seed {seed}: {gone:5.1f} s, return {value:6.2f}, {100 * success:3.0f} % succeed", flush=True
+            )
     if given.out:
         draw(curves, given.out, given.env)
     return curves
