@@ -47,7 +47,7 @@ def play(
 
 
 def learn(name: str, seed: int, seconds: float, generations: int = 10**6) -> list[tuple[float, float, float]]:
-    """Learn for so long: seconds gone by, mean return, share of TESTS new episodes that succeed, as learning goes on."""
+    """Learn for so long; as it goes on: seconds gone by, mean return, share of TESTS new episodes that succeed."""
     make = {"max_steps": STEPS, "vectorization_mode": "vector_entry_point"}
     envs = gymnasium.make_vec(name, num_envs=CANDIDATES * EPISODES, **make)
     tests = gymnasium.make_vec(name, num_envs=TESTS, **make)

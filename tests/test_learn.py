@@ -10,7 +10,7 @@ pytest.importorskip("gymnasium")
 pytest.importorskip("matplotlib")
 sys.path.insert(0, str(Path(__file__).parent.parent / "demos"))
 
-import learn  # noqa: E402
+import learn
 
 
 def test_a_few_generations_get_better_and_the_curve_is_drawn(tmp_path):
