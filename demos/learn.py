@@ -59,7 +59,7 @@ def learn(name: str, seed: int, seconds: float, generations: int = 10**6) -> lis
     for generation in range(generations + 1):
         gone = time.perf_counter() - start
         if generation % 5 == 0 or gone > seconds:
-            returns, success = play(tests, search.mean[None], 10**6)  # starts that nobody learns from
+            returns, success = play(tests, search.mean[None], 0)  # learning begins with 1000
             curve.append((gone, float(returns[0]), float(success[0])))
         if gone > seconds:
             break
