@@ -329,12 +329,12 @@ class Worlds:
     @property
     def mass(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
-        return self._inertia()[:, :, 0].copy()
+        return np.where(self.mask, self._inertia()[:, :, 0], 0.0)
 
     @property
     def moment(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
-        return self._inertia()[:, :, 2].copy()
+        return np.where(self.mask, self._inertia()[:, :, 2], 0.0)
 
     def set_mass(self, mass: ArrayLike, moment: ArrayLike, which: ArrayLike | None = None) -> None:
         """Masses and moments (k, bodies) of all worlds, or of `which`: positive; kinematic bodies keep theirs."""

@@ -304,14 +304,12 @@ def test_bad_sets_of_spaces_are_refused():
         worlds.restore(worlds.snapshot(1), [1, 2])
     with pytest.raises(ValueError, match="number must be"):
         worlds.joint(0)  # piles have none
-    jointed = [with_joints(601), with_joints(603)]
-    for space in jointed:
+    jointed = [pile(606, 5), pile(607, 5)]
+    for space, joint in zip(jointed, (pymunk.PinJoint, pymunk.PivotJoint)):
+        space.add(joint(space.bodies[0], space.bodies[1], (0, 0), (5, 0)))
         ra.attach(space)
-    kinds = [[type(joint) for joint in space.constraints] for space in jointed]
-    last = min(map(len, kinds)) - 1
-    assert kinds[0][: last + 1] != kinds[1][: last + 1]
     with pytest.raises(ValueError, match="the same kinds of joints"):
-        Worlds(jointed).joint(last)
+        Worlds(jointed).joint(0)
     assert Worlds(jointed).n == 2
 
 
