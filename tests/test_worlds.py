@@ -282,7 +282,8 @@ def test_parameters_of_worlds_of_different_sizes():
     before = worlds.states[:, 0, 3]
     worlds.step(DT, frames=60)
     gained = worlds.states[:, 0, 3] - before
-    np.testing.assert_allclose(gained, 50 - 100 * mu, rtol=5e-3)  # one side alone: stacks have their own
+    alone = worlds.mask.sum(axis=1) == 1  # a stack rocks as it goes
+    np.testing.assert_allclose(gained[alone], (50 - 100 * mu)[alone], rtol=5e-3)
     forces = worlds.contacts()
     for world in range(8):
         on_floor = (forces["world"] == world) & ((forces["body_a"] == -1) | (forces["body_b"] == -1))
