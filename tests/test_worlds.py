@@ -307,7 +307,8 @@ def test_bad_sets_of_spaces_are_refused():
         worlds.joint(0)  # piles have none
     jointed = [pile(606, 5), pile(607, 5)]
     for space, joint in zip(jointed, (pymunk.PinJoint, pymunk.PivotJoint)):
-        space.add(joint(space.bodies[0], space.bodies[1], (0, 0), (5, 0)))
+        one, other = list(space.bodies)[:2]
+        space.add(joint(one, other, (0, 0), (5, 0)))
         ra.attach(space)
     with pytest.raises(ValueError, match="the same kinds of joints"):
         Worlds(jointed).joint(0)
