@@ -14,7 +14,7 @@ ALIVE := sh -c 'while sleep 1; do printf .; done & trap "kill $$!" EXIT; "$$@"' 
 .venv/.installed: pyproject.toml constraints.txt
 	$(ALIVE) $(PYTHON) -m venv .venv
 	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt hatchling editables
-	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,docs,dev]'
+	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt --no-build-isolation -e '.[demos,flexible,studies,bring,gym,learn,docs,dev]'
 	touch $@
 
 run: .venv/.installed

@@ -1,6 +1,6 @@
-"""Many worlds at once: copies of one attached space that step without Chipmunk, Python or one another, in threads.
+"""Many worlds at once: copies of attached spaces that step without Chipmunk, Python or one another, in threads.
 
-    worlds = rigidarea.worlds.Worlds(space, 1024)
+    worlds = rigidarea.worlds.Worlds(space, 1024)  # or Worlds([one, another, ...], 1024)
     states = worlds.step(1 / 60, forces)
 
 A world is one block of memory (`contact/alone.py`); geometry is shared by all.
@@ -9,7 +9,9 @@ A world is one block of memory (`contact/alone.py`); geometry is shared by all.
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
@@ -20,20 +22,15 @@ from pymunk._chipmunk_cffi import ffi
 
 from .chipmunk import address_of
 from .contact import attached
-from .contact.arrays import Store
-from .contact.image import BODY_BYTES, SHAPE_BYTES, Image, image_of, kind_of, move_over
+from .contact.image import BODY_BYTES, SHAPE_BYTES, Image, image_of, move_over, rows_of
+from .contact.steppable import check_steppable
 from .gate import whole
-from .kernel.tables import (
-    MORE_PAIRS,
-    MORE_REGIONS,
-    MORE_WORK,
-    SUBSTEP,
-)
+from .kernel.tables import MORE_PAIRS, MORE_REGIONS, MORE_WORK, SUBSTEP
 from .outline import positive
-from .store import OFFSETS
 
 CONTACTS = np.dtype(
     [
+        ("world", "i4"),
         ("body_a", "i4"),
         ("body_b", "i4"),
         ("centroid", "f8", 2),
@@ -44,57 +41,94 @@ CONTACTS = np.dtype(
         ("speed", "f8"),
     ]
 )
-"""A contact of a world: the places of its bodies in `space.bodies` (-1: what is not among them); centroid (length,
-world), direction (unit, A to B), area (length^2), normal force and friction (force), closing speed (length/time)."""
+"""A contact: the number of its world; the places of its bodies in `space.bodies` (-1: what is not among them); centroid
+(length, world), direction (unit, A to B), area (length^2), normal force and friction (force), closing speed
+(length/time)."""
 
 
 class Worlds:
-    """n copies of an attached space, each with its own state and parameters.
+    """n copies of an attached space, or of several, each with its own state and parameters.
 
     They begin as the space is now, contacts included, and the space itself goes on by itself. A world's frame gives the
     same bits as the space's own would (where its tables have room), whatever the number of threads. They run
     `integration="implicit"`, without callbacks, velocity and position functions of the user's, and sleeping.
 
+    space: an attached space, or a sequence of them: world i is a copy of number i modulo their number. Arrays have as
+    many rows of bodies and shapes as the largest needs; what a world has no body for (`mask`) is 0, or ignored.
+    n: a multiple of the number of spaces; None: one of each.
     threads: how many step at once (>= 1); None: as many as there are processors.
     Raises ValueError for a space that is not attached, or has something that worlds have not, which is named.
     """
 
-    def __init__(self, space: pymunk.Space, n: int, threads: int | None = None) -> None:
-        contact = attached(space)
-        if contact is None:
+    def __init__(
+        self, space: pymunk.Space | Sequence[pymunk.Space], n: int | None = None, threads: int | None = None
+    ) -> None:
+        spaces = [space] if isinstance(space, pymunk.Space) else list(space)
+        if not spaces or not all(isinstance(one, pymunk.Space) for one in spaces):
+            raise ValueError(f"expected a space, or a sequence of them, got {space!r:.80}")
+        contacts = [contact for contact in map(attached, spaces) if contact is not None]
+        if len(contacts) < len(spaces):
             raise ValueError("expected an attached space: rigidarea.attach(space) first")
-        self.n = whole(n, "n", 1)
+        self.n = whole(len(spaces) if n is None else n, "n", 1)
+        if self.n % len(spaces):
+            raise ValueError(f"n must be a multiple of the number of spaces, {len(spaces)}, got {n}")
         self.threads = len(os.sched_getaffinity(0)) if threads is None else whole(threads, "threads", 1)
-        contact._between_steps("Worlds")
-        _refuse(space, contact._store)
         self._call = _functions()
-        self._outlines = contact._store  # shared: kept alive
-        contact._store.grow_joints(len(space.constraints))
-        contact._store.sync()
-        self._image, memory = image_of(contact._store, space)
+        self._outlines = stores = [contact._store for contact in contacts]  # shared: kept alive
+        for one, contact, store in zip(spaces, contacts, stores):
+            contact._between_steps("Worlds")
+            check_steppable(one, store)
+            store.grow_joints(len(one.constraints))
+            store.sync()
+        most = np.max([rows_of(store, one) for store, one in zip(stores, spaces)], axis=0).tolist()
+        made = [image_of(store, one, most) for store, one in zip(stores, spaces)]
+        self._images = [image for image, _ in made]
         self._make_room()
-        self._put(np.arange(self.n + 1), memory, 0)
-        self._kept = np.zeros(4 * self.bodies + 2 * self._image.shapes + 3)
+        for first, (_, memory) in enumerate(made):
+            self._put(np.arange(first, len(self._at), len(made)), memory, 0)
+        self._kept = np.zeros(4 * self.bodies + 2 * self._shapes + 3)
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
     def _make_room(self) -> None:
-        """Memory for all worlds, and one behind them that is how they begin; scratch for each thread."""
-        size = self._image.size
-        room = np.zeros((self.n + 1) * size + 64, np.uint8)
+        """Memory for all worlds, and behind them how those of each space begin; scratch for each thread."""
+        images, rows, size = self._images, self.n + len(self._images), self.nbytes
+        room = np.zeros(rows * size + 64, np.uint8)
         first = -address_of(ffi.from_buffer(room)) % 64
-        self._memory = room[first : first + (self.n + 1) * size].reshape(self.n + 1, size)
-        self._at = address_of(ffi.from_buffer(self._memory)) + size * np.arange(self.n + 1, dtype=np.uint64)
-        self._scratches = [self._image.scratch() for _ in range(self.threads)]
+        self._memory = room[first : first + rows * size].reshape(rows, size)
+        self._at = address_of(ffi.from_buffer(self._memory)) + size * np.arange(rows, dtype=np.uint64)
+        lengths = {name: max(image.lengths[name] for image in images) for name in images[0].lengths}
+        work = type(images[0].work)(*(max(same, key=len) for same in zip(*(image.work for image in images))))
+        largest = replace(images[0], lengths=lengths, work=work)
+        self._scratches = [largest.scratch() for _ in range(self.threads)]
+
+    def _by_space(self, numbers: NDArray[np.int64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
+        """The number of each space, and those of the worlds that are copies of it."""
+        if len(self._images) == 1:
+            yield 0, numbers
+            return
+        whose = numbers % len(self._images)
+        for first in np.unique(whose).tolist():
+            yield first, numbers[whose == first]
 
     @property
     def bodies(self) -> int:
-        """How many bodies a world has: those of `space.bodies`, in their order."""
-        return self._image.count
+        """How many bodies a world has, at the most: those of `space.bodies`, in their order."""
+        return max(image.count for image in self._images)
+
+    @property
+    def _shapes(self) -> int:
+        return max(image.shapes for image in self._images)
+
+    @property
+    def mask(self) -> NDArray[np.bool_]:
+        """(n, bodies): where there is a body. All are there, unless the spaces have different numbers of bodies."""
+        counts = np.resize([image.count for image in self._images], self.n)
+        return np.arange(self.bodies) < counts[:, None]
 
     @property
     def nbytes(self) -> int:
         """The memory that one world takes (bytes); what is shared, and the threads' scratch, is not in it."""
-        return self._image.size
+        return max(image.size for image in self._images)
 
     # --- stepping ---
 
@@ -113,7 +147,7 @@ class Worlds:
         numbers = self._numbers(which)
         shape = (len(numbers), self.bodies, 3)
         given = None if forces is None else _finite(forces, shape, "forces")
-        states = np.empty((len(numbers), self.bodies, 6))
+        states = np.zeros((len(numbers), self.bodies, 6))
         self._run(numbers, given, float(dt), frames, states)
         return states
 
@@ -128,8 +162,8 @@ class Worlds:
             pushed = ffi.NULL if forces is None else ffi.from_buffer(forces[part])
             table = ffi.from_buffer(self._scratches[k][0])
             own = at[part]
-            to = ffi.from_buffer(states[part])
-            return int(self._call.step(ffi.from_buffer(own), table, len(own), pushed, dt, frames, to))
+            to, rows = ffi.from_buffer(states[part]), states.shape[1]
+            return int(self._call.step(ffi.from_buffer(own), table, len(own), rows, pushed, dt, frames, to))
 
         if not len(numbers):
             return
@@ -153,7 +187,7 @@ class Worlds:
         self._grow(numbers[short])
         for count in np.unique(done[short]):
             again = short[done[short] == count]
-            ends = np.empty((len(again), *states.shape[1:]))
+            ends = np.zeros((len(again), *states.shape[1:]))
             self._run(
                 numbers[again], None if forces is None else forces[again], dt, frames - int(count), ends
             )
@@ -161,12 +195,14 @@ class Worlds:
 
     def _grow(self, numbers: NDArray[np.int64]) -> None:
         """All worlds have as much more room as these want (`Store.grow`), and begin with it when they are reset."""
-        old, memory, homes = self._image, self._memory, self._at
-        counters = old.counters_of(memory[numbers])
-        want = [int(counters[:, which].max()) for which in (MORE_PAIRS, MORE_REGIONS, MORE_WORK)]
-        self._image = old.larger(*want)
+        old, memory, homes, every = self._images, self._memory, self._at, len(self._images)
+        short = [self._table(old[first], "counters")[own] for first, own in self._by_space(numbers)]
+        want = np.concatenate(short)[:, [MORE_PAIRS, MORE_REGIONS, MORE_WORK]].max(axis=0)
+        self._images = [image.larger(*want.tolist()) for image in old]
         self._make_room()
-        move_over(old, memory, homes, self._image, self._memory, self._at, self._call)
+        for k, (image, larger) in enumerate(zip(old, self._images)):
+            own = slice(k, None, every)
+            move_over(image, memory[own], homes[own], larger, self._memory[own], self._at[own], self._call)
 
     def _numbers(self, which: ArrayLike | None) -> NDArray[np.int64]:
         if which is None:
@@ -184,8 +220,8 @@ class Worlds:
     @property
     def states(self) -> NDArray[np.float64]:
         """(n, bodies, 6): x, y of `position`, angle, vx, vy, angular velocity of each body now."""
-        out = np.empty((self.n, self.bodies, 6))
-        self._call.read(ffi.from_buffer(self._at), self.n, ffi.from_buffer(out))
+        out = np.zeros((self.n, self.bodies, 6))
+        self._call.read(ffi.from_buffer(self._at), self.n, self.bodies, ffi.from_buffer(out))
         return out
 
     def put(self, states: ArrayLike, which: ArrayLike | None = None) -> None:
@@ -193,39 +229,46 @@ class Worlds:
         numbers = self._numbers(which)
         given = _finite(states, (len(numbers), self.bodies, 6), "states")
         at = self._at[numbers]
-        self._call.write(ffi.from_buffer(at), len(at), ffi.from_buffer(given))
+        self._call.write(ffi.from_buffer(at), len(at), self.bodies, ffi.from_buffer(given))
 
     def reset(self, which: ArrayLike | None = None) -> None:
         """Worlds (all, or `which`) begin anew, as the space was when they were made; their parameters stay."""
-        self._put(self._numbers(which), self._memory[-1], int(self._at[-1]), self._kept)
+        for first, own in self._by_space(self._numbers(which)):
+            self._put(own, self._memory[self.n + first], int(self._at[self.n + first]), self._kept)
 
     def snapshot(self, world: int) -> WorldSnapshot:
         """A world as it is now, parameters included, for `restore`."""
         (number,) = self._numbers([world])
-        return WorldSnapshot(self._memory[number].copy(), int(self._at[number]), self._image)
+        image = self._images[number % len(self._images)]
+        return WorldSnapshot(self._memory[number, : image.size].copy(), int(self._at[number]), image)
 
     def restore(self, snapshot: WorldSnapshot, which: ArrayLike) -> None:
         """Worlds are as the one was of which the snapshot was taken. ValueError for a snapshot of other worlds."""
         numbers = self._numbers(which)
-        if not isinstance(snapshot, WorldSnapshot) or snapshot.image.family is not self._image.family:
+        images = [self._images[first] for first, _ in self._by_space(numbers)]
+        if not isinstance(snapshot, WorldSnapshot) or any(
+            image.family is not snapshot.image.family for image in images
+        ):
             raise ValueError(f"snapshot must be one that these worlds have taken, got {snapshot!r:.80}")
-        memory, home = snapshot.memory, snapshot.home
-        if snapshot.image is not self._image:  # worlds have more room since
-            memory = np.zeros((1, self._image.size), np.uint8)
-            home = address_of(ffi.from_buffer(memory))
-            move_over(
-                snapshot.image,
-                snapshot.memory[None],
-                np.array([snapshot.home], np.uint64),
-                self._image,
-                memory,
-                np.array([home], np.uint64),
-                self._call,
-            )
-        self._put(numbers, memory, home)
+        for _, own in self._by_space(numbers):
+            self._put(own, *self._brought_over(snapshot, self._images[own[0] % len(self._images)]))
+
+    def _brought_over(self, snapshot: WorldSnapshot, image: Image) -> tuple[Any, int]:
+        """A snapshot's memory and its address, in the form that worlds have now: they may have more room since."""
+        if snapshot.image is image:
+            return snapshot.memory, snapshot.home
+        memory = np.zeros((1, image.size), np.uint8)
+        home, old_home = address_of(ffi.from_buffer(memory)), np.array([snapshot.home], np.uint64)
+        at = np.array([home], np.uint64)
+        move_over(snapshot.image, snapshot.memory[None], old_home, image, memory, at, self._call)
+        return memory, home
 
     def _put(self, numbers: NDArray[np.int64], memory: Any, home: int, kept: Any = None) -> None:
-        at, words, size = self._at[numbers], self._image.fixups, self._image.size
+        """Worlds that are copies of one space."""
+        if not len(numbers):
+            return
+        image = self._images[numbers[0] % len(self._images)]
+        at, words, size = self._at[numbers], image.fixups, image.size
         own = ffi.NULL if kept is None else ffi.from_buffer(kept)
         self._call.put(
             ffi.from_buffer(at),
@@ -248,13 +291,18 @@ class Worlds:
         self, first: int, shape: tuple[int, ...], strides: tuple[int, ...], dtype: Any = np.float64
     ) -> Any:
         """Numbers of all worlds, in place: from the byte `first` of each world on."""
-        size = self._image.size
-        return np.ndarray((self.n, *shape), dtype, self._memory, first, (size, *strides))
+        return np.ndarray((self.n, *shape), dtype, self._memory, first, (self.nbytes, *strides))
+
+    def _table(self, image: Image, name: str) -> Any:
+        """(n, rows): a table of all worlds, in place; it is one where a world is of this image."""
+        kind = image.kinds[name]
+        return self._view(image.offsets[name], (image.lengths[name],), (kind.itemsize,), kind)
 
     @property
     def gravity(self) -> NDArray[np.float64]:
         """(n, 2), in place: set its elements (length/time^2). A view: ask for it again after a step."""
-        return self._view(self._image.space_at + self._image.offsets_of["space_gravity"], (2,), (8,))
+        image = self._images[0]  # spaces, bodies and shapes are at the same places in all
+        return self._view(image.space_at + image.offsets_of["space_gravity"], (2,), (8,))
 
     @property
     def damping(self) -> NDArray[np.float64]:
@@ -274,62 +322,72 @@ class Worlds:
         return self._material(0)
 
     def _material(self, more: int) -> NDArray[np.float64]:
-        image = self._image
+        image = self._images[0]
         first = image.shapes_at + image.offsets_of["shape_elasticity"] + more
-        return self._view(first, (image.shapes,), (SHAPE_BYTES,))
+        return self._view(first, (self._shapes,), (SHAPE_BYTES,))
 
     @property
     def mass(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
-        return self._inertia()[:, :, 0].copy()
+        return np.where(self.mask, self._inertia()[:, :, 0], 0.0)
 
     @property
     def moment(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
-        return self._inertia()[:, :, 2].copy()
+        return np.where(self.mask, self._inertia()[:, :, 2], 0.0)
 
     def set_mass(self, mass: ArrayLike, moment: ArrayLike, which: ArrayLike | None = None) -> None:
         """Masses and moments (k, bodies) of all worlds, or of `which`: positive; kinematic bodies keep theirs."""
         numbers = self._numbers(which)
-        own = self._inertia()
-        moves = np.isfinite(own[0, :, 0])
+        own, there = self._inertia()[numbers], self.mask[numbers]
+        moves = there & np.isfinite(own[:, :, 0])
         for given, k, name in ((mass, 0, "mass"), (moment, 2, "moment")):
             values = np.asarray(given, np.float64)
-            if values.shape != (len(numbers), self.bodies) or not (values > 0).all():
-                raise ValueError(
-                    f"{name} must be positive, ({len(numbers)}, {self.bodies}), got {given!r:.80}"
-                )
-            there = np.ix_(numbers, np.flatnonzero(moves))
-            own[:, :, k][there] = values[:, moves]
-            own[:, :, k + 1][there] = 1.0 / values[:, moves]
+            if values.shape != there.shape or not (values[there] > 0).all():
+                raise ValueError(f"{name} must be positive, {there.shape}, got {given!r:.80}")
+            own[moves, k], own[moves, k + 1] = values[moves], 1.0 / values[moves]
+        self._inertia()[numbers] = own
 
     def _inertia(self) -> NDArray[np.float64]:
         """(n, bodies, 4), in place: mass, its inverse, moment, its inverse."""
-        image = self._image
+        image = self._images[0]
         first = image.bodies_at + image.offsets_of["body_inverse_mass"] - 8
-        return self._view(first, (image.count, 4), (BODY_BYTES, 8))
+        return self._view(first, (self.bodies, 4), (BODY_BYTES, 8))
 
     def joint(self, number: int) -> NDArray[np.float64]:
-        """(n, m), in place: what `space.constraints[number]` is made of, as Chipmunk keeps it (a motor: its rate)."""
-        image = self._image
-        whole(number, "number", 0, len(image.joints) - 1)
-        first, numbers = image.joints[number]
+        """(n, m), in place: what `space.constraints[number]` is made of, as Chipmunk keeps it (a motor: its rate).
+
+        ValueError where there is no such joint, or where spaces have not the same kinds of joints up to it.
+        """
+        whole(number, "number", 0, min(len(image.joints) for image in self._images) - 1)
+        places = {image.joints[number] for image in self._images}
+        if len(places) > 1:
+            raise ValueError(f"expected spaces with the same kinds of joints up to number {number}")
+        ((first, numbers),) = places
         return self._view(first, (numbers,), (8,))
 
     # --- contacts ---
 
-    def contacts(self, world: int) -> NDArray[Any]:
-        """The contacts of a world's last substep, one CONTACTS row each."""
-        (number,) = self._numbers([world])
-        image, memory = self._image, self._memory[number]
-        counters, regions = image.table(memory, "counters"), image.table(memory, "regions")
-        pairs, shapes = image.table(memory, "pairs"), image.table(memory, "shapes")
-        live = regions[(regions["stamp"] == counters[SUBSTEP]) & (counters[SUBSTEP] > 0)]
-        touching = pairs[live["pair"]]
-        a, b = shapes[touching["a"]], shapes[touching["b"]]
+    def contacts(self, which: ArrayLike | None = None) -> NDArray[Any]:
+        """The contacts of the last substep of a world, or of several, or of all: one CONTACTS row each, by worlds."""
+        numbers = self._numbers(which)
+        found = [self._contacts(self._images[first], own) for first, own in self._by_space(numbers)]
+        out = np.concatenate(found) if found else np.zeros(0, CONTACTS)
+        return out[np.argsort(out["world"], kind="stable")]
+
+    def _contacts(self, image: Image, numbers: NDArray[np.int64]) -> NDArray[Any]:
+        """Of worlds that are copies of one space."""
+        regions, pairs, shapes = (self._table(image, name) for name in ("regions", "pairs", "shapes"))
+        now = self._table(image, "counters")[numbers, SUBSTEP][:, None]
+        row, place = np.nonzero((regions["stamp"][numbers] == now) & (now > 0))
+        world = numbers[row]
+        live = regions[world, place]
+        touching = pairs[world, live["pair"]]
+        a, b = shapes[world, touching["a"]], shapes[world, touching["b"]]
         turned = a["ident"] > b["ident"]  # A was added first; in the tables it goes by place
         sign = np.where(turned, -1.0, 1.0)
         out = np.zeros(len(live), CONTACTS)
+        out["world"] = world
         out["body_a"] = image.place_of[np.where(turned, b["body"], a["body"])]
         out["body_b"] = image.place_of[np.where(turned, a["body"], b["body"])]
         out["centroid"] = np.stack([live["x"], live["y"]], 1)
@@ -349,45 +407,6 @@ class WorldSnapshot:
         self.memory, self.home, self.image = memory, home, image
 
 
-def _refuse(space: pymunk.Space, store: Store) -> None:
-    """ValueError for what worlds have not."""
-    state, off = store.state[0], {name: int(store.state[0][name]) for name in OFFSETS}
-    why = []
-    if state["explicit"]:
-        why.append('integration="explicit"')
-    if any(
-        getattr(handler, f"_{phase}") not in (None, pymunk.empty_callback)
-        for handler in space._handlers.values()
-        for phase in ("begin", "pre_solve", "post_solve", "separate")
-    ):
-        why.append("collision callbacks")
-    if space.sleep_time_threshold != float("inf"):
-        why.append("sleeping (sleep_time_threshold)")
-    ours = {
-        "velocity": {off["velocity_func"], off["velocity_func_again"]},
-        "position": {off["position_func"], off["position_func_again"], int(state["hold_at"])},
-    }
-    for kind, known in ours.items():
-        words = (
-            int(ffi.cast("uintptr_t *", body._body)[off[f"body_{kind}_func"] // 8]) for body in space.bodies
-        )
-        if any(word not in known for word in words):
-            why.append(f"a {kind}_func")
-    for joint in space.constraints:
-        kind = kind_of(joint)
-        words = ffi.cast("uintptr_t *", joint._constraint)
-        if kind is None:
-            why.append(f"a {type(joint).__name__} that is none of pymunk's")
-        elif kind.force and int(words[kind.force // 8]) != kind.own_force:
-            why.append("a spring's own force function")
-        if joint.pre_solve is not None or joint.post_solve is not None:
-            why.append("callbacks of joints")
-    if why:
-        raise ValueError(
-            f"expected a space that can be stepped without Python, got one with {', '.join(dict.fromkeys(why))}"
-        )
-
-
 @lru_cache(maxsize=1)
 def _functions() -> Any:
     from types import SimpleNamespace
@@ -395,9 +414,9 @@ def _functions() -> Any:
     from .contact import alone
 
     kinds = {
-        "step": "long long(*)(void *, void *, long long, void *, double, long long, void *)",
-        "read": "void(*)(void *, long long, void *)",
-        "write": "void(*)(void *, long long, void *)",
+        "step": "long long(*)(void *, void *, long long, long long, void *, double, long long, void *)",
+        "read": "void(*)(void *, long long, long long, void *)",
+        "write": "void(*)(void *, long long, long long, void *)",
         "put": "void(*)(void *, long long, void *, long long, long long, void *, long long, void *)",
         "enlarged": "void(*)(void *, long long, void *)",
     }

@@ -32,6 +32,8 @@ def test_every_python_block_runs_and_draws_its_picture(page, tmp_path, monkeypat
     pygame = pytest.importorskip("pygame")
     if page.stem in ("learning", "worlds"):
         pytest.importorskip("gymnasium")
+    if page.stem == "worlds":
+        pytest.importorskip("distributed")
     monkeypatch.chdir(tmp_path)
     pages.run(page, tmp_path)
     for block in pages.blocks(page):

@@ -203,6 +203,118 @@ def test_what_is_not_finite_is_said_and_the_world_is_as_it_was():
     np.testing.assert_array_equal(worlds.states[1], states[1])
 
 
+def different(threads: int = 2, n: int = 12) -> tuple[list[pymunk.Space], Worlds]:
+    """Piles of 7 to 30 bodies and scenes with joints, of which n worlds are made in turn."""
+    spaces = [pile(600, 7), with_joints(601), pile(602, 30), with_joints(603), pile(604), pile(605, 12)]
+    for space in spaces:
+        ra.attach(space)
+    return spaces, Worlds(spaces, n, threads=threads)
+
+
+@pytest.mark.parametrize("threads", [1, 2, 3])
+def test_worlds_of_different_spaces_do_what_each_alone_does(threads):
+    """Each is as one of Worlds of its own space: forces, resets, snapshots, contacts, room as it grows."""
+    spaces, worlds = different(threads)
+    alone = [Worlds(space, 1, threads=1) for space in spaces]
+    counts = [len(space.bodies) for space in spaces]
+    assert worlds.bodies == max(counts) and len(set(counts)) > 3
+    np.testing.assert_array_equal(worlds.mask.sum(axis=1), counts + counts)
+    draw = np.random.default_rng(2)
+    kept, small = None, worlds.nbytes
+    for frame in range(150):
+        forces = draw.normal(0, 3000, (6, worlds.bodies, 3))
+        states = worlds.step(DT, np.concatenate([forces, forces]))
+        assert not states[~worlds.mask].any()
+        for i, (one, count) in enumerate(zip(alone, counts)):
+            ends = one.step(DT, forces[i : i + 1, :count])
+            for world in (i, i + 6):
+                np.testing.assert_array_equal(states[world, :count], ends[0])
+        if frame == 40:
+            kept = [(worlds.snapshot(i + 6), one.snapshot(0)) for i, one in enumerate(alone)]
+        if frame == 60:
+            worlds.reset([0, 1, 6, 7])
+            alone[0].reset()
+            alone[1].reset()
+        if frame == 120:
+            for i in (2, 3):
+                worlds.restore(kept[i][0], [i, i + 6])
+                alone[i].restore(kept[i][1], [0])
+    assert worlds.nbytes > small  # some had too little room: all have grown
+    np.testing.assert_array_equal(worlds.states[6:], worlds.states[:6])
+    every = worlds.contacts()
+    for world in range(12):
+        mine, own = every[every["world"] == world], alone[world % 6].contacts(0)
+        for name in set(own.dtype.names) - {"world"}:
+            np.testing.assert_array_equal(np.sort(mine[name], axis=0), np.sort(own[name], axis=0))
+    np.testing.assert_array_equal(worlds.contacts([7, 2]), every[np.isin(every["world"], [2, 7])])
+    assert len(every) > 20
+
+
+def box_of(side: float) -> pymunk.Space:
+    """A box of this side on a slope of 1 in 2 by gravity; above it one more, of every second space."""
+    space = pymunk.Space()
+    space.gravity = 50, -100
+    floor = pymunk.Segment(space.static_body, (-500, 0), (5000, 0), 5)
+    floor.friction = 0.5
+    space.add(floor)
+    for k in range(1 + int(side) % 2):
+        box = pymunk.Body(side, side**3 / 6)
+        box.position = 0, 5 + side * (0.5 + k)
+        shape = pymunk.Poly.create_box(box, (side, side))
+        shape.friction = 0.5
+        space.add(box, shape)
+    ra.attach(space)
+    return space
+
+
+def test_parameters_of_worlds_of_different_sizes():
+    """Boxes of four sides slide at g (sin - mu cos), mu of the world's own, and weigh what the world says."""
+    sides = [10.0, 15.0, 20.0, 25.0]
+    worlds = Worlds([box_of(side) for side in sides], 8)
+    np.testing.assert_array_equal(worlds.mass[:4], [[10, 0], [15, 15], [20, 0], [25, 25]])
+    mu = np.linspace(0.1, 0.4, 8)
+    worlds.friction[:] = np.sqrt(mu)[:, None]
+    worlds.damping[:] = 1.0
+    masses = np.where(worlds.mask, 3.0 + np.arange(8)[:, None], 0.0)
+    worlds.set_mass(masses, np.where(worlds.mask, 1e3, 0.0))
+    np.testing.assert_array_equal(worlds.mass, masses)
+    worlds.step(DT, frames=30)  # they sink to where they rest
+    before = worlds.states[:, 0, 3]
+    worlds.step(DT, frames=60)
+    gained = worlds.states[:, 0, 3] - before
+    alone = worlds.mask.sum(axis=1) == 1  # a stack rocks as it goes
+    np.testing.assert_allclose(gained[alone], (50 - 100 * mu)[alone], rtol=5e-3)
+    forces = worlds.contacts()
+    for world in range(8):
+        on_floor = (forces["world"] == world) & ((forces["body_a"] == -1) | (forces["body_b"] == -1))
+        assert forces["force"][on_floor].sum() == pytest.approx(100 * masses[world].sum(), rel=5e-3)
+    np.testing.assert_array_equal(worlds.contacts(3)["world"], 3)
+
+
+def test_bad_sets_of_spaces_are_refused():
+    spaces, worlds = different()
+    with pytest.raises(ValueError, match="n must be a multiple of the number of spaces, 6, got 7"):
+        Worlds(spaces, 7)
+    with pytest.raises(ValueError, match="expected a space, or a sequence of them"):
+        Worlds([])
+    with pytest.raises(ValueError, match="expected a space, or a sequence of them"):
+        Worlds([spaces[0], None])
+    with pytest.raises(ValueError, match="attach"):
+        Worlds([spaces[0], pile(1)])
+    with pytest.raises(ValueError, match="snapshot must be one that these worlds have taken"):
+        worlds.restore(worlds.snapshot(1), [1, 2])
+    with pytest.raises(ValueError, match="number must be"):
+        worlds.joint(0)  # piles have none
+    jointed = [pile(606, 5), pile(607, 5)]
+    for space, joint in zip(jointed, (pymunk.PinJoint, pymunk.PivotJoint)):
+        one, other = list(space.bodies)[:2]
+        space.add(joint(one, other, (0, 0), (5, 0)))
+        ra.attach(space)
+    with pytest.raises(ValueError, match="the same kinds of joints"):
+        Worlds(jointed).joint(0)
+    assert Worlds(jointed).n == 2
+
+
 def spring_of_ones_own(space: pymunk.Space) -> None:
     a, b = list(space.bodies)[:2]
     spring = pymunk.DampedSpring(a, b, (0, 0), (0, 0), 10, 10, 1)

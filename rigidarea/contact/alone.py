@@ -195,12 +195,15 @@ def _read(s: Any, world: Any, out: np.ndarray) -> None:
         out[k + 5] = floats(body + s.body_spin, 1)[0]
 
 
-@callback("int64(uintp, uintp, int64, uintp, float64, int64, uintp)")
-def step(which: int, scratch: int, n: int, forces: int, dt: float, frames: int, states: int) -> int:
+@callback("int64(uintp, uintp, int64, int64, uintp, float64, int64, uintp)")
+def step(
+    which: int, scratch: int, n: int, rows: int, forces: int, dt: float, frames: int, states: int
+) -> int:
     """Step n worlds by so many frames each, one after the other; how many of them could not (WORLD.outcome).
 
     which: n addresses of worlds. scratch: its length, and as often a word of the state record and what is to be there.
-    forces: (n, bodies, 3), in every frame; 0: none. states: (n, bodies, 6), where they are at the end; 0: not asked.
+    forces: (n, rows, 3), in every frame; 0: none. states: (n, rows, 6), where they are at the end; 0: not asked. Rows
+    beyond those of a world's bodies are left alone.
     """
     failed = 0
     room = words(scratch, 1)[0]
@@ -219,36 +222,36 @@ def step(which: int, scratch: int, n: int, forces: int, dt: float, frames: int, 
             world.outcome = TOO_SMALL
             if _has_room(load_tables(s)):
                 if forces != 0:
-                    _push(s, world, floats(forces + 24 * i * world.count, 3 * world.count), 1.0)
+                    _push(s, world, floats(forces + 24 * i * rows, 3 * world.count), 1.0)
                 world.outcome = _step(s, world, dt)
                 if world.outcome != DONE and forces != 0:
-                    _push(s, world, floats(forces + 24 * i * world.count, 3 * world.count), -1.0)
+                    _push(s, world, floats(forces + 24 * i * rows, 3 * world.count), -1.0)
             if world.outcome != DONE:
                 failed += 1
                 break
             world.done += 1
         if states != 0:
-            _read(s, world, floats(states + 48 * i * world.count, 6 * world.count))
+            _read(s, world, floats(states + 48 * i * rows, 6 * world.count))
     return failed
 
 
-@callback("void(uintp, int64, uintp)")
-def read(which: int, n: int, states: int) -> None:
-    """The states of n worlds: (n, bodies, 6)."""
+@callback("void(uintp, int64, int64, uintp)")
+def read(which: int, n: int, rows: int, states: int) -> None:
+    """The states of n worlds: (n, rows, 6)."""
     addresses = words(which, n)
     for i in range(n):
         world = array_at(addresses[i], (1,), WORLD)[0]
-        _read(_state(world), world, floats(states + 48 * i * world.count, 6 * world.count))
+        _read(_state(world), world, floats(states + 48 * i * rows, 6 * world.count))
 
 
-@callback("void(uintp, int64, uintp)")
-def write(which: int, n: int, states: int) -> None:
-    """Put the bodies of n worlds there, as they are to move: (n, bodies, 6)."""
+@callback("void(uintp, int64, int64, uintp)")
+def write(which: int, n: int, rows: int, states: int) -> None:
+    """Put the bodies of n worlds there, as they are to move: (n, rows, 6)."""
     addresses = words(which, n)
     for i in range(n):
         world = array_at(addresses[i], (1,), WORLD)[0]
         s = _state(world)
-        given = array_at(states + 48 * i * world.count, (world.count, 6), np.float64)
+        given = array_at(states + 48 * i * rows, (world.count, 6), np.float64)
         for j in range(world.count):
             body = world.bodies_at + j * world.body_size
             c = math.cos(given[j, 2])

@@ -128,8 +128,19 @@ def _lay_out(offsets: dict[str, int], lengths: dict[str, int], kinds: dict[str, 
     return at
 
 
-def image_of(store: Store, space: pymunk.Space) -> tuple[Image, Any]:
-    """The form of a world of a space, and one, as if it began at address 0."""
+def rows_of(store: Store, space: pymunk.Space) -> tuple[int, int, int]:
+    """How many bodies (those outside the space too), shapes and joints a world of the space has."""
+    own = {address_of(body._body) for body in space.bodies}
+    used = {int(a) for a in store.tables.bodies["address"][: store.tables.counters[BODIES]] if a}
+    return len(own | used), len(space.shapes), len(space.constraints)
+
+
+def image_of(store: Store, space: pymunk.Space, rows: tuple[int, int, int] = (0, 0, 0)) -> tuple[Image, Any]:
+    """The form of a world of a space, and one, as if it began at address 0.
+
+    rows: of bodies, shapes, joints, for so many of which there is a place at least (`rows_of`): so worlds of different
+    spaces have theirs at the same places.
+    """
     from . import alone, frame
 
     state, tables = store.state[0], store.tables
@@ -153,11 +164,15 @@ def image_of(store: Store, space: pymunk.Space) -> tuple[Image, Any]:
     space_at = block(struct := _copied(space._space, SPACE_BYTES))
     joint_at = block(hidden := np.zeros(4, np.uint64))
     lists = {
-        name: block(np.zeros(2 + len(rows), np.uint64))
-        for name, rows in (("space_bodies", bodies), ("space_constraints", joints))
+        name: block(np.zeros(2 + max(n, len(listed)), np.uint64))
+        for name, listed, n in (("space_bodies", bodies, rows[0]), ("space_constraints", joints, rows[2]))
     }
-    body_structs = np.stack([_copied(ffi.cast("void *", address), BODY_BYTES) for address in held])
-    shape_structs = np.stack([_copied(shape._shape, SHAPE_BYTES) for shape in shapes])
+    body_structs = np.zeros((max(rows[0], len(held)), BODY_BYTES), np.uint8)
+    shape_structs = np.zeros((max(rows[1], len(shapes)), SHAPE_BYTES), np.uint8)
+    for i, address in enumerate(held):
+        body_structs[i] = _copied(ffi.cast("void *", address), BODY_BYTES)
+    for i, shape in enumerate(shapes):
+        shape_structs[i] = _copied(shape._shape, SHAPE_BYTES)
     bodies_at, shapes_at = block(body_structs), block(shape_structs)
     joint_structs = [_copied(joint._constraint, _size_of_joint(joint)) for joint in joints]
     joints_at = [block(one) for one in joint_structs]
@@ -201,10 +216,10 @@ def image_of(store: Store, space: pymunk.Space) -> tuple[Image, Any]:
     for name, there in lists.items():
         point(struct, offsets_of[name] // 8, space_at, there)
         listed = next(array for at, array in memory if at == there)
-        listed[0] = len(listed) - 2
+        own_structs = [b._body for b in bodies] if name == "space_bodies" else [j._constraint for j in joints]
+        listed[0] = len(own_structs)
         point(listed, 1, there, there + 16)
-        rows = [b._body for b in bodies] if name == "space_bodies" else [j._constraint for j in joints]
-        for i, row in enumerate(rows):
+        for i, row in enumerate(own_structs):
             point(listed, 2 + i, there, where[address_of(row)])
     for i in range(len(held)):
         words = body_structs[i].view(np.uint64)
