@@ -287,7 +287,9 @@ def disc_convex(
     mine = B_EDGE if own == A_EDGE else A_EDGE
     r2 = r * r
     reach = r + 2.0 * noise
-    near = 2.0 * r * (noise + ROUND * r)  # radius squared less distance squared: undecided below
+    near = 2.0 * r * (noise + ROUND * r)
+    within2 = r2 - near  # nearer than that, squared: certainly within the circle
+    beyond2 = r2 + near  # farther: certainly beyond
     v = 0
     crossed = 0
     open_ = False  # left, and not entered since, at (out_x, out_y)
@@ -303,17 +305,17 @@ def disc_convex(
         py = points[begin + first, 1]
         wx = kx - px
         wy = ky - py
-        p_in = r2 - (wx * wx + wy * wy) > 0.0
+        p_in = wx * wx + wy * wy < within2
         for e in range(begin + first, begin + min(first + LEAF, count)):
             k = e + 1 if e + 1 < begin + count else begin
             qx = points[k, 0]
             qy = points[k, 1]
             vx = kx - qx
             vy = ky - qy
-            deep = r2 - (vx * vx + vy * vy)
-            if abs(deep) <= near:
+            far2 = vx * vx + vy * vy
+            q_in = far2 <= beyond2
+            if q_in and far2 >= within2:
                 return TANGLED
-            q_in = deep > 0.0
             a = arcs[e, 2]
             enters = False
             leaves = False
@@ -327,14 +329,17 @@ def disc_convex(
                     length2 = ux * ux + uy * uy
                     cuts = p_in or q_in
                     if not cuts:
-                        deep = r2 * length2 - turn * turn
-                        room = near * length2
-                        if turn < 0.0 and deep <= room:
-                            return 0  # the whole disc lies beyond this edge, or what does not is rounding
-                        if 0.0 < ux * wx + uy * wy < length2:
-                            if deep <= room and deep >= -room:
+                        far2 = turn * turn
+                        if far2 > beyond2 * length2:
+                            if turn < 0.0:
+                                return 0  # the whole disc lies beyond this edge
+                        else:
+                            certain = far2 < within2 * length2
+                            if not certain and turn < 0.0:
+                                return 0  # or what does not is rounding
+                            cuts = 0.0 < ux * wx + uy * wy < length2
+                            if cuts and not certain:
                                 return TANGLED
-                            cuts = deep > 0.0
                     if cuts:
                         inverse = 1.0 / math.sqrt(length2)
                         ux *= inverse
