@@ -34,7 +34,7 @@ test-all: .venv/.installed lint
 # Machine code ahead of time (minutes), and dist/*.whl with it; on Linux audited as what its name promises.
 wheel: .venv/.installed
 	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt ziglang auditwheel
-	$(BIN)/python -m rigidarea.compile $(OUT)/library
+	$(BIN)/python tools/library.py $(OUT)/library
 	rm -rf dist
 	RIGIDAREA_LIBRARY=$(OUT)/library $(BIN)/python -m pip wheel -q --no-deps --no-build-isolation -w dist .
 	$(BIN)/python tools/audit.py dist/*.whl
