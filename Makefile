@@ -34,7 +34,7 @@ test-all: .venv/.installed lint
 # Machine code ahead of time (minutes), and dist/*.whl with it; on Linux audited as what its name promises.
 wheel: .venv/.installed
 	$(ALIVE) $(BIN)/python -m pip install -q --disable-pip-version-check -c constraints.txt ziglang auditwheel
-	$(BIN)/python -m rigidarea.compile $(OUT)/library
+	$(BIN)/python tools/library.py $(OUT)/library
 	rm -rf dist
 	RIGIDAREA_LIBRARY=$(OUT)/library $(BIN)/python -m pip wheel -q --no-deps --no-build-isolation -w dist .
 	$(BIN)/python tools/audit.py dist/*.whl
@@ -43,9 +43,8 @@ wheel: .venv/.installed
 test-wheel:
 	rm -rf $(OUT)/installed
 	$(ALIVE) $(PYTHON) -m venv $(OUT)/installed
-	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check dist/*.whl
-	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check pytest pytest-xdist hypothesis mpmath scipy threadpoolctl
-	cp -r tests docs demos README.md pyproject.toml $(OUT)/installed
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check "$$(echo dist/*.whl)[all,dev]"
+	cp -r tests tools docs demos README.md mkdocs.yml pyproject.toml $(OUT)/installed
 	cd $(OUT)/installed && $(IN)/python -m pytest -n 2 -m 'not slow'
 
 # Measures anew all that README.md and docs/ show, and renews those pages: hours. `make docs` says what is of another

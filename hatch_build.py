@@ -1,6 +1,6 @@
 """Build hook of the wheel: with machine code, where it has been made before, else numba is one of its dependencies.
 
-RIGIDAREA_LIBRARY names the folder that `python -m rigidarea.compile` has written (`make wheel` does both).
+RIGIDAREA_LIBRARY names the folder that `python tools/library.py` has written (`make wheel` does both).
 """
 
 from __future__ import annotations

@@ -10,8 +10,10 @@ from pathlib import Path
 
 import pytest
 
-ROOT = Path(__file__).parent.parent
-PACKAGE = ROOT / "rigidarea"
+import rigidarea
+
+PACKAGE = Path(rigidarea.__file__).parent
+ROOT = PACKAGE.parent
 KERNELS = sorted((PACKAGE / "kernel").glob("*.py"))
 #: What `import rigidarea` may bring with it; cffi and llvmlite come with pymunk and numba.
 CORE = {"pymunk", "numpy", "numba", "llvmlite", "shapely", "cffi", "_cffi_backend"}

@@ -7,6 +7,7 @@ import os
 import shutil
 import subprocess
 import sys
+import types
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -148,11 +149,24 @@ def test_arrays_that_a_library_gives_are_freed(both: Any) -> None:
     assert peak() - before < 50_000  # KB; all of them would be 600,000
 
 
-def test_what_python_calls_is_found(both: Any) -> None:
-    """By the names in the code of functions that are no kernels: those that are known to be called so."""
-    from rigidarea.compile import ahead
+def kernels() -> dict[str, Any]:
+    """All that Python calls, in this back end, by their names."""
+    from rigidarea.compile.callers import called_from_python, modules
 
-    found = set(ahead.called_from_python())
+    if rigidarea.backend() == "library":
+        from rigidarea.compile.library import Function, Text
+
+        return called_from_python(lambda thing: isinstance(thing, (Function, Text)), modules())
+    if rigidarea.backend() == "compiled":
+        from rigidarea.compile.ahead import is_kernel
+
+        return called_from_python(is_kernel, modules())
+    pytest.skip("kernels are functions as others")
+
+
+def test_what_python_calls_is_found() -> None:
+    """By the names in the code of functions that are no kernels: those that are known to be called so."""
+    found = set(kernels())
     assert {
         "rigidarea.store.overlap_by_address",
         "rigidarea.contact.geometry.read_shapes",
@@ -160,6 +174,70 @@ def test_what_python_calls_is_found(both: Any) -> None:
         "rigidarea.flexible.run.run_steps",
     } <= found
     assert "rigidarea.kernel.meet.meet" not in found
+
+
+CALLING = """
+import functools
+from rigidarea.compile import callers
+from rigidarea.compile.callers import name_of as by_name, modules as not_called
+def plain(): return by_name(1)
+def attribute(): return callers.name_of(1)
+def imported():
+    from rigidarea.compile.callers import name_of as here
+    return here(1)
+def imported_module():
+    from rigidarea.compile import callers as there
+    return [there.name_of(x) for x in ()]
+@functools.cache
+def cached(): return by_name(1)
+class Method:
+    @functools.cached_property
+    def late(self): return by_name(1)
+    @property
+    def asked(self): return (lambda: by_name(1))()
+    @staticmethod
+    def loose(): return by_name(1)
+"""
+
+
+@pytest.mark.parametrize("way", ["plain", "attribute", "imported", "imported_module", "cached", "Method"])
+def test_callers_are_found_however_they_name_a_kernel(way: str) -> None:
+    from rigidarea.compile import callers
+
+    module = types.ModuleType("rigidarea.calling")
+    vars(module)["__package__"] = "rigidarea"
+    exec(CALLING, vars(module))
+    for name in set(vars(module)) & {"plain", "attribute", "imported", "imported_module", "cached", "Method"}:
+        if name != way:
+            delattr(module, name)
+    kernel = {callers.name_of, callers.modules}
+    found = callers.called_from_python(
+        lambda thing: isinstance(thing, types.FunctionType) and thing in kernel, [module]
+    )
+    assert set(found) == {"rigidarea.compile.callers.name_of"}
+
+
+def test_the_library_has_all_that_python_calls() -> None:
+    """A kernel that it has not is interpreted; a callback that it has not stops the import."""
+    if rigidarea.backend() != "library":
+        pytest.skip("there is none")
+    from rigidarea.compile.library import Text
+
+    missing = [name for name, kernel in kernels().items() if isinstance(kernel, Text)]
+    assert not missing
+
+
+@pytest.mark.slow  # all that is flexible is compiled for it, where it was not before
+def test_the_rehearsal_calls_all_that_python_calls() -> None:
+    """So a kernel that is new is in the next library, or this says that `rehearsal` does not know it."""
+    if rigidarea.backend() != "compiled":
+        pytest.skip("where numba compiles")
+    from rigidarea.compile import ahead, rehearsal
+
+    calls = ahead.Calls()
+    with calls:
+        rehearsal.rehearse()
+    assert set(kernels()) <= set(calls.noted)
 
 
 def run(program: str, **environment: str) -> subprocess.CompletedProcess[str]:

@@ -16,20 +16,16 @@ returned.
 from __future__ import annotations
 
 import copy
-import dis
-import importlib
 import importlib.util
 import inspect
 import json
-import pkgutil
 import platform
 import subprocess
 import sys
 import sysconfig
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from pathlib import Path
-from types import CodeType, FunctionType, ModuleType
 from typing import Any
 
 from llvmlite import binding, ir
@@ -41,15 +37,11 @@ from numba.np import arrayobj
 from numba.np.numpy_support import as_dtype
 
 from . import compiled, whole
+from .callers import called_from_python, modules, name_of
 from .chosen import FILES
 
 #: Instruction sets by processor: the first is what every one has that is worth while, `runtime.c` says which is best.
 LEVELS = {"x86_64": ("x86-64-v2", "x86-64-v3")}
-#: Rooms whose functions judge the package, or show it, and need numba where they call kernels of their own.
-BESIDE = (
-    "study", "compat", "draw", "demos", "compile", "gym", "gallery", "__main__",
-    "pygame_util", "pyglet_util", "matplotlib_util",
-)  # fmt: skip
 
 types: Any = numba_types  # mypy knows some of it
 _WORD = ir.IntType(64)
@@ -59,72 +51,15 @@ _WORD = ir.IntType(64)
 # ----------------------------------------------------------------------------------------------------------
 
 
-def modules() -> list[ModuleType]:
-    """All modules of the package whose users' calls are machine code."""
-    package = importlib.import_module(__name__.split(".")[0])
-    names = [m.name for m in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")]
-    return [importlib.import_module(name) for name in names if name.split(".")[1] not in BESIDE]
-
-
-def name_of(function: Any) -> str:
-    """Of a kernel or a callback: its module, and its name in it."""
-    python = getattr(function, "py_func", None) or getattr(function, "__wrapped__", function)
-    return f"{python.__module__}.{python.__qualname__}"
-
-
-def _is_kernel(thing: Any) -> bool:
+def is_kernel(thing: Any) -> bool:
+    """Whether it is one that numba compiles."""
     return isinstance(thing, compiled.Whole)
 
 
-def _codes(thing: Any) -> Iterator[CodeType]:
-    """The code of a function or of a class's functions, and of the functions within."""
-    if isinstance(thing, CodeType):
-        yield thing
-        for constant in thing.co_consts:
-            if isinstance(constant, CodeType):
-                yield from _codes(constant)
-    elif isinstance(thing, FunctionType):
-        yield from _codes(thing.__code__)
-    elif isinstance(thing, (staticmethod, classmethod)):
-        yield from _codes(thing.__func__)
-    elif isinstance(thing, property):
-        yield from (code for f in (thing.fget, thing.fset) if f for code in _codes(f))
-    elif hasattr(thing, "func") and isinstance(thing.func, FunctionType):  # a cached property
-        yield from _codes(thing.func)
-    elif inspect.isclass(thing):
-        yield from (code for member in vars(thing).values() for code in _codes(member))
-
-
-def called_from_python() -> dict[str, Any]:
-    """The kernels that functions of the package name which are none, by their names."""
-    found = {}
-    for module in modules():
-        own = vars(module)
-        for thing in list(own.values()):
-            if (
-                getattr(thing, "__module__", None) != module.__name__
-                or _is_kernel(thing)
-                or isinstance(thing, CFunc)
-            ):
-                continue
-            for code in _codes(thing):
-                for kernel in filter(_is_kernel, _named(code, own)):
-                    found[name_of(kernel)] = kernel
-    return found
-
-
-def _named(code: CodeType, own: dict[str, Any]) -> Iterator[Any]:
-    """What code names of its module's globals, and of modules that are among them."""
-    there = None
-    for step in dis.get_instructions(code):
-        if step.opname in ("LOAD_GLOBAL", "LOAD_NAME"):
-            there = own.get(step.argval)
-            yield there
-        elif step.opname in ("LOAD_ATTR", "LOAD_METHOD"):
-            there = vars(there).get(step.argval) if isinstance(there, ModuleType) else None
-            yield there
-        else:
-            there = None
+def callbacks() -> list[Any]:
+    """All of the package."""
+    found = {id(c): c for module in modules() for c in vars(module).values() if isinstance(c, CFunc)}
+    return list(found.values())
 
 
 class Calls:
@@ -390,17 +325,20 @@ def _trampolines(codegen: Any) -> bytes:
 def make(folder: Path, rehearse: Callable[[], None]) -> tuple[Path, Path]:
     """The library of all that `rehearse` has Python call, and of all callbacks, and the list of what is in it.
 
-    Raises RuntimeError for kernels that functions of the package call, and `rehearse` does not.
+    Raises RuntimeError where `whole` has kept nothing, and for kernels that functions of the package call, and
+    `rehearse` does not.
     """
-    whole.kept = {}
+    if whole.kept is None:
+        raise RuntimeError(
+            "expected RIGIDAREA_AHEAD in the environment when the package is imported, it was not"
+        )
     calls = Calls()
     with calls:
         rehearse()
-    missed = sorted(set(called_from_python()) - set(calls.noted))
+    missed = sorted(set(called_from_python(is_kernel, modules())) - set(calls.noted))
     if missed:
         raise RuntimeError(f"expected compile.rehearsal to call {', '.join(missed)}, it does not")
-    callbacks = {id(c): c for module in modules() for c in vars(module).values() if isinstance(c, CFunc)}
-    back, called = units(calls, list(callbacks.values()), whole.kept)
+    back, called = units(calls, callbacks(), whole.kept)
     folder.mkdir(parents=True, exist_ok=True)
     write(folder, back, called)
     return folder / FILES[0].name, folder / FILES[1].name

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import contextlib
 import copy
+import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -20,8 +21,9 @@ from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from .interrupts import put_off
 
 #: Where code that runs is kept as it is before it is optimized (LLVM's bitcode), by the names of its functions:
-#: `ahead` makes machine code for others of it. None: nowhere.
-kept: dict[str, bytes] | None = None
+#: `ahead` makes machine code for others of it. None: nowhere. Callbacks are compiled as the package is imported, so the
+#: environment says it.
+kept: dict[str, bytes] | None = {} if os.environ.get("RIGIDAREA_AHEAD") else None
 
 
 class _Part(JITCodeLibrary):  # type: ignore[misc]
