@@ -1,7 +1,8 @@
 """What a copy of an attached space is told, so that it goes on as its original does.
 
-Pairs with their regions, the shapes' boxes, and the impulses that joints start from, which pymunk's copies forget.
-Pairs keep their numbers: what comes first where two are equally high is decided by them.
+All that outlives a frame in our tables, but for what says whose row it is, and what pymunk's copies forget: impulses of
+joints, who sleeps. Pairs keep their numbers: what comes first where two are equally high is decided by them. The trees of
+boxes keep their form: in which order new pairs are found is decided by that.
 """
 
 from __future__ import annotations
@@ -13,12 +14,13 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, centre_of, put_centre
-from ..kernel.broad import drop_pairs, put_in_tree
+from ..kernel.broad import ask_about, drop_pairs, put_in_tree
 from ..kernel.tables import (
     ANEW,
     APART,
     ASKED,
     AWAKE,
+    BODY,
     BOXED,
     COUNTED,
     FREE_PAIR,
@@ -27,6 +29,7 @@ from ..kernel.tables import (
     FREE_REGIONS,
     NEAR,
     SEARCH,
+    SHAPE,
     SUBSTEP,
     TURNED,
     UNSORTED,
@@ -55,11 +58,18 @@ class Memory(NamedTuple):
     counters: np.ndarray
     joints: list[np.ndarray]
     """Impulses, and what they are made of: pymunk's copies measure a pin's length and a ratchet's angle anew."""
-    before: float
-    """In which time they did them."""
+    state: dict[str, float]
+    """Of the state record, what a frame leaves to the next (`_STATE`)."""
+    nodes: np.ndarray
+    """(n,) NODE and"""
+    roots: np.ndarray
+    """(3,) int32: the trees, whose leaves are shapes by their rows."""
+    asked: np.ndarray
+    """(n,) int32: rows of shapes that are to be asked whom they meet."""
     bodies: np.ndarray
-    """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
-    calm, and for how long it has moved by itself."""
+    """(n,) BODY, of each body."""
+    held: np.ndarray
+    """(n,) bool: whether the solve moves it; who is new is moved by Chipmunk in the first frame."""
     awake: np.ndarray
     """(n,) int: the bodies that are awake in the order of sums over them, by their places in the space's list."""
     centres: np.ndarray
@@ -75,13 +85,14 @@ class Memory(NamedTuple):
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
 _COUNTERS += [UNSORTED, TURNED, COUNTED, USED_PAIRS, USED_REGIONS]
-#: What a body keeps.
-_BODY = ("asked", "taken", "pushed", "calm", "since")
-#: What a shape keeps.
-_SHAPE = (
-    *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),
-    *("left", "bottom", "right", "top"),
-)
+#: What of a row is the copy's own: whose it is, and what is made anew.
+_OWN = {
+    *("address", "listed", "entered", "held", "island", "joined", "joints", "sum_of_joints", "unmeasured", "awake"),
+    *("ident", "outline", "mirror", "body", "heard", "epoch", "proxy"),
+}
+_BODY = [name for name in BODY.names or () if name not in _OWN]
+_SHAPE = [name for name in SHAPE.names or () if name not in _OWN and name not in ("asked", "leaf", "tree")]
+_STATE = ("before", "frame", "taken", "contacts", "asleep")
 
 
 def remember(store: Store, space: pymunk.Space) -> Memory:
@@ -96,10 +107,12 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.shapes.copy(),
         tables.counters.copy(),
         [np.concatenate(joint_numbers(joint)) for joint in space.constraints],
-        float(store.state["before"][0]),
-        np.array(
-            [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
-        ),
+        {name: store.state[name][0].item() for name in _STATE},
+        tables.nodes.copy(),
+        tables.roots.copy(),
+        tables.asked[: tables.counters[ASKED]].copy(),
+        tables.bodies[_body_rows(store, space)],
+        np.array([_is_held(store, body) for body in space.bodies], bool),
         _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
         *_who_sleeps(space),
@@ -133,6 +146,11 @@ def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
     return np.array([store.row_of(address_of(b._body)) for b in space.bodies], np.int64)
 
 
+def _is_held(store: Store, body: pymunk.Body) -> bool:
+    off = store.state[0]
+    return bool(ffi.cast("uintptr_t *", body._body)[int(off["body_position_func"]) // 8] == off["hold_at"])
+
+
 def _awake(store: Store, space: pymunk.Space) -> np.ndarray:
     """`Memory.awake`."""
     place = np.full(len(store.tables.bodies) + 1, -1)
@@ -151,8 +169,12 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     known = memory.rows >= 0
     row_of = np.full(len(memory.shapes) + 1, -1)  # its row here by its row there; the last for none
     row_of[memory.rows[known]] = mine[known]
+    store.grow_shapes(max(len(memory.shapes), len(store.tables.shapes)))
+    bodies, shapes = _body_rows(store, space), store.tables.shapes
+    for name in _BODY:
+        store.tables.bodies[name][bodies] = memory.bodies[name]
     for name in _SHAPE:
-        store.tables.shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
+        shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
     if len(memory.pairs) > len(store.tables.pairs):
         store.grow_pairs(len(memory.pairs))
     if len(memory.regions) > len(store.tables.regions):
@@ -162,42 +184,54 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
     # as many of each as there, which may be fewer than here: what goes with them is of their size
+    # as many of each as there, which may be fewer than here: what goes with them is of their size
     store.tables = store.tables._replace(
         pairs=pairs,
         regions=regions,
         near=memory.near.copy(),
         told=np.zeros(len(pairs), np.int32),
     )
+    nodes = memory.nodes.copy()
+    leaves = (nodes["left"] < 0) & (nodes["owner"] >= 0)
+    nodes["owner"][leaves] = row_of[nodes["owner"][leaves]]
+    if known.all():
+        store.tables = store.tables._replace(nodes=nodes, roots=memory.roots.copy())
+        for name in ("leaf", "tree"):
+            shapes[name][mine] = memory.shapes[name][memory.rows]
     store.renew_rows()
     store.sync()
     tables = store.tables
-    for i in mine[known]:
-        put_in_tree(tables, int(i), int(tables.shapes[i]["tree"]))
-    tables.bodies["since"] = np.inf
+    if not known.all():  # copied within a step in which some have come
+        for i, row in zip(mine[known], memory.rows[known]):
+            put_in_tree(tables, int(i), int(memory.shapes["tree"][row]))
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
     tables.counters[ASKED] = 0
+    asked = row_of[memory.asked]
+    for row in asked[asked >= 0].tolist():
+        ask_about(tables, row)
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
     for p in np.flatnonzero(lost):  # one of its shapes is gone
         end_pair(tables, int(p))
     rehash(tables)
     take_arbiters(store, space)
-    awake = _body_rows(store, space)[memory.awake]
+    awake = bodies[memory.awake]
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
     tables.counters[AWAKE] = len(awake)
     drop_pairs(tables, -2)
     tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
-    for body, values in zip(space.bodies, memory.bodies):
-        row = tables.bodies[store.row_of(address_of(body._body))]
-        for name, value in zip(_BODY, values):
-            row[name] = value
-    store.state["before"] = memory.before
+    for name, value in memory.state.items():
+        store.state[name] = value
+    off = store.state[0]
+    for body in (body for body, held in zip(space.bodies, memory.held) if not held):
+        words = ffi.cast("uintptr_t *", body._body)
+        if words[int(off["body_position_func"]) // 8] == off["hold_at"]:
+            words[int(off["body_position_func"]) // 8] = int(off["position_func"])
     for joint, impulse in zip(space.constraints, memory.joints):
         made_of, did = joint_numbers(joint)
         made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
     _keep_apart(store, space)
     _put_to_sleep(space, memory)
-    store.state["asleep"] = bool(memory.sleepers)  # who will be hit in the first frame is woken before it
 
 
 def take_arbiters(store: Store, space: pymunk.Space) -> None:
