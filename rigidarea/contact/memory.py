@@ -27,6 +27,7 @@ from ..kernel.tables import (
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    MOVERS,
     NEAR,
     SEARCH,
     SHAPE,
@@ -64,6 +65,8 @@ class Memory(NamedTuple):
     """(n,) NODE and"""
     roots: np.ndarray
     """(3,) int32: the trees, whose leaves are shapes by their rows."""
+    movers: np.ndarray
+    """(n,) int32: rows of the shapes that move."""
     asked: np.ndarray
     """(n,) int32: rows of shapes that are to be asked whom they meet."""
     bodies: np.ndarray
@@ -110,6 +113,7 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         {name: store.state[name][0].item() for name in _STATE},
         tables.nodes.copy(),
         tables.roots.copy(),
+        tables.movers[: tables.counters[MOVERS]].copy(),
         tables.asked[: tables.counters[ASKED]].copy(),
         tables.bodies[_body_rows(store, space)],
         np.array([_is_held(store, body) for body in space.bodies], bool),
@@ -184,7 +188,6 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
     # as many of each as there, which may be fewer than here: what goes with them is of their size
-    # as many of each as there, which may be fewer than here: what goes with them is of their size
     store.tables = store.tables._replace(
         pairs=pairs,
         regions=regions,
@@ -205,6 +208,9 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         for i, row in zip(mine[known], memory.rows[known]):
             put_in_tree(tables, int(i), int(memory.shapes["tree"][row]))
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
+    movers = row_of[memory.movers]
+    movers = movers[movers >= 0]
+    tables.movers[: len(movers)], tables.counters[MOVERS] = movers, len(movers)
     tables.counters[ASKED] = 0
     asked = row_of[memory.asked]
     for row in asked[asked >= 0].tolist():
