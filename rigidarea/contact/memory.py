@@ -1,8 +1,8 @@
 """What a copy of an attached space is told, so that it goes on as its original does.
 
-All that outlives a frame in our tables, but for what says whose row it is, and what pymunk's copies forget: impulses of
-joints, who sleeps. Pairs keep their numbers: what comes first where two are equally high is decided by them. The trees of
-boxes keep their form: in which order new pairs are found is decided by that.
+All that outlives a frame in our tables, but for what says whose row it is, and what pymunk's copies forget: impulses
+of joints, who sleeps. Pairs keep their numbers: what comes first where two are equally high is decided by them. The
+trees of boxes keep their form: in which order new pairs are found is decided by that.
 """
 
 from __future__ import annotations
@@ -90,7 +90,18 @@ _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, 
 _COUNTERS += [UNSORTED, TURNED, COUNTED, USED_PAIRS, USED_REGIONS]
 #: What of a row is the copy's own: whose it is, and what is made anew.
 _OWN = {
-    *("address", "listed", "entered", "held", "island", "joined", "joints", "sum_of_joints", "unmeasured", "awake"),
+    *(
+        "address",
+        "listed",
+        "entered",
+        "held",
+        "island",
+        "joined",
+        "joints",
+        "sum_of_joints",
+        "unmeasured",
+        "awake",
+    ),
     *("ident", "outline", "mirror", "body", "heard", "epoch", "proxy"),
 }
 _BODY = [name for name in BODY.names or () if name not in _OWN]
