@@ -36,6 +36,7 @@ from .kernel.tables import (
     USED_REGIONS,
     Law,
     Tables,
+    never_used,
     rehash,
 )
 from .kernel.tree import NODE
@@ -171,14 +172,8 @@ def put_tables_back(s: Any, tables: Tables) -> None:
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
     for i in range(MORE_PAIRS, COUNTED + 1):
         kept[i] = counters[i]
-    for p in range(kept[USED_PAIRS], counters[USED_PAIRS]):
-        tables.pairs[p].a = -1
-        tables.pairs[p].b = -1
-        tables.pairs[p].head = -1
-        tables.pairs[p].next = p + 1 if p + 1 < len(tables.pairs) else -1
-    for r in range(kept[USED_REGIONS], counters[USED_REGIONS]):
-        tables.regions[r].stamp = -1
-        tables.regions[r].next = r + 1 if r + 1 < len(tables.regions) else -1
+    pairs = counters[USED_PAIRS]
+    regions = counters[USED_REGIONS]
     _copy(s.bodies_at, s.kept_bodies_at, kept[BODIES] * BODY_WORDS)
     _copy(s.shapes_at, s.kept_shapes_at, kept[SHAPES] * SHAPE_WORDS)
     _copy(s.pairs_at, s.kept_pairs_at, kept[USED_PAIRS] * PAIR_WORDS)
@@ -188,6 +183,7 @@ def put_tables_back(s: Any, tables: Tables) -> None:
     _copy(s.near_at, s.kept_near_at, kept[BOXED] * NEAR_WORDS)
     copy_memory(s.asked_at, s.kept_asked_at, np.uint64(4 * kept[ASKED]))
     _copy(s.counters_at, s.kept_counters_at, s.counters_n)
+    never_used(tables, pairs, regions)
     rehash(tables)
 
 
