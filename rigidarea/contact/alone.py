@@ -192,7 +192,7 @@ def step(which: int, scratch: int, n: int, forces: int, dt: float, frames: int, 
         world.done = 0
         for _ in range(frames):
             world.outcome = TOO_SMALL
-            if roomy(load_tables(s), load_tables(s).counters[SHAPES]):
+            if roomy(load_tables(s), load_tables(s).counters[SHAPES], dt):
                 if forces != 0:
                     _push(s, world, floats(forces + 24 * i * world.count, 3 * world.count), 1.0)
                 world.outcome = _step(s, world, dt)

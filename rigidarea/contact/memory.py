@@ -40,7 +40,7 @@ from ..kernel.tables import (
     rehash,
 )
 from .arrays import Store
-from .snapshots import first_of_group, idle_of, joint_numbers, listed_bodies, put_to_sleep
+from .snapshots import idle_of, joint_numbers, listed, put_to_sleep, who_sleeps
 
 
 class Memory(NamedTuple):
@@ -84,6 +84,8 @@ class Memory(NamedTuple):
     """The groups that sleep, by the bodies' places in the space's list: pymunk's copies wake them."""
     listed: list[int]
     """The bodies that do not, as Chipmunk lists them."""
+    joint_order: list[int]
+    """The joints as Chipmunk lists them (not sleepers'), by their places in the space's list; -1: our own."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
@@ -131,29 +133,34 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
         *_who_sleeps(space),
+        _joint_order(space),
     )
 
 
 def _who_sleeps(space: pymunk.Space) -> tuple[np.ndarray, list[list[int]], list[int]]:
     """`Memory.idle`, `sleepers`, `listed`."""
     place = {address_of(body._body): i for i, body in enumerate(space.bodies)}
-    groups: dict[int, list[int]] = {}
-    for body in space.bodies:
-        if body.is_sleeping:
-            groups.setdefault(first_of_group(body), []).append(place[address_of(body._body)])
-    for root, group in groups.items():
-        group.sort(key=lambda i: i != place[root])
-    listed = [place[address] for address in listed_bodies(space).tolist()]
-    return np.array([idle_of(body)[0] for body in space.bodies]), list(groups.values()), listed
+    groups = [[place[address] for address in group] for group in who_sleeps(space)]
+    order = [place[address] for address in listed(space, "space_bodies").tolist()]
+    return np.array([idle_of(body)[0] for body in space.bodies]), groups, order
+
+
+def _joint_order(space: pymunk.Space) -> list[int]:
+    """`Memory.joint_order`."""
+    place = {address_of(joint._constraint): i for i, joint in enumerate(space.constraints)}
+    return [place.get(address, -1) for address in listed(space, "space_constraints").tolist()]
 
 
 def _put_to_sleep(space: pymunk.Space, memory: Memory) -> None:
     addresses = [address_of(body._body) for body in space.bodies]
-    for group in memory.sleepers:
-        put_to_sleep([addresses[i] for i in group])
+    put_to_sleep([[addresses[i] for i in group] for group in memory.sleepers])
     for body, idle in zip(space.bodies, memory.idle):
         idle_of(body)[0] = idle
-    listed_bodies(space)[:] = [addresses[i] for i in memory.listed]
+    listed(space, "space_bodies")[:] = [addresses[i] for i in memory.listed]
+    joints, order = listed(space, "space_constraints"), _joint_order(space)
+    if sorted(order) == sorted(memory.joint_order):
+        now = dict(zip(order, joints.tolist()))
+        joints[:] = [now[i] for i in memory.joint_order]
 
 
 def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:

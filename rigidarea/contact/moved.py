@@ -263,14 +263,6 @@ def compare(space: int, idle: int, block: int) -> int:
     return SAME if k == head.sleepers else DOZED
 
 
-@callback("int64(uintp)")
-def sleepers(block: int) -> int:
-    """Where a snapshot has its list of those that sleep (`HEAD.sleepers` words), from its beginning on (bytes)."""
-    head = array_at(block, (1,), HEAD)[0]
-    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
-    return _after_tables(then, head.nodes) + head.constraints * _JOINT
-
-
 @callback("void(uintp, uintp)")
 def reorder(space: int, block: int) -> None:
     """Chipmunk's list of bodies in the order of then, once the same ones are awake: sums over them follow it."""

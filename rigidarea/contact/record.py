@@ -468,7 +468,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.pending = 2
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
             return False
-    if not roomy(load_tables(s), load_tables(s).counters[MOVERS]) and not ask(s, GROW):
+    if not roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) and not ask(s, GROW):
         return False
     look_at_partners(s, load_tables(s))
     _last(s, load_tables(s), dt)

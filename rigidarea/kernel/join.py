@@ -217,18 +217,19 @@ def has_room(tables: Tables, time: float) -> bool:
 
 
 @kernel
-def roomy(tables: Tables, shapes: int) -> bool:
-    """Whether there is more room than a frame in which so many shapes move asks for (`has_room`); if not, how much.
+def roomy(tables: Tables, shapes: int, time: float) -> bool:
+    """Whether there is more room than a frame of `time` in which so many shapes move asks for (`has_room`); if not, how
+    much.
 
     Asked when a frame begins: where it had to be run again, it would find other boxes than one that had room.
     """
     counters = tables.counters
-    more = SPARE // 2 + shapes // 4
+    more = SPARE // 2 + shapes // 8
     pairs = shapes + SPARE + more - counters[FREE_PAIRS]
     regions = shapes // 2 + SPARE * (1 + counters[CONCAVE]) + more - counters[FREE_REGIONS]
     for i in range(counters[BOXED]):
-        p = tables.near[i].pair
-        regions += tables.pairs[p].a >= 0 and tables.pairs[p].head < 0
+        pair = tables.pairs[tables.near[i].pair]
+        regions += pair.a >= 0 and pair.head < 0 and may_touch(tables, pair, -time)
     counters[MORE_PAIRS] = max(0, pairs)
     counters[MORE_REGIONS] = max(0, regions)
     return bool(pairs <= 0 and regions <= 0)
