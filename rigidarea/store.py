@@ -20,9 +20,10 @@ from .kernel.place import Pose, overlap_of_outlines
 from .kernel.pool import HEAD, Pool
 from .kernel.row import ROW
 from .kernel.tables import (
-    ANEW,
+    ASKED,
     BODIES,
     BODY,
+    BOXED,
     COUNTED,
     MORE_KEPT,
     MORE_PAIRS,
@@ -30,18 +31,20 @@ from .kernel.tables import (
     PAIR,
     REGION,
     SHAPE,
+    SHAPES,
     USED_PAIRS,
     USED_REGIONS,
     Law,
     Tables,
+    never_used,
     rehash,
 )
 from .kernel.tree import NODE
 
 BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
-SHAPE_WORDS = SHAPE.itemsize // 8
+SHAPE_WORDS, NODE_WORDS, NEAR_WORDS = SHAPE.itemsize // 8, NODE.itemsize // 8, NEIGHBOURS.itemsize // 8
 #: What a frame that may have to be run again starts from.
-KEPT = ("bodies", "pairs", "regions", "counters")
+KEPT = ("bodies", "shapes", "pairs", "regions", "nodes", "roots", "near", "asked", "counters")
 #: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
 EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
@@ -145,37 +148,42 @@ def clear(at: int, size: int) -> None:
 def keep_tables(s: Any) -> bool:
     """Take down what a frame that may have to be run again starts from. Whether there was room for it."""
     counters = array_at(s.counters_at, (s.counters_n,), np.int64)
-    if s.kept_bodies_n < s.bodies_n or s.kept_pairs_n < s.pairs_n or s.kept_regions_n < s.regions_n:
+    more = s.kept_bodies_n < s.bodies_n or s.kept_shapes_n < s.shapes_n
+    if more or s.kept_pairs_n < s.pairs_n or s.kept_regions_n < s.regions_n:
         counters[MORE_KEPT] = 1
         return False
     s.kept = 1
     _copy(s.kept_bodies_at, s.bodies_at, counters[BODIES] * BODY_WORDS)
+    _copy(s.kept_shapes_at, s.shapes_at, counters[SHAPES] * SHAPE_WORDS)
     _copy(s.kept_pairs_at, s.pairs_at, counters[USED_PAIRS] * PAIR_WORDS)
     _copy(s.kept_regions_at, s.regions_at, counters[USED_REGIONS] * REGION_WORDS)
+    _copy(s.kept_nodes_at, s.nodes_at, s.nodes_n * NODE_WORDS)
+    copy_memory(s.kept_roots_at, s.roots_at, np.uint64(12))
+    _copy(s.kept_near_at, s.near_at, counters[BOXED] * NEAR_WORDS)
+    copy_memory(s.kept_asked_at, s.asked_at, np.uint64(4 * counters[ASKED]))
     _copy(s.kept_counters_at, s.counters_at, s.counters_n)
     return True
 
 
 @kernel
 def put_tables_back(s: Any, tables: Tables) -> None:
-    """The tables as they were kept, but for how much more room the frame has wanted; pairs are listed anew."""
+    """The tables as they were kept, but for how much more room the frame has wanted."""
     counters = tables.counters
     kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
     for i in range(MORE_PAIRS, COUNTED + 1):
         kept[i] = counters[i]
-    for p in range(kept[USED_PAIRS], counters[USED_PAIRS]):
-        tables.pairs[p].a = -1
-        tables.pairs[p].b = -1
-        tables.pairs[p].head = -1
-        tables.pairs[p].next = p + 1 if p + 1 < len(tables.pairs) else -1
-    for r in range(kept[USED_REGIONS], counters[USED_REGIONS]):
-        tables.regions[r].stamp = -1
-        tables.regions[r].next = r + 1 if r + 1 < len(tables.regions) else -1
+    pairs = counters[USED_PAIRS]
+    regions = counters[USED_REGIONS]
     _copy(s.bodies_at, s.kept_bodies_at, kept[BODIES] * BODY_WORDS)
+    _copy(s.shapes_at, s.kept_shapes_at, kept[SHAPES] * SHAPE_WORDS)
     _copy(s.pairs_at, s.kept_pairs_at, kept[USED_PAIRS] * PAIR_WORDS)
     _copy(s.regions_at, s.kept_regions_at, kept[USED_REGIONS] * REGION_WORDS)
+    _copy(s.nodes_at, s.kept_nodes_at, s.nodes_n * NODE_WORDS)
+    copy_memory(s.roots_at, s.kept_roots_at, np.uint64(12))
+    _copy(s.near_at, s.kept_near_at, kept[BOXED] * NEAR_WORDS)
+    copy_memory(s.asked_at, s.kept_asked_at, np.uint64(4 * kept[ASKED]))
     _copy(s.counters_at, s.kept_counters_at, s.counters_n)
-    tables.counters[ANEW] = 1
+    never_used(tables, pairs, regions)
     rehash(tables)
 
 

@@ -53,6 +53,29 @@ def test_one_or_many_the_same_seed_is_the_same_bits(name):
 
 
 @pytest.mark.parametrize("name", BOTH)
+def test_the_same_seed_is_the_same_bits_in_one_or_a_thousand_whatever_the_threads(name):
+    """All that is returned, through ends of episodes and new beginnings."""
+    seed, steps = 5, 30
+
+    def run(n: int, threads: int, first: int = 0) -> np.ndarray:
+        envs = make(name, n, max_steps=20, threads=threads)
+        draw = np.random.default_rng(2)
+        returned = [np.c_[envs.reset(seed=seed + first)[0], np.zeros((n, 3))]]
+        for _ in range(steps):
+            actions = draw.uniform(-1, 1, (1024, *envs.single_action_space.shape))
+            observed, reward, ended, cut, _ = envs.step(actions[first : first + n])
+            returned.append(np.c_[observed, reward, ended, cut])
+        return np.array(returned)
+
+    many = run(1024, 2)
+    np.testing.assert_array_equal(run(1024, 1), many)
+    np.testing.assert_array_equal(run(16, 5), many[:, :16])
+    for i in (0, 1, 511, 1023):
+        np.testing.assert_array_equal(run(1, 1, i), many[:, [i]])
+    assert many[:, :, -1].any() and not np.array_equal(many[:, 0], many[:, 1])
+
+
+@pytest.mark.parametrize("name", BOTH)
 def test_wrappers_of_vectors_pass(name):
     from gymnasium.wrappers.vector import ClipAction, NormalizeObservation, RecordEpisodeStatistics
 

@@ -10,6 +10,8 @@ from pathlib import Path
 import numpy as np
 import pymunk
 
+import rigidarea as ra
+
 sys.path.insert(0, str(Path(__file__).parent / "solve"))
 from jointed_scenes import jointed
 
@@ -51,6 +53,50 @@ def sleepy(seed: int) -> pymunk.Space:
     space = pile(seed)
     space.sleep_time_threshold = 0.3
     space.idle_speed_threshold = random.Random(seed).choice((0, 20, 60))
+    return space
+
+
+def one_way(arbiter: pymunk.Arbiter, space: pymunk.Space, data: dict) -> None:
+    """A platform lets through what rises."""
+    arbiter.process_collision = arbiter.shapes[1].body.velocity.y <= 0
+
+
+def mixed(seed: int) -> pymunk.Space:
+    """A pile with rings, outlines of arcs, one-way platforms, springs and motors; in half of them some sleep."""
+    draw = random.Random(seed)
+    space = pile(seed, draw.randint(5, 15))
+    if draw.random() < 0.5:
+        space.sleep_time_threshold, space.idle_speed_threshold = 0.3, 30
+    for _ in range(draw.randint(1, 4)):
+        body = pymunk.Body(draw.uniform(1, 4), draw.uniform(300, 900))
+        body.position = draw.uniform(60, 340), draw.uniform(60, 500)
+        r = draw.uniform(10, 25)
+        square = [(-r, -r), (r, -r), (r, r), (-r, r)]
+        if draw.random() < 0.5:
+            outline = ra.Outline(square, holes=[[(0.5 * x, 0.5 * y) for x, y in reversed(square)]])
+        else:
+            outline = ra.Outline.from_bulges([(x, y, draw.choice((0, 0.4))) for x, y in square])
+        shape = outline.add_to(body)
+        shape.friction = draw.uniform(0, 1)
+        space.add(body, shape)
+    platform = pymunk.Segment(space.static_body, (100, 150), (300, 150), 4)
+    platform.collision_type = 7
+    space.add(platform)
+    space.on_collision(7, 0, pre_solve=one_way)
+    bodies = list(space.bodies)
+    for kind in draw.sample(range(4), 2):
+        a, b = draw.sample(bodies, 2)
+        joint: pymunk.Constraint
+        if kind == 0:
+            joint = pymunk.DampedSpring(a, b, (0, 0), (0, 0), draw.uniform(30, 90), 80, 4)
+        elif kind == 1:
+            joint = pymunk.SimpleMotor(a, b, draw.uniform(-5, 5))
+            joint.max_force = 4e4
+        elif kind == 2:
+            joint = pymunk.SlideJoint(a, b, (0, 0), (0, 0), 20, 300)
+        else:
+            joint = pymunk.DampedRotarySpring(a, space.static_body, 0, 3e4, 1e3)
+        space.add(joint)
     return space
 
 

@@ -17,16 +17,10 @@ import numpy as np
 
 from ..kernel.broad import forget_the_gone
 from ..kernel.jit import callback, copy_memory, kernel
-from ..kernel.join import SPARE
+from ..kernel.join import roomy
 from ..kernel.memory import array_at, caller, record
 from ..kernel.tables import (
     BODIES,
-    BOXED,
-    CONCAVE,
-    FREE_PAIRS,
-    FREE_REGIONS,
-    MORE_PAIRS,
-    MORE_REGIONS,
     SHAPES,
     TOLD,
     Tables,
@@ -77,25 +71,6 @@ DONE, TOO_SMALL, NOT_FINITE = range(3)
 @callback("void(uintp)")
 def no_answer(request: int) -> None:
     """Nobody can be asked: the frame ends as it began, and whoever stepped the world hears of it."""
-
-
-@kernel
-def _has_room(tables: Tables) -> bool:
-    """Whether there is as much room as the frame will ask for (`join.has_room`), and for some more; if not, how much.
-
-    A frame that ends for want of room leaves boxes as wide as it has made them, on which the bits of its second run may
-    depend: then they would depend on the other worlds, which share the size of their tables.
-    """
-    counters = tables.counters
-    more = SPARE // 2 + counters[SHAPES] // 4
-    pairs = counters[SHAPES] + SPARE + more - counters[FREE_PAIRS]
-    regions = counters[SHAPES] // 2 + SPARE * (1 + counters[CONCAVE]) + more - counters[FREE_REGIONS]
-    for i in range(counters[BOXED]):
-        p = tables.near[i].pair
-        regions += tables.pairs[p].a >= 0 and tables.pairs[p].head < 0
-    counters[MORE_PAIRS] = max(0, pairs)
-    counters[MORE_REGIONS] = max(0, regions)
-    return bool(pairs <= 0 and regions <= 0)
 
 
 @kernel
@@ -220,7 +195,7 @@ def step(
         world.done = 0
         for _ in range(frames):
             world.outcome = TOO_SMALL
-            if _has_room(load_tables(s)):
+            if roomy(load_tables(s), load_tables(s).counters[SHAPES], dt):
                 if forces != 0:
                     _push(s, world, floats(forces + 24 * i * rows, 3 * world.count), 1.0)
                 world.outcome = _step(s, world, dt)

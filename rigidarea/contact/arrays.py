@@ -27,9 +27,7 @@ from ..kernel.tables import (
     COUNTERS,
     FREE_BODY,
     FREE_PAIR,
-    FREE_PAIRS,
     FREE_REGION,
-    FREE_REGIONS,
     FREE_SHAPE,
     MORE_BODIES,
     MORE_JOINTS,
@@ -45,6 +43,7 @@ from ..kernel.tables import (
     SHAPE,
     SHAPES,
     Tables,
+    append_free,
     rehash,
 )
 from ..kernel.tree import FREE, NODE
@@ -56,20 +55,6 @@ from .geometry import Forms, enter_form, read_shapes
 JOINTS = 8
 #: Crossings for which there is room from the start, where the largest outline has many points: more come with use.
 MOST_CROSSINGS = 4096
-
-
-def _append_free(following: np.ndarray, counters: np.ndarray, head: int, first: int) -> None:
-    """Rows from `first` on at the end of a free list: who is taken next does not depend on how large the table is."""
-    following[first:] = np.arange(first + 1, len(following) + 1)
-    following[-1] = -1
-    last = int(counters[head])
-    if last < 0:
-        counters[head] = first
-        return
-    while following[last] >= 0:
-        last = int(following[last])
-    following[last] = first
-
 
 #: Arrays of a `Store` itself that the record has.
 _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
@@ -216,8 +201,7 @@ class Store:
         new = np.zeros(n, PAIR)
         new[: len(old)] = old
         new["a"][len(old) :] = -1
-        _append_free(new["next"], counters, FREE_PAIR, len(old))
-        counters[FREE_PAIRS] += len(new) - len(old)
+        append_free(new["next"], counters, FREE_PAIR, len(old))
         size = 64
         while size < 2 * len(new):  # at most half full
             size *= 2
@@ -235,8 +219,7 @@ class Store:
         new = np.zeros(n, REGION)
         new[: len(old)] = old
         new["stamp"][len(old) :] = -1
-        _append_free(new["next"], counters, FREE_REGION, len(old))
-        counters[FREE_REGIONS] += len(new) - len(old)
+        append_free(new["next"], counters, FREE_REGION, len(old))
         self.tables = self.tables._replace(regions=new)
         self.renew_rows()
 

@@ -227,7 +227,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
 def _again(s: Any) -> None:
     """Back to what the frame started from, as far as it has changed it; if that was not kept, without contacts."""
     tables = load_tables(s)
-    if s.begun and s.kept:
+    if s.kept:
         put_tables_back(s, tables)
     elif s.begun:
         tables.counters[ANEW] = 1

@@ -109,13 +109,12 @@ class Image:
         arrays |= {"mobility": np.zeros(lengths["bodies"], kinds["mobility"])}
         arrays |= {f"kept_{name}": np.zeros(lengths[name], kinds[name]) for name in KEPT}
         arrays |= {"seen": np.zeros((lengths["bodies"], 3))}
-        words = [len(_SCRATCH) * 2, 0]
+        words = [len(_SCRATCH) * 2]
         for name in _SCRATCH:
             field = ARRAYS.index(name)
             words += [field, address_of(ffi.from_buffer(arrays[name]))]
             words += [len(ARRAYS) + field, len(arrays[name])]
-        table = np.array([words[0], *words[2:]], np.int64)
-        return table, [arrays]
+        return np.array(words, np.int64), [arrays]
 
 
 def _lay_out(offsets: dict[str, int], lengths: dict[str, int], kinds: dict[str, Any], at: int) -> int:

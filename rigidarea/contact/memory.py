@@ -1,7 +1,8 @@
 """What a copy of an attached space is told, so that it goes on as its original does.
 
-Pairs with their regions, the shapes' boxes, and the impulses that joints start from, which pymunk's copies forget.
-Pairs keep their numbers: what comes first where two are equally high is decided by them.
+All that outlives a frame in our tables, but for what says whose row it is, and what pymunk's copies forget: impulses
+of joints, who sleeps. Pairs keep their numbers: what comes first where two are equally high is decided by them. The
+trees of boxes keep their form: in which order new pairs are found is decided by that.
 """
 
 from __future__ import annotations
@@ -13,20 +14,23 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..chipmunk import address_of, centre_of, put_centre
-from ..kernel.broad import drop_pairs, put_in_tree
+from ..kernel.broad import ask_about, drop_pairs, put_in_tree
 from ..kernel.tables import (
     ANEW,
     APART,
     ASKED,
     AWAKE,
+    BODY,
     BOXED,
     COUNTED,
     FREE_PAIR,
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    MOVERS,
     NEAR,
     SEARCH,
+    SHAPE,
     SUBSTEP,
     TURNED,
     UNSORTED,
@@ -36,7 +40,7 @@ from ..kernel.tables import (
     rehash,
 )
 from .arrays import Store
-from .snapshots import first_of_group, idle_of, joint_numbers, listed_bodies, put_to_sleep
+from .snapshots import idle_of, joint_numbers, listed, put_to_sleep, who_sleeps
 
 
 class Memory(NamedTuple):
@@ -55,11 +59,20 @@ class Memory(NamedTuple):
     counters: np.ndarray
     joints: list[np.ndarray]
     """Impulses, and what they are made of: pymunk's copies measure a pin's length and a ratchet's angle anew."""
-    before: float
-    """In which time they did them."""
+    state: dict[str, float]
+    """Of the state record, what a frame leaves to the next (`_STATE`)."""
+    nodes: np.ndarray
+    """(n,) NODE and"""
+    roots: np.ndarray
+    """(3,) int32: the trees, whose leaves are shapes by their rows."""
+    movers: np.ndarray
+    """(n,) int32: rows of the shapes that move."""
+    asked: np.ndarray
+    """(n,) int32: rows of shapes that are to be asked whom they meet."""
     bodies: np.ndarray
-    """(n, 5): of each body, the substeps asked for its island, those of the last frame, whether it was pushed, whether
-    calm, and for how long it has moved by itself."""
+    """(n,) BODY, of each body."""
+    held: np.ndarray
+    """(n,) bool: whether the solve moves it; who is new is moved by Chipmunk in the first frame."""
     awake: np.ndarray
     """(n,) int: the bodies that are awake in the order of sums over them, by their places in the space's list."""
     centres: np.ndarray
@@ -71,17 +84,31 @@ class Memory(NamedTuple):
     """The groups that sleep, by the bodies' places in the space's list: pymunk's copies wake them."""
     listed: list[int]
     """The bodies that do not, as Chipmunk lists them."""
+    joint_order: list[int]
+    """The joints as Chipmunk lists them (not sleepers'), by their places in the space's list; -1: our own."""
 
 
 _COUNTERS = [FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SEARCH, SUBSTEP, NEAR, BOXED]
 _COUNTERS += [UNSORTED, TURNED, COUNTED, USED_PAIRS, USED_REGIONS]
-#: What a body keeps.
-_BODY = ("asked", "taken", "pushed", "calm", "since")
-#: What a shape keeps.
-_SHAPE = (
-    *("group", "categories", "mask", "low_x", "low_y", "high_x", "high_y"),
-    *("left", "bottom", "right", "top"),
-)
+#: What of a row is the copy's own: whose it is, and what is made anew.
+_OWN = {
+    *(
+        "address",
+        "listed",
+        "entered",
+        "held",
+        "island",
+        "joined",
+        "joints",
+        "sum_of_joints",
+        "unmeasured",
+        "awake",
+    ),
+    *("ident", "outline", "mirror", "body", "heard", "epoch", "proxy"),
+}
+_BODY = [name for name in BODY.names or () if name not in _OWN]
+_SHAPE = [name for name in SHAPE.names or () if name not in _OWN and name not in ("asked", "leaf", "tree")]
+_STATE = ("before", "frame", "taken", "contacts", "asleep")
 
 
 def remember(store: Store, space: pymunk.Space) -> Memory:
@@ -96,41 +123,54 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
         tables.shapes.copy(),
         tables.counters.copy(),
         [np.concatenate(joint_numbers(joint)) for joint in space.constraints],
-        float(store.state["before"][0]),
-        np.array(
-            [tables.bodies[store.row_of(address_of(b._body))][list(_BODY)].tolist() for b in space.bodies]
-        ),
+        {name: store.state[name][0].item() for name in _STATE},
+        tables.nodes.copy(),
+        tables.roots.copy(),
+        tables.movers[: tables.counters[MOVERS]].copy(),
+        tables.asked[: tables.counters[ASKED]].copy(),
+        tables.bodies[_body_rows(store, space)],
+        np.array([_is_held(store, body) for body in space.bodies], bool),
         _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
         *_who_sleeps(space),
+        _joint_order(space),
     )
 
 
 def _who_sleeps(space: pymunk.Space) -> tuple[np.ndarray, list[list[int]], list[int]]:
     """`Memory.idle`, `sleepers`, `listed`."""
     place = {address_of(body._body): i for i, body in enumerate(space.bodies)}
-    groups: dict[int, list[int]] = {}
-    for body in space.bodies:
-        if body.is_sleeping:
-            groups.setdefault(first_of_group(body), []).append(place[address_of(body._body)])
-    for root, group in groups.items():
-        group.sort(key=lambda i: i != place[root])
-    listed = [place[address] for address in listed_bodies(space).tolist()]
-    return np.array([idle_of(body)[0] for body in space.bodies]), list(groups.values()), listed
+    groups = [[place[address] for address in group] for group in who_sleeps(space)]
+    order = [place[address] for address in listed(space, "space_bodies").tolist()]
+    return np.array([idle_of(body)[0] for body in space.bodies]), groups, order
+
+
+def _joint_order(space: pymunk.Space) -> list[int]:
+    """`Memory.joint_order`."""
+    place = {address_of(joint._constraint): i for i, joint in enumerate(space.constraints)}
+    return [place.get(address, -1) for address in listed(space, "space_constraints").tolist()]
 
 
 def _put_to_sleep(space: pymunk.Space, memory: Memory) -> None:
     addresses = [address_of(body._body) for body in space.bodies]
-    for group in memory.sleepers:
-        put_to_sleep([addresses[i] for i in group])
+    put_to_sleep([[addresses[i] for i in group] for group in memory.sleepers])
     for body, idle in zip(space.bodies, memory.idle):
         idle_of(body)[0] = idle
-    listed_bodies(space)[:] = [addresses[i] for i in memory.listed]
+    listed(space, "space_bodies")[:] = [addresses[i] for i in memory.listed]
+    joints, order = listed(space, "space_constraints"), _joint_order(space)
+    if sorted(order) == sorted(memory.joint_order):
+        now = dict(zip(order, joints.tolist()))
+        joints[:] = [now[i] for i in memory.joint_order]
 
 
 def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
     """The row of every body of the space's list; -1: it has none."""
     return np.array([store.row_of(address_of(b._body)) for b in space.bodies], np.int64)
+
+
+def _is_held(store: Store, body: pymunk.Body) -> bool:
+    off = store.state[0]
+    return bool(ffi.cast("uintptr_t *", body._body)[int(off["body_position_func"]) // 8] == off["hold_at"])
 
 
 def _awake(store: Store, space: pymunk.Space) -> np.ndarray:
@@ -151,8 +191,12 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     known = memory.rows >= 0
     row_of = np.full(len(memory.shapes) + 1, -1)  # its row here by its row there; the last for none
     row_of[memory.rows[known]] = mine[known]
+    store.grow_shapes(max(len(memory.shapes), len(store.tables.shapes)))
+    bodies, shapes = _body_rows(store, space), store.tables.shapes
+    for name in _BODY:
+        store.tables.bodies[name][bodies] = memory.bodies[name]
     for name in _SHAPE:
-        store.tables.shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
+        shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
     if len(memory.pairs) > len(store.tables.pairs):
         store.grow_pairs(len(memory.pairs))
     if len(memory.regions) > len(store.tables.regions):
@@ -168,36 +212,50 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         near=memory.near.copy(),
         told=np.zeros(len(pairs), np.int32),
     )
+    nodes = memory.nodes.copy()
+    leaves = (nodes["left"] < 0) & (nodes["owner"] >= 0)
+    nodes["owner"][leaves] = row_of[nodes["owner"][leaves]]
+    if known.all():
+        store.tables = store.tables._replace(nodes=nodes, roots=memory.roots.copy())
+        for name in ("leaf", "tree"):
+            shapes[name][mine] = memory.shapes[name][memory.rows]
     store.renew_rows()
     store.sync()
     tables = store.tables
-    for i in mine[known]:
-        put_in_tree(tables, int(i), int(tables.shapes[i]["tree"]))
-    tables.bodies["since"] = np.inf
+    if not known.all():  # copied within a step in which some have come
+        for i, row in zip(mine[known], memory.rows[known]):
+            put_in_tree(tables, int(i), int(memory.shapes["tree"][row]))
     tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
+    movers = row_of[memory.movers]
+    movers = movers[movers >= 0]
+    tables.movers[: len(movers)], tables.counters[MOVERS] = movers, len(movers)
     tables.counters[ASKED] = 0
+    asked = row_of[memory.asked]
+    for row in asked[asked >= 0].tolist():
+        ask_about(tables, row)
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
     for p in np.flatnonzero(lost):  # one of its shapes is gone
         end_pair(tables, int(p))
     rehash(tables)
     take_arbiters(store, space)
-    awake = _body_rows(store, space)[memory.awake]
+    awake = bodies[memory.awake]
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
     tables.counters[AWAKE] = len(awake)
     drop_pairs(tables, -2)
     tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
-    for body, values in zip(space.bodies, memory.bodies):
-        row = tables.bodies[store.row_of(address_of(body._body))]
-        for name, value in zip(_BODY, values):
-            row[name] = value
-    store.state["before"] = memory.before
+    for name, value in memory.state.items():
+        store.state[name] = value
+    off = store.state[0]
+    for body in (body for body, held in zip(space.bodies, memory.held) if not held):
+        words = ffi.cast("uintptr_t *", body._body)
+        if words[int(off["body_position_func"]) // 8] == off["hold_at"]:
+            words[int(off["body_position_func"]) // 8] = int(off["position_func"])
     for joint, impulse in zip(space.constraints, memory.joints):
         made_of, did = joint_numbers(joint)
         made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
     _keep_apart(store, space)
     _put_to_sleep(space, memory)
-    store.state["asleep"] = bool(memory.sleepers)  # who will be hit in the first frame is woken before it
 
 
 def take_arbiters(store: Store, space: pymunk.Space) -> None:

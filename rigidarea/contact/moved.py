@@ -25,9 +25,7 @@ from ..kernel.tables import (
     COUNTED,
     COUNTERS,
     FREE_PAIR,
-    FREE_PAIRS,
     FREE_REGION,
-    FREE_REGIONS,
     JOINTS,
     LIVE,
     MOVERS,
@@ -40,6 +38,8 @@ from ..kernel.tables import (
     USED_PAIRS,
     USED_REGIONS,
     Tables,
+    append_free,
+    never_used,
     rehash,
 )
 from ..kernel.tree import NODE
@@ -263,14 +263,6 @@ def compare(space: int, idle: int, block: int) -> int:
     return SAME if k == head.sleepers else DOZED
 
 
-@callback("int64(uintp)")
-def sleepers(block: int) -> int:
-    """Where a snapshot has its list of those that sleep (`HEAD.sleepers` words), from its beginning on (bytes)."""
-    head = array_at(block, (1,), HEAD)[0]
-    then = array_at(block + _HEAD, (COUNTERS,), np.int64)
-    return _after_tables(then, head.nodes) + head.constraints * _JOINT
-
-
 @callback("void(uintp, uintp)")
 def reorder(space: int, block: int) -> None:
     """Chipmunk's list of bodies in the order of then, once the same ones are awake: sums over them follow it."""
@@ -287,37 +279,11 @@ def reorder(space: int, block: int) -> None:
 @kernel
 def free_again(tables: Tables, head: Any, pairs: int, regions: int) -> None:
     """Rows that were not in use then, and have come into use, or into being, since; pairs, regions: used until now."""
-    counters = tables.counters
-    for p in range(counters[USED_PAIRS], pairs):
-        pair = tables.pairs[p]
-        pair.a = -1
-        pair.b = -1
-        pair.head = -1
-        pair.next = p + 1 if p + 1 < len(tables.pairs) else -1
-    for r in range(counters[USED_REGIONS], regions):
-        region = tables.regions[r]
-        region.stamp = -1
-        region.next = r + 1 if r + 1 < len(tables.regions) else -1
+    never_used(tables, pairs, regions)
     if len(tables.pairs) > head.pairs:
-        counters[FREE_PAIRS] += len(tables.pairs) - head.pairs
-        p = counters[FREE_PAIR]
-        if p < 0:
-            counters[FREE_PAIR] = head.pairs
-        while p >= 0:
-            after = tables.pairs[p].next
-            if after < 0 and p < head.pairs:
-                tables.pairs[p].next = head.pairs
-            p = after
+        append_free(tables.pairs["next"], tables.counters, FREE_PAIR, head.pairs)
     if len(tables.regions) > head.regions:
-        counters[FREE_REGIONS] += len(tables.regions) - head.regions
-        r = counters[FREE_REGION]
-        if r < 0:
-            counters[FREE_REGION] = head.regions
-        while r >= 0:
-            after = tables.regions[r].next
-            if after < 0 and r < head.regions:
-                tables.regions[r].next = head.regions
-            r = after
+        append_free(tables.regions["next"], tables.counters, FREE_REGION, head.regions)
 
 
 @kernel

@@ -16,6 +16,7 @@ import numpy as np
 from ..chipmunk import function
 from ..kernel.broad import ask_about, forget_the_gone, list_pair, measure, put_in_tree
 from ..kernel.jit import callback, kernel
+from ..kernel.join import roomy
 from ..kernel.memory import array_at, caller
 from ..kernel.place import place, shift
 from ..kernel.tables import (
@@ -467,6 +468,8 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.pending = 2
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
             return False
+    if not roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) and not ask(s, GROW):
+        return False
     look_at_partners(s, load_tables(s))
     _last(s, load_tables(s), dt)
     s.asleep = len(members(space, s.space_sleeping)) > 0

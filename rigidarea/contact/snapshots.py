@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import weakref
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,8 @@ from ..chipmunk import LayoutError, address_of, kinds_of_joints, layout
 if TYPE_CHECKING:
     from .attach import AreaContact
 
-_CHANGED = {1: "bodies", 2: "shapes", 3: "joints"}
+_JOINTS, _DOZED = 3, 4
+_CHANGED = {1: "bodies", 2: "shapes", _JOINTS: "joints"}
 _ARBITER = int(ffi.sizeof("struct cpArbiter"))
 #: What of an arbiter is put back: materials, normal, and from `swapped` on what callbacks were told and have said.
 _PARTS = (slice(0, 32), slice(120, 136), slice(168, _ARBITER))
@@ -26,7 +28,7 @@ ROOM = 2**16
 class Snapshot:
     """An attached space as it was: what `AreaContact.snapshot` returns. It belongs to its space, in its process."""
 
-    __slots__ = ("_arbiters", "_block", "_contact")
+    __slots__ = ("_arbiters", "_asleep", "_block", "_contact", "_groups", "_listed")
 
     def __init__(self, contact: AreaContact) -> None:
         space, (save, *_) = contact.space, _functions()
@@ -39,6 +41,15 @@ class Snapshot:
             size = save(at, idle, ffi.from_buffer(block), len(block))
         self._block, self._contact = block[:size].copy(), weakref.ref(contact)
         self._arbiters = _arbiters_of(space) if space._handlers else {}
+        self._groups = who_sleeps(space)
+        # where bodies may sleep, joints come and go in Chipmunk's list with them
+        self._listed, self._asleep = np.empty(0, np.uint64), []
+        if space.constraints and (self._groups or math.isfinite(space.sleep_time_threshold)):
+            self._listed = listed(space, "space_constraints").copy()
+            awake = set(self._listed.tolist())
+            for joint in space.constraints:
+                if address_of(joint._constraint) not in awake:
+                    self._asleep.append((joint, _state_of(joint)))
 
     @property
     def nbytes(self) -> int:
@@ -47,9 +58,11 @@ class Snapshot:
 
     def put_back(self, contact: AreaContact) -> None:
         """`AreaContact.restore`."""
-        space, (_, compare, sleepers, restore, reorder) = contact.space, _functions()
+        space, (_, compare, restore, reorder) = contact.space, _functions()
         at, idle, block = space._space, idle_time(), ffi.from_buffer(self._block)
         changed = compare(at, idle, block)
+        if changed == _JOINTS and self._has_joints_of(contact):
+            changed = _DOZED
         if changed in _CHANGED:
             raise ValueError(
                 f"expected the {_CHANGED[changed]} that the space had when the snapshot was taken; "
@@ -60,11 +73,19 @@ class Snapshot:
                 if lib.cpBodyIsSleeping(body._body):
                     lib.cpBodyActivate(body._body)
             _unthread(space)
+            joints, n = listed(space, "space_constraints"), len(self._listed)
+            if n:
+                joints[:] = [*self._listed, *(joint for joint in joints if joint not in self._listed)]
+                listed(space, "space_constraints", n)
         elsewhere = restore(at, idle, block)
+        for joint, state in self._asleep:
+            _put_state(joint, state)
         if changed:
-            first = sleepers(block)
-            words = self._block[first:].view(np.uint64)[: int(self._block[56:64].view(np.int64)[0])]
-            put_to_sleep(words.tolist())
+            if n:
+                listed(space, "space_constraints", len(joints))
+            put_to_sleep(self._groups)
+            if n:
+                listed(space, "space_constraints", n)[:] = self._listed
         reorder(at, block)
         if elsewhere:
             lib.cpSpaceReindexStatic(at)
@@ -72,6 +93,13 @@ class Snapshot:
             late = lib.cpSpaceGetTimestamp(at) - int(self._block[8:16].view(np.int64)[0])
             _put_arbiters_back(space, self._arbiters, late)
             contact._take_arbiters()
+
+    def _has_joints_of(self, contact: AreaContact) -> bool:
+        """Whether the space has the joints of then, listed by Chipmunk or not."""
+        then = {*self._listed.tolist(), *(address_of(joint._constraint) for joint, _ in self._asleep)}
+        hidden = int(contact._state["hidden"])
+        now = {hidden, *(address_of(joint._constraint) for joint in contact.space.constraints)}
+        return then == now
 
     def __reduce__(self) -> Any:
         raise TypeError("a snapshot belongs to its space: copy or pickle the space")
@@ -87,7 +115,6 @@ def _functions() -> tuple[Any, ...]:
     kinds = {
         "save": "long long(*)(void *, long long, void *, long long)",
         "compare": "long long(*)(void *, long long, void *)",
-        "sleepers": "long long(*)(void *)",
         "restore": "long long(*)(void *, long long, void *)",
         "reorder": "void(*)(void *, void *)",
     }
@@ -119,17 +146,24 @@ def idle_time() -> int:
     return at
 
 
-def put_to_sleep(listed: list[int]) -> None:
-    """Have groups of bodies sleep: their addresses, the first before the others, and 0 after each group."""
-    root = 0
-    for address in listed:
-        if address and not root:
-            lib.cpBodySleep(ffi.cast("cpBody *", address))
-            root = address
-        elif address:
+def put_to_sleep(groups: list[list[int]]) -> None:
+    """Have groups of bodies sleep: their addresses, in the order in which they wake (Chipmunk lists the last first)."""
+    for root, *others in groups:
+        lib.cpBodySleep(ffi.cast("cpBody *", root))
+        for address in reversed(others):
             lib.cpBodySleepWithGroup(ffi.cast("cpBody *", address), ffi.cast("cpBody *", root))
-        else:
-            root = 0
+
+
+def who_sleeps(space: pymunk.Space) -> list[list[int]]:
+    """The groups for `put_to_sleep`."""
+    groups, word = [], idle_time() // 8 - 1
+    for root in listed(space, "space_sleeping").tolist():
+        group = []
+        while root:
+            group.append(root)
+            root = int(ffi.cast("uintptr_t *", root)[word])
+        groups.append(group)
+    return groups
 
 
 def idle_of(body: pymunk.Body) -> np.ndarray:
@@ -137,17 +171,20 @@ def idle_of(body: pymunk.Body) -> np.ndarray:
     return np.frombuffer(ffi.buffer(ffi.cast("char *", body._body) + idle_time(), 8))
 
 
-def first_of_group(body: pymunk.Body) -> int:
-    """The address of the first body of the group with which a body sleeps."""
-    return int(ffi.cast("uintptr_t *", body._body)[idle_time() // 8 - 2])
+def listed(space: pymunk.Space, which: str, n: int | None = None) -> np.ndarray:
+    """Addresses that Chipmunk lists, in place: uint64 (n,); which: the field of `chipmunk.layout`.
 
-
-def listed_bodies(space: pymunk.Space) -> np.ndarray:
-    """Addresses of the bodies that are awake, as Chipmunk lists them, in place: uint64 (n,)."""
-    at = ffi.cast("uintptr_t *", address_of(space._space) + layout()["space_bodies"])[0]
-    n, arr = ffi.cast("int *", at)[0], ffi.cast("uintptr_t *", at)[1]
+    n: there are so many of them from now on.
+    """
+    at = ffi.cast("uintptr_t *", address_of(space._space) + layout()[which])[0]
+    count, arr = ffi.cast("int *", at), ffi.cast("uintptr_t *", at)[1]
+    if n is not None:
+        count[0] = n
+    size = 8 * count[0]
     return (
-        np.frombuffer(ffi.buffer(ffi.cast("char *", arr), 8 * n), np.uint64) if n else np.empty(0, np.uint64)
+        np.frombuffer(ffi.buffer(ffi.cast("char *", arr), size), np.uint64)
+        if size
+        else np.empty(0, np.uint64)
     )
 
 
@@ -159,6 +196,19 @@ def joint_numbers(joint: pymunk.Constraint) -> tuple[np.ndarray, np.ndarray]:
             made_of = np.frombuffer(ffi.buffer(memory + kind.parameters, 8 * kind.numbers))
             return made_of, np.frombuffer(ffi.buffer(memory + kind.impulse, 8 * kind.impulses))
     return np.empty(0), np.empty(0)
+
+
+def _state_of(joint: pymunk.Constraint) -> tuple[np.ndarray, float]:
+    """What a joint did in the last frame; a ratchet's angle."""
+    made_of, did = joint_numbers(joint)
+    return did.copy(), float(made_of[0]) if isinstance(joint, pymunk.RatchetJoint) else 0.0
+
+
+def _put_state(joint: pymunk.Constraint, state: tuple[np.ndarray, float]) -> None:
+    made_of, did = joint_numbers(joint)
+    did[:], angle = state
+    if isinstance(joint, pymunk.RatchetJoint):
+        made_of[0] = angle
 
 
 def _unthread(space: pymunk.Space) -> None:

@@ -21,6 +21,7 @@ from .pool import Pool
 from .row import make_row
 from .tables import (
     BOUNCES,
+    BOXED,
     CONCAVE,
     FIRST,
     FREE_PAIRS,
@@ -210,6 +211,25 @@ def has_room(tables: Tables, time: float) -> bool:
     for i in range(counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]
         regions += pair.head < 0 and may_touch(tables, pair, -time)
+    counters[MORE_PAIRS] = max(0, pairs)
+    counters[MORE_REGIONS] = max(0, regions)
+    return bool(pairs <= 0 and regions <= 0)
+
+
+@kernel
+def roomy(tables: Tables, shapes: int, time: float) -> bool:
+    """Whether there is more room than a frame of `time` in which so many shapes move asks for (`has_room`); if not, how
+    much.
+
+    Asked when a frame begins: where it had to be run again, it would find other boxes than one that had room.
+    """
+    counters = tables.counters
+    more = SPARE // 2 + shapes // 8
+    pairs = shapes + SPARE + more - counters[FREE_PAIRS]
+    regions = shapes // 2 + SPARE * (1 + counters[CONCAVE]) + more - counters[FREE_REGIONS]
+    for i in range(counters[BOXED]):
+        pair = tables.pairs[tables.near[i].pair]
+        regions += pair.a >= 0 and pair.head < 0 and may_touch(tables, pair, -time)
     counters[MORE_PAIRS] = max(0, pairs)
     counters[MORE_REGIONS] = max(0, regions)
     return bool(pairs <= 0 and regions <= 0)

@@ -389,6 +389,39 @@ def rehash(tables: Tables) -> None:
             tables.table[_place(tables, tables.pairs[p].a, tables.pairs[p].b)] = p
 
 
+@entry
+def append_free(following: np.ndarray, counters: np.ndarray, head: int, first: int) -> None:
+    """Rows from `first` on at the end of a free list: who is taken next does not depend on how large the table is.
+
+    head: the counter of the list's first row; the next one is how many are free.
+    """
+    last = counters[head]
+    counters[head + 1] += len(following) - first
+    for i in range(first, len(following)):
+        following[i] = i + 1 if i + 1 < len(following) else -1
+    if last < 0:
+        counters[head] = first
+        return
+    while 0 <= following[last] < first:
+        last = following[last]
+    following[last] = first
+
+
+@kernel
+def never_used(tables: Tables, pairs: int, regions: int) -> None:
+    """Rows that the counters say were never in use, though they have been (those before `pairs`, `regions`)."""
+    for p in range(tables.counters[USED_PAIRS], pairs):
+        pair = tables.pairs[p]
+        pair.a = -1
+        pair.b = -1
+        pair.head = -1
+        pair.next = p + 1 if p + 1 < len(tables.pairs) else -1
+    for r in range(tables.counters[USED_REGIONS], regions):
+        region = tables.regions[r]
+        region.stamp = -1
+        region.next = r + 1 if r + 1 < len(tables.regions) else -1
+
+
 @kernel
 def comes_first(tables: Tables, a: int, b: int) -> bool:
     """Whether shape a is A of a pair with b: what cannot move, then what is lower, then what is further left.
