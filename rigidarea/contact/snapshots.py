@@ -21,6 +21,7 @@ _CHANGED = {1: "bodies", 2: "shapes", _JOINTS: "joints"}
 _ARBITER = int(ffi.sizeof("struct cpArbiter"))
 #: What of an arbiter is put back: materials, normal, and from `swapped` on what callbacks were told and have said.
 _PARTS = (slice(0, 32), slice(120, 136), slice(168, _ARBITER))
+_NOBODY = np.empty(0, np.uint64)
 #: A block's first room (bytes).
 ROOM = 2**16
 
@@ -41,10 +42,10 @@ class Snapshot:
             size = save(at, idle, ffi.from_buffer(block), len(block))
         self._block, self._contact = block[:size].copy(), weakref.ref(contact)
         self._arbiters = _arbiters_of(space) if space._handlers else {}
-        self._groups = who_sleeps(space)
+        self._groups = who_sleeps(space) if self._block[56:64].view(np.int64)[0] else []  # HEAD.sleepers
         # where bodies may sleep, joints come and go in Chipmunk's list with them
-        self._listed, self._asleep = np.empty(0, np.uint64), []
-        if space.constraints and (self._groups or math.isfinite(space.sleep_time_threshold)):
+        self._listed, self._asleep = _NOBODY, []
+        if (self._groups or math.isfinite(space.sleep_time_threshold)) and space.constraints:
             self._listed = listed(space, "space_constraints").copy()
             awake = set(self._listed.tolist())
             for joint in space.constraints:
