@@ -79,6 +79,7 @@ from .record import (
     ask,
     begin,
     floats,
+    listened,
     members,
     read_motion,
     read_place,
@@ -381,7 +382,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     far, lines = went_far(tables)
     if far and not _whom_it_met(s, space, dt):
         return False
-    if not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
+    if listened(s) and not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
         return False
     if far or lines:
         return_what_passed(load_pool(s), tables, s.frame, far)

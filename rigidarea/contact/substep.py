@@ -110,6 +110,12 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             moved = sweep(tables, k % 2 == 0)
             if k > 0 and moved <= SETTLED * small:
                 break
+            if k == 0 and moved * tables.counters[ROWS] <= SETTLED * small:  # all of it together is little
+                joined = _join(s, tables, h, False)
+                if joined < 0:
+                    return False
+                if joined == 0:
+                    break
             if k == 0:
                 if jointed:
                     search_joints(tables, SEARCH_STEPS, enough)

@@ -133,16 +133,17 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
         if body.inverse_mass > 0.0:
             most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        load = bear(pair, dt, _most(a, b, most))
+        near = tables.near[i]
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
+        load = bear(tables.pairs[near.pair], dt, _most(a, b, most))
         a.load = max(a.load, load)
         b.load = max(b.load, load)
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
+        near = tables.near[i]
+        pair = tables.pairs[near.pair]
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
         now = min(_most(a, b, most), pair.carrying / dt)
         carry(pair, min(a.load, b.load), now, allowed_depth(law, a, b))
 
