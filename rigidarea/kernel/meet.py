@@ -29,7 +29,7 @@ from .motion import (
     unseen_for,
 )
 from .overlap import A_EDGE, OVERFLOW, Work
-from .patch import Patch
+from .patch import centred, faceless
 from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, steer
@@ -197,33 +197,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             elif against:
                 born = True
         region.past = past
-        x = patch.x
-        y = patch.y
-        middle = patch.middle
-        straight = patch.straight
         if patch.blind or past:
-            middle = 0.0
-            straight = 0.0
+            patch = faceless(patch, wx, wy, past == 1)
         elif law.law == LAW_ENERGY:  # the gradient's line of action: through the chord's middle
-            x -= wy * middle
-            y += wx * middle
-            middle = 0.0
-        patch = Patch(
-            patch.area,
-            x,
-            y,
-            wx,
-            wy,
-            patch.chord,
-            middle,
-            straight,
-            0.0 if past else patch.curve_a,
-            0.0 if past else patch.curve_b,
-            patch.depth,
-            patch.reach,
-            patch.blind,
-            0 if past else patch.radial,
-        )
+            patch = centred(patch)
         region.born = 1 if born else 0
         if born:
             region.placed = 0

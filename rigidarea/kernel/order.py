@@ -68,8 +68,12 @@ def sieve(tables: Tables) -> None:
         if may_collide(tables, pair):
             near[i].pair = near[n].pair
             near[n].pair = p
-            near[n].a = tables.shapes[pair.a].body
-            near[n].b = tables.shapes[pair.b].body
+            sa = tables.shapes[pair.a]
+            sb = tables.shapes[pair.b]
+            near[n].a = sa.body
+            near[n].b = sb.body
+            near[n].extent = min(sa.extent, sb.extent)
+            near[n].lined = sa.mirror >= 0 or sb.mirror >= 0
             n += 1
     tables.counters[NEAR] = n
 
@@ -273,6 +277,8 @@ def _set(one: Any, other: Any) -> None:
     one.pair = other.pair
     one.a = other.a
     one.b = other.b
+    one.extent = other.extent
+    one.lined = other.lined
     one.turn = other.turn
     one.order = other.order
     one.beside = other.beside

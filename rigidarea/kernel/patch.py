@@ -159,6 +159,48 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
 
 
 @kernel
+def faceless(patch: Patch, nx: float, ny: float, past: bool) -> Patch:
+    """A patch along another direction, on no face; `past` the middle of a body, on nothing round either."""
+    return Patch(
+        patch.area,
+        patch.x,
+        patch.y,
+        nx,
+        ny,
+        patch.chord,
+        0.0,
+        0.0,
+        0.0 if past else patch.curve_a,
+        0.0 if past else patch.curve_b,
+        patch.depth,
+        patch.reach,
+        patch.blind,
+        0 if past else patch.radial,
+    )
+
+
+@kernel
+def centred(patch: Patch) -> Patch:
+    """A patch whose point of application is its chord's middle."""
+    return Patch(
+        patch.area,
+        patch.x - patch.ny * patch.middle,
+        patch.y + patch.nx * patch.middle,
+        patch.nx,
+        patch.ny,
+        patch.chord,
+        0.0,
+        patch.straight,
+        patch.curve_a,
+        patch.curve_b,
+        patch.depth,
+        patch.reach,
+        patch.blind,
+        patch.radial,
+    )
+
+
+@kernel
 def deepest_of(work: Work, n: int) -> float:
     """Largest depth of the work's n loops, along their chords' normals (length)."""
     most = 0.0
