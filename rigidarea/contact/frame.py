@@ -123,6 +123,8 @@ def silence(constraint: int, dt: float) -> None:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
+    if not s.asleep:
+        return
     for arbiter in members(space, s.space_contacts - 8):
         both = words(arbiter + s.arbiter_shape_a, 2)
         a = row_of_shape(s, both[0])

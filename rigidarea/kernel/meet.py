@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from .arc import distance2
 from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .exposed import exposed_patch
@@ -80,7 +81,7 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
     r = head
     while r >= 0:
         if regions[r].stamp != stamp:
-            d = (regions[r].x - x) ** 2 + (regions[r].y - y) ** 2
+            d = distance2(regions[r].x, regions[r].y, x, y)
             if d < least:
                 least = d
                 best = r

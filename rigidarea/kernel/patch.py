@@ -96,6 +96,14 @@ def _radial(work: Work, loop: Any, disc: int, nx: float, ny: float) -> tuple[flo
     return nx, ny, 0
 
 
+@kernel(forceinline=True)
+def _is_cut_off(work: Work, start: int) -> bool:
+    """Whether a loop of three is what a straight edge, its first, cuts off a disc: the arc's middle is last."""
+    return bool(
+        work.bows[start, 2] == 0.0 and work.bows[start + 1, 2] != 0.0 and work.bows[start + 2, 2] != 0.0
+    )
+
+
 @kernel
 def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose) -> Patch:
     """Loop k of the work, of outlines ia at `pose` and ib."""
@@ -136,6 +144,14 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
             near = loop.start + 3
             reach = nx * (work.polygon[far, 0] - work.polygon[near, 0])
             reach += ny * (work.polygon[far, 1] - work.polygon[near, 1])
+        elif (
+            (head.disc or pool.heads[ib].disc)
+            and loop.stop - loop.start == 3
+            and _is_cut_off(work, loop.start)
+        ):
+            middle_of_arc = loop.start + 2
+            reach = nx * (work.polygon[middle_of_arc, 0] - work.polygon[loop.start, 0])
+            reach = abs(reach + ny * (work.polygon[middle_of_arc, 1] - work.polygon[loop.start, 1]))
         else:
             reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
         if straight > 0.0 or loop.arcs == 0 or chord == 0.0:

@@ -71,9 +71,8 @@ def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float
     """
     if law.stiffness > 0.0:
         return float(law.stiffness)
-    of_face = pair.rate / pair.face
     if law.law != LAW_AREA:
-        return float(of_face * law.length / pair.face)
+        return float(pair.rate / pair.face * law.length / pair.face)
     n = growth(r)
     if r.chord > 0.0:
         part = r.straight / r.chord if n > 1.0 else 0.0
@@ -81,7 +80,7 @@ def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float
     else:
         k = pair.rate * r.depth / r.area
     theta = beyond(law, pair.rate * inverse * h * h)
-    return float((1.0 - theta) * of_face + theta * k)
+    return float(k if theta == 1.0 else (1.0 - theta) * pair.rate / pair.face + theta * k)
 
 
 @kernel(forceinline=True)
