@@ -19,6 +19,7 @@ import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any
 
 from ..report import solver, write_json
@@ -255,12 +256,18 @@ def everyday_summary(report: Row) -> str:
         for row in rows
         if row["scene"] in told["faster_than_native_4"] and row["speed_left"] > SEEN
     ]
-    worst = max((row for row in rows if row["judged"] and row["ratio"]), key=lambda row: row["ratio"])
-    text = (
-        f"- At the defaults the median frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
-        f"median of {len(told['scenes'])} scenes, those without a star in the study's table; the worst, "
-        f"{worst['title']}, {number(worst['ratio'])}).\n"
-    )
+    moving = {
+        row["title"]: row["moving_ms"] / row["native_1_moving_ms"]
+        for row in rows
+        if row["native_1_moving_ms"]
+    }
+    settled = {row["title"]: row["ratio"] for row in rows if row["ratio"]}
+    text = f"- At the defaults, over pymunk's single step, in these {len(rows)} scenes: "
+    for what, ratios in (("the mean frame while they move", moving), ("the median frame of all", settled)):
+        worst = max(ratios, key=lambda title: ratios[title])
+        text += f"{what} {number(median(ratios.values()))} (the median scene; the worst, {worst}, "
+        text += f"{number(ratios[worst])}), "
+    text = text[:-2] + ".\n"
     if dear:
         text += f"- More than pymunk's four steps a frame: {', '.join(dear)}.\n"
     if restless:
