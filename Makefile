@@ -39,13 +39,16 @@ wheel: .venv/.installed
 	RIGIDAREA_LIBRARY=$(OUT)/library $(BIN)/python -m pip wheel -q --no-deps --no-build-isolation -w dist .
 	$(BIN)/python tools/audit.py dist/*.whl
 
-# The wheel in an environment of its own, without numba, tested by all tests that do not build anything.
+# The wheel in an environment of its own, without numba, tested by all tests that do not build anything; WITH: other
+# versions beside it (CI: the oldest of all). Beside the tests lies all but the package.
+WITH ?=
+BESIDE = $(filter-out rigidarea dist $(firstword $(subst /, ,$(OUT))),$(wildcard *))
 test-wheel:
 	rm -rf $(OUT)/installed
 	$(ALIVE) $(PYTHON) -m venv $(OUT)/installed
-	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check "$$(echo dist/*.whl)[all,dev]"
-	cp -r tests tools docs demos README.md mkdocs.yml pyproject.toml $(OUT)/installed
-	cd $(OUT)/installed && $(IN)/python -m pytest -n 2 -m 'not slow'
+	$(ALIVE) $(OUT)/installed/$(IN)/python -m pip install -q --disable-pip-version-check "$$(echo dist/*.whl)[all,dev]" $(WITH)
+	cp -r $(BESIDE) $(OUT)/installed
+	cd $(OUT)/installed && PYTHONPATH= $(IN)/python -m pytest -n 2 -m 'not slow'
 
 # Measures anew all that README.md and docs/ show, and renews those pages: hours. `make docs` says what is of another
 # solver; one part alone: its line here, without $(OUT).

@@ -227,7 +227,6 @@ def test_the_library_has_all_that_python_calls() -> None:
     assert not missing
 
 
-@pytest.mark.slow  # all that is flexible is compiled for it, where it was not before
 def test_the_rehearsal_calls_all_that_python_calls() -> None:
     """So a kernel that is new is in the next library, or this says that `rehearsal` does not know it."""
     if rigidarea.backend() != "compiled":

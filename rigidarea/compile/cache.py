@@ -20,8 +20,8 @@ from numba.core.caching import IndexDataCacheFile
 FORMAT = b"1"
 """What the files below look like: another number, another folder."""
 
-USUALLY = "one to two minutes"
-"""What it takes: 60 to 105 s of one core of a Xeon (`bench start`)."""
+USUALLY = "ten minutes" if os.environ.get("RIGIDAREA_AHEAD") else "two to four minutes"
+"""What it takes: 2 to 3 minutes of one core of a Xeon (`bench start`); a library for a wheel compiles more."""
 
 _DIGEST = hashlib.sha256().digest_size
 

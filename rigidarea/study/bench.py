@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from ..compile.chosen import LIBRARY, backend
 from ..outline import Outline
 from ..overlap import overlap
 from ..report import envelope
@@ -185,13 +186,17 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
 
     Processor time, the median of `repeats` rounds, each of which asks all pairs of both: a drift hits all alike.
     Rows: pair, points_a, points_b, regions, query_us, call_us (of `rigidarea.overlap`, from Python), shapely_us,
-    area_error (relative, against shapely). Points are
+    area_error (relative, against shapely). ValueError where nothing compiles. Points are
     the ends of edges and arcs; shapely gets arcs sampled to a thousandth of half the extent (a disc: 72 points), as
     its users sample them.
     """
     import shapely
     from shapely.affinity import affine_transform
 
+    if backend() == LIBRARY:
+        raise ValueError(
+            "bench kernels compiles a loop of its own: expected RIGIDAREA_BACKEND=compiled (numba), got library"
+        )
     pairs = kernel_pairs()
     for name in names:
         if name not in pairs:

@@ -14,7 +14,6 @@ import numpy as np
 import pymunk
 import shapely
 
-from ...kernel.jit import njit
 from ...outline import Outline
 from ..scene import Array, Scene
 from .area import AreaExplicit, explicit_run
@@ -24,19 +23,15 @@ EXPONENT = 0.5
 """q of Eq. 12, the paper's choice."""
 
 
-@njit
 def any_inside(nodes: Array, edges: Array, x: float, y: float, c: float, s: float) -> bool:
     """Whether one of `nodes` (n, 2) lies inside the rings of `edges` (m, 4); nodes' pose in the edges' coordinates."""
-    for i in range(len(nodes)):
-        px, py = x + c * nodes[i, 0] - s * nodes[i, 1], y + s * nodes[i, 0] + c * nodes[i, 1]
-        inside = False
-        for k in range(len(edges)):
-            x0, y0, x1, y1 = edges[k]
-            if (y0 > py) != (y1 > py) and px < x0 + (py - y0) / (y1 - y0) * (x1 - x0):
-                inside = not inside
-        if inside:
-            return True
-    return False
+    px = (x + c * nodes[:, 0] - s * nodes[:, 1])[:, None]
+    py = (y + s * nodes[:, 0] + c * nodes[:, 1])[:, None]
+    x0, y0, x1, y1 = edges.T
+    across = (y0 > py) != (y1 > py)
+    with np.errstate(divide="ignore", invalid="ignore"):  # a level edge is never crossed
+        crossed = across & (px < x0 + (py - y0) / (y1 - y0) * (x1 - x0))
+    return bool((crossed.sum(axis=1) % 2 == 1).any())
 
 
 def has_node_inside(one: pymunk.Shape, other: pymunk.Shape) -> bool:
@@ -46,7 +41,7 @@ def has_node_inside(one: pymunk.Shape, other: pymunk.Shape) -> bool:
     turn = a.angle - b.angle
     x, y = (a.position - b.position).rotated(-b.angle)
     nodes, edges = one.nodes, other.edges  # type: ignore[attr-defined]
-    return bool(any_inside(nodes, edges, x, y, math.cos(turn), math.sin(turn)))
+    return any_inside(nodes, edges, x, y, math.cos(turn), math.sin(turn))
 
 
 def gate(arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
