@@ -197,8 +197,6 @@ TWICE: set[str] = {
 }
 LONG = 400
 LONGER: set[str] = {
-    "rigidarea.bring.scene",
-    "rigidarea.bring.svg",
     "rigidarea.chipmunk",
     "rigidarea.contact.arrays",
     "rigidarea.contact.attach",
@@ -213,8 +211,6 @@ LONGER: set[str] = {
     "rigidarea.outline",
     "rigidarea.plan.facts",
     "rigidarea.plan.plan",
-    "rigidarea.study.everyday_scenes",
-    "rigidarea.study.growth",
     "rigidarea.worlds",
 }
 

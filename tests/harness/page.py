@@ -272,7 +272,7 @@ def everyday_summary(report: Row) -> str:
 
 def growth(report: Row) -> str:
     """Families of scenes at their sizes: mean frames (µs), ours over pymunk's step, and what attaching takes."""
-    from rigidarea.study.growth import GROWING
+    from rigidarea.study.growing_scenes import GROWING
 
     keys = ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth", "start_ms")
     rows = [
