@@ -197,7 +197,6 @@ TWICE: set[str] = {
 }
 LONG = 400
 LONGER: set[str] = {
-    "rigidarea.chipmunk",
     "rigidarea.contact.arrays",
     "rigidarea.contact.attach",
     "rigidarea.contact.frame",

@@ -14,8 +14,9 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
+from ..chipmunk import address_of, layout, normal_of
 from ..gate import not_negative, one_of, whole
+from ..joint_structs import kinds_of_joints
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.jit import lock_for_fork
 from ..kernel.join import SPARE

@@ -11,7 +11,8 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import LayoutError, address_of, kinds_of_joints, layout
+from ..chipmunk import LayoutError, address_of, layout
+from ..joint_structs import kinds_of_joints
 
 _JOINTS, _DOZED = 3, 4
 _CHANGED = {1: "bodies", 2: "shapes", _JOINTS: "joints"}
