@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from harness import page
 from rigidarea.report import solver
-from rigidarea.study import atlas, chart, page
+from rigidarea.study import atlas, chart
 from rigidarea.study.scene import get_scene, scenes
 
 

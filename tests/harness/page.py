@@ -22,12 +22,13 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
-from ..report import solver, write_json
-from . import front
+from rigidarea.report import solver, write_json
+from rigidarea.study import front
+from rigidarea.study.chart import points
+from rigidarea.study.peers import KNOWN_WELL
+from rigidarea.study.records import Row
+
 from .causes import CAUSES
-from .chart import points
-from .peers import KNOWN_WELL
-from .records import Row
 
 TABLES = {
     "ratios": ("chart", "ratios"),
@@ -42,10 +43,10 @@ TABLES = {
     "levels": ("growth", "levels"),
     "maps": ("atlas", "maps"),
     "levels_compared": ("compare", "levels_compared"),
-    "plan_summary": ("plan", "..plan.picture:summaries"),
-    "plan_outside": ("plan", "..plan.picture:outside"),
-    "pymunk_examples": ("pymunk-examples", "..compat.command:examples_page"),
-    "pymunk_tests": ("pymunk-tests", "..compat.command:tests_page"),
+    "plan_summary": ("plan", ".plan_picture:summaries"),
+    "plan_outside": ("plan", ".plan_picture:outside"),
+    "pymunk_examples": ("pymunk-examples", ".command:examples_page"),
+    "pymunk_tests": ("pymunk-tests", ".command:tests_page"),
 }
 """Name in a page: (results, what makes it of them: a function of this module, or of another: `module:function`)."""
 
@@ -278,7 +279,7 @@ def everyday_summary(report: Row) -> str:
 
 def growth(report: Row) -> str:
     """Families of scenes at their sizes: mean frames (µs), ours over pymunk's step, and what attaching takes."""
-    from .growth import GROWING
+    from rigidarea.study.growing_scenes import GROWING
 
     keys = ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth", "start_ms")
     rows = [
