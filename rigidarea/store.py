@@ -50,7 +50,7 @@ from .kernel.tree import NODE
 BODY_WORDS, SHAPE_WORDS = BODY.itemsize // 8, SHAPE.itemsize // 8
 #: The tables that outlive a frame, and the counters beside them: what it starts from where it is run again, and what
 #: snapshots, copies and worlds begin with. The counter says how many rows are in use (-1: all of them).
-LASTING = {
+LASTING: dict[str, tuple[Any, int]] = {
     "bodies": (BODY, BODIES),
     "shapes": (SHAPE, SHAPES),
     "pairs": (PAIR, USED_PAIRS),
