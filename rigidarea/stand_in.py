@@ -14,6 +14,9 @@ from .arcs import Points, area_and_first_moment
 
 MAX_VERTICES = 8
 """Most vertices of a polygonal stand-in: Chipmunk's GJK walks them all."""
+DISTINCT = 1e-9
+"""Of its size: corners nearer to each other are one. An edge between two that only rounding parts has no direction, and
+Chipmunk misses one in thirty of that shape's contacts, or finds them, by where it begins to look."""
 
 
 def hull_of(points: Points) -> Points:
@@ -49,13 +52,20 @@ def stand_in(hull: Points) -> tuple[type[pymunk.Shape], tuple[Any, ...]]:
     The hull where it has no more than 8 vertices, else the tighter of a bounding circle and a bounding octagon; the
     circle, unless the octagon is a tenth smaller.
     """
+    hull = _distinct(hull)
     if len(hull) <= MAX_VERTICES:
         return pymunk.Poly, (hull.tolist(),)
     octagon = _bounding_octagon(hull)
     center, radius = _bounding_circle(hull)
     if area_and_first_moment(octagon - center)[0] > 0.9 * math.pi * radius**2:
         return pymunk.Circle, (radius, center.tolist())
-    return pymunk.Poly, (octagon.tolist(),)
+    return pymunk.Poly, (_distinct(octagon).tolist(),)
+
+
+def _distinct(corners: Points) -> Points:
+    """The corners (m, 2) of a convex polygon without those that are the next one but for rounding."""
+    apart = np.hypot(*(np.roll(corners, -1, axis=0) - corners).T)
+    return corners[apart > DISTINCT * np.ptp(corners, axis=0).max()]
 
 
 def _bounding_circle(hull: Points) -> tuple[Points, float]:

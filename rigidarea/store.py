@@ -20,13 +20,19 @@ from .kernel.place import Pose, overlap_of_outlines
 from .kernel.pool import HEAD, Pool
 from .kernel.row import ROW
 from .kernel.tables import (
+    APART,
     ASKED,
+    AWAKE,
     BODIES,
     BODY,
     BOXED,
     COUNTED,
+    COUNTERS,
+    JOINTS,
+    LIVE,
     MORE_KEPT,
     MORE_PAIRS,
+    MOVERS,
     NEIGHBOURS,
     PAIR,
     REGION,
@@ -41,10 +47,30 @@ from .kernel.tables import (
 )
 from .kernel.tree import NODE
 
-BODY_WORDS, PAIR_WORDS, REGION_WORDS = BODY.itemsize // 8, PAIR.itemsize // 8, REGION.itemsize // 8
-SHAPE_WORDS, NODE_WORDS, NEAR_WORDS = SHAPE.itemsize // 8, NODE.itemsize // 8, NEIGHBOURS.itemsize // 8
-#: What a frame that may have to be run again starts from.
-KEPT = ("bodies", "shapes", "pairs", "regions", "nodes", "roots", "near", "asked", "counters")
+BODY_WORDS, SHAPE_WORDS = BODY.itemsize // 8, SHAPE.itemsize // 8
+#: The tables that outlive a frame, and the counters beside them: what it starts from where it is run again, and what
+#: snapshots, copies and worlds begin with. The counter says how many rows are in use (-1: all of them).
+LASTING: dict[str, tuple[Any, int]] = {
+    "bodies": (BODY, BODIES),
+    "shapes": (SHAPE, SHAPES),
+    "pairs": (PAIR, USED_PAIRS),
+    "regions": (REGION, USED_REGIONS),
+    "nodes": (NODE, -1),
+    "roots": ("i4", -1),
+    "near": (NEIGHBOURS, BOXED),
+    "live": ("i4", LIVE),
+    "awake": ("i4", AWAKE),
+    "movers": ("i4", MOVERS),
+    "asked": ("i4", ASKED),
+    "apart": (("i4", 2), APART),
+    "joints": (JOINT, JOINTS),
+}
+#: What no frame starts from: made anew in each, or from the others (`table`).
+SCRATCH = ("rows", "factors", "mobility", "told", "table")
+#: Of the state record, what outlives a frame.
+LASTING_STATE = ("before", "frame", "taken", "contacts", "asleep")
+#: What `move` does.
+OUT, BACK, SIZE = range(3)
 #: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
 EXTREME = 1e30
 #: Arrays by the named tuple that they belong to.
@@ -55,9 +81,12 @@ _ARRAYS = [
     *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "table", "counters"),
     *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
     *("form_extent", "form_mirror", "form_users", "form_span", "form_raw", "form_table", "form_fill"),
-    *(f"kept_{name}" for name in KEPT),
+    "kept",
     "seen",
 ]
+_N_ARRAYS = len(_ARRAYS)
+#: Of each of LASTING: which array it is, bytes of a row, the counter of those in use.
+_PLACES = tuple((_ARRAYS.index(name), np.dtype(kind).itemsize, n) for name, (kind, n) in LASTING.items())
 #: Offsets in Chipmunk's structs (bytes), see `chipmunk.py`.
 OFFSETS = [
     *("body_position", "body_angle", "body_cog", "body_transform", "body_velocity", "body_spin"),
@@ -82,6 +111,7 @@ STATE = record(
     + [(name, "i8") for name in OFFSETS]
     + [(name, (Law.__annotations__[name] == "int" and "i8") or "f8") for name in Law._fields]
     + [
+        ("own_at", "u8"),  # this record
         ("stiffness_given", "i8"),
         ("explicit", "i8"),  # 1: one symplectic Euler step a frame, Chipmunk's own positions and joints
         ("substeps", "i8"),  # of a frame
@@ -131,12 +161,6 @@ STATE = record(
 
 
 @kernel
-def _copy(to: int, source: int, size: int) -> None:
-    """Copy so many words."""
-    copy_memory(to, source, np.uint64(8 * size))
-
-
-@kernel
 def clear(at: int, size: int) -> None:
     """So many words of nothing."""
     there = array_at(at, (size,), np.uint64)
@@ -145,23 +169,36 @@ def clear(at: int, size: int) -> None:
 
 
 @kernel
+def move(back: int, block: int, at: int, address: int, size: int) -> int:
+    """So many bytes from memory into the block (OUT), or back (BACK), or neither (SIZE); where the block goes on."""
+    if back == BACK:
+        copy_memory(np.uint64(address), np.uint64(np.int64(block) + at), np.uint64(size))
+    elif back == OUT:
+        copy_memory(np.uint64(np.int64(block) + at), np.uint64(address), np.uint64(size))
+    return int(at + (size + 7) // 8 * 8)
+
+
+@kernel
+def move_tables(s: Any, n: np.ndarray, back: int, block: int, at: int) -> int:
+    """All that outlives a frame of our tables (`LASTING`), as far as the counters n say that it is in use."""
+    words = array_at(s.own_at, (2 * _N_ARRAYS,), np.int64)
+    for k in range(len(_PLACES)):
+        array, size, counter = _PLACES[k]
+        rows = n[counter] if counter >= 0 else words[_N_ARRAYS + array]
+        at = move(back, block, at, words[array], rows * size)
+    return int(at)
+
+
+@kernel
 def keep_tables(s: Any) -> bool:
     """Take down what a frame that may have to be run again starts from. Whether there was room for it."""
-    counters = array_at(s.counters_at, (s.counters_n,), np.int64)
-    more = s.kept_bodies_n < s.bodies_n or s.kept_shapes_n < s.shapes_n
-    if more or s.kept_pairs_n < s.pairs_n or s.kept_regions_n < s.regions_n:
+    counters = array_at(s.counters_at, (COUNTERS,), np.int64)
+    if s.kept_n < move_tables(s, counters, SIZE, 0, 8 * COUNTERS):
         counters[MORE_KEPT] = 1
         return False
     s.kept = 1
-    _copy(s.kept_bodies_at, s.bodies_at, counters[BODIES] * BODY_WORDS)
-    _copy(s.kept_shapes_at, s.shapes_at, counters[SHAPES] * SHAPE_WORDS)
-    _copy(s.kept_pairs_at, s.pairs_at, counters[USED_PAIRS] * PAIR_WORDS)
-    _copy(s.kept_regions_at, s.regions_at, counters[USED_REGIONS] * REGION_WORDS)
-    _copy(s.kept_nodes_at, s.nodes_at, s.nodes_n * NODE_WORDS)
-    copy_memory(s.kept_roots_at, s.roots_at, np.uint64(12))
-    _copy(s.kept_near_at, s.near_at, counters[BOXED] * NEAR_WORDS)
-    copy_memory(s.kept_asked_at, s.asked_at, np.uint64(4 * counters[ASKED]))
-    _copy(s.kept_counters_at, s.counters_at, s.counters_n)
+    move(OUT, s.kept_at, 0, s.counters_at, 8 * COUNTERS)
+    move_tables(s, counters, OUT, s.kept_at, 8 * COUNTERS)
     return True
 
 
@@ -169,20 +206,13 @@ def keep_tables(s: Any) -> bool:
 def put_tables_back(s: Any, tables: Tables) -> None:
     """The tables as they were kept, but for how much more room the frame has wanted."""
     counters = tables.counters
-    kept = array_at(s.kept_counters_at, (s.counters_n,), np.int64)
+    kept = array_at(s.kept_at, (COUNTERS,), np.int64)
     for i in range(MORE_PAIRS, COUNTED + 1):
         kept[i] = counters[i]
     pairs = counters[USED_PAIRS]
     regions = counters[USED_REGIONS]
-    _copy(s.bodies_at, s.kept_bodies_at, kept[BODIES] * BODY_WORDS)
-    _copy(s.shapes_at, s.kept_shapes_at, kept[SHAPES] * SHAPE_WORDS)
-    _copy(s.pairs_at, s.kept_pairs_at, kept[USED_PAIRS] * PAIR_WORDS)
-    _copy(s.regions_at, s.kept_regions_at, kept[USED_REGIONS] * REGION_WORDS)
-    _copy(s.nodes_at, s.kept_nodes_at, s.nodes_n * NODE_WORDS)
-    copy_memory(s.roots_at, s.kept_roots_at, np.uint64(12))
-    _copy(s.near_at, s.kept_near_at, kept[BOXED] * NEAR_WORDS)
-    copy_memory(s.asked_at, s.kept_asked_at, np.uint64(4 * kept[ASKED]))
-    _copy(s.counters_at, s.kept_counters_at, s.counters_n)
+    move(BACK, s.kept_at, 0, s.counters_at, 8 * COUNTERS)
+    move_tables(s, counters, BACK, s.kept_at, 8 * COUNTERS)
     never_used(tables, pairs, regions)
     rehash(tables)
 

@@ -9,10 +9,8 @@ A world is one block of memory (`contact/alone.py`); geometry is shared by all.
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import replace
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -20,12 +18,12 @@ import pymunk
 from numpy.typing import ArrayLike, NDArray
 from pymunk._chipmunk_cffi import ffi
 
-from .chipmunk import address_of
 from .contact import attached
-from .contact.image import BODY_BYTES, SHAPE_BYTES, Image, image_of, move_over, rows_of
+from .contact.image import BODY_BYTES, SHAPE_BYTES, Image
+from .contact.many import Many, WorldSnapshot
 from .contact.steppable import check_steppable
 from .gate import whole
-from .kernel.tables import MORE_PAIRS, MORE_REGIONS, MORE_WORK, SUBSTEP
+from .kernel.tables import SUBSTEP
 from .outline import positive
 
 CONTACTS = np.dtype(
@@ -46,7 +44,7 @@ CONTACTS = np.dtype(
 (length/time)."""
 
 
-class Worlds:
+class Worlds(Many):
     """n copies of an attached space, or of several, each with its own state and parameters.
 
     They begin as the space is now, contacts included, and the space itself goes on by itself. A world's frame gives the
@@ -69,46 +67,19 @@ class Worlds:
         contacts = [contact for contact in map(attached, spaces) if contact is not None]
         if len(contacts) < len(spaces):
             raise ValueError("expected an attached space: rigidarea.attach(space) first")
-        self.n = whole(len(spaces) if n is None else n, "n", 1)
-        if self.n % len(spaces):
+        n = whole(len(spaces) if n is None else n, "n", 1)
+        if n % len(spaces):
             raise ValueError(f"n must be a multiple of the number of spaces, {len(spaces)}, got {n}")
-        self.threads = len(os.sched_getaffinity(0)) if threads is None else whole(threads, "threads", 1)
-        self._call = _functions()
-        self._outlines = stores = [contact._store for contact in contacts]  # shared: kept alive
+        threads = len(os.sched_getaffinity(0)) if threads is None else whole(threads, "threads", 1)
+        stores = [contact._store for contact in contacts]
         for one, contact, store in zip(spaces, contacts, stores):
             contact._between_steps("Worlds")
             check_steppable(one, store)
             store.grow_joints(len(one.constraints))
             store.sync()
-        most = np.max([rows_of(store, one) for store, one in zip(stores, spaces)], axis=0).tolist()
-        made = [image_of(store, one, most) for store, one in zip(stores, spaces)]
-        self._images = [image for image, _ in made]
-        self._make_room()
-        for first, (_, memory) in enumerate(made):
-            self._put(np.arange(first, len(self._at), len(made)), memory, 0)
+        super().__init__(spaces, stores, n, threads)
         self._kept = np.zeros(4 * self.bodies + 2 * self._shapes + 3)
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
-
-    def _make_room(self) -> None:
-        """Memory for all worlds, and behind them how those of each space begin; scratch for each thread."""
-        images, rows, size = self._images, self.n + len(self._images), self.nbytes
-        room = np.zeros(rows * size + 64, np.uint8)
-        first = -address_of(ffi.from_buffer(room)) % 64
-        self._memory = room[first : first + rows * size].reshape(rows, size)
-        self._at = address_of(ffi.from_buffer(self._memory)) + size * np.arange(rows, dtype=np.uint64)
-        lengths = {name: max(image.lengths[name] for image in images) for name in images[0].lengths}
-        work = type(images[0].work)(*(max(same, key=len) for same in zip(*(image.work for image in images))))
-        largest = replace(images[0], lengths=lengths, work=work)
-        self._scratches = [largest.scratch() for _ in range(self.threads)]
-
-    def _by_space(self, numbers: NDArray[np.int64]) -> Iterator[tuple[int, NDArray[np.int64]]]:
-        """The number of each space, and those of the worlds that are copies of it."""
-        if len(self._images) == 1:
-            yield 0, numbers
-            return
-        whose = numbers % len(self._images)
-        for first in np.unique(whose).tolist():
-            yield first, numbers[whose == first]
 
     @property
     def bodies(self) -> int:
@@ -124,11 +95,6 @@ class Worlds:
         """(n, bodies): where there is a body. All are there, unless the spaces have different numbers of bodies."""
         counts = np.resize([image.count for image in self._images], self.n)
         return np.arange(self.bodies) < counts[:, None]
-
-    @property
-    def nbytes(self) -> int:
-        """The memory that one world takes (bytes); what is shared, and the threads' scratch, is not in it."""
-        return max(image.size for image in self._images)
 
     # --- stepping ---
 
@@ -193,17 +159,6 @@ class Worlds:
             )
             states[again] = ends
 
-    def _grow(self, numbers: NDArray[np.int64]) -> None:
-        """All worlds have as much more room as these want (`Store.grow`), and begin with it when they are reset."""
-        old, memory, homes, every = self._images, self._memory, self._at, len(self._images)
-        short = [self._table(old[first], "counters")[own] for first, own in self._by_space(numbers)]
-        want = np.concatenate(short)[:, [MORE_PAIRS, MORE_REGIONS, MORE_WORK]].max(axis=0)
-        self._images = [image.larger(*want.tolist()) for image in old]
-        self._make_room()
-        for k, (image, larger) in enumerate(zip(old, self._images)):
-            own = slice(k, None, every)
-            move_over(image, memory[own], homes[own], larger, self._memory[own], self._at[own], self._call)
-
     def _numbers(self, which: ArrayLike | None) -> NDArray[np.int64]:
         if which is None:
             return np.arange(self.n)
@@ -253,50 +208,7 @@ class Worlds:
         for _, own in self._by_space(numbers):
             self._put(own, *self._brought_over(snapshot, self._images[own[0] % len(self._images)]))
 
-    def _brought_over(self, snapshot: WorldSnapshot, image: Image) -> tuple[Any, int]:
-        """A snapshot's memory and its address, in the form that worlds have now: they may have more room since."""
-        if snapshot.image is image:
-            return snapshot.memory, snapshot.home
-        memory = np.zeros((1, image.size), np.uint8)
-        home, old_home = address_of(ffi.from_buffer(memory)), np.array([snapshot.home], np.uint64)
-        at = np.array([home], np.uint64)
-        move_over(snapshot.image, snapshot.memory[None], old_home, image, memory, at, self._call)
-        return memory, home
-
-    def _put(self, numbers: NDArray[np.int64], memory: Any, home: int, kept: Any = None) -> None:
-        """Worlds that are copies of one space."""
-        if not len(numbers):
-            return
-        image = self._images[numbers[0] % len(self._images)]
-        at, words, size = self._at[numbers], image.fixups, image.size
-        own = ffi.NULL if kept is None else ffi.from_buffer(kept)
-        self._call.put(
-            ffi.from_buffer(at),
-            len(at),
-            ffi.from_buffer(memory),
-            home,
-            size,
-            ffi.from_buffer(words),
-            len(words),
-            own,
-        )
-
     # --- parameters ---
-
-    def _field(self, kind: Any, name: str) -> Any:
-        """A field of WORLD, of all worlds, in place."""
-        return self._view(kind.fields[name][1], (), (), kind.fields[name][0])
-
-    def _view(
-        self, first: int, shape: tuple[int, ...], strides: tuple[int, ...], dtype: Any = np.float64
-    ) -> Any:
-        """Numbers of all worlds, in place: from the byte `first` of each world on."""
-        return np.ndarray((self.n, *shape), dtype, self._memory, first, (self.nbytes, *strides))
-
-    def _table(self, image: Image, name: str) -> Any:
-        """(n, rows): a table of all worlds, in place; it is one where a world is of this image."""
-        kind = image.kinds[name]
-        return self._view(image.offsets[name], (image.lengths[name],), (kind.itemsize,), kind)
 
     @property
     def gravity(self) -> NDArray[np.float64]:
@@ -398,31 +310,6 @@ class Worlds:
 
     def __repr__(self) -> str:
         return f"<Worlds: {self.n} of {self.bodies} bodies, {self.threads} threads>"
-
-
-class WorldSnapshot:
-    """A world as it was: `Worlds.snapshot`."""
-
-    def __init__(self, memory: Any, home: int, image: Image) -> None:
-        self.memory, self.home, self.image = memory, home, image
-
-
-@lru_cache(maxsize=1)
-def _functions() -> Any:
-    from types import SimpleNamespace
-
-    from .contact import alone
-
-    kinds = {
-        "step": "long long(*)(void *, void *, long long, long long, void *, double, long long, void *)",
-        "read": "void(*)(void *, long long, long long, void *)",
-        "write": "void(*)(void *, long long, long long, void *)",
-        "put": "void(*)(void *, long long, void *, long long, long long, void *, long long, void *)",
-        "enlarged": "void(*)(void *, long long, void *)",
-    }
-    return SimpleNamespace(
-        **{name: ffi.cast(kind, getattr(alone, name).address) for name, kind in kinds.items()}
-    )
 
 
 def _finite(given: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

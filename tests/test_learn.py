@@ -17,7 +17,7 @@ def test_a_few_generations_get_better_and_the_curve_is_drawn(tmp_path):
     """The first policy does nothing: none of its pegs is in. The same seed learns the same."""
     arguments = ["--generations", "15", "--seconds", "1000"]
     (curve,) = learn.main([*arguments, "--out", str(tmp_path / "curve.png")]).values()
-    assert len(curve) == 4 and curve[0][2] == 0
+    assert len(curve) == 16 and curve[0][2] == 0
     assert curve[-1][1] > curve[0][1] + 1  # cm nearer
     assert (tmp_path / "curve.png").stat().st_size > 5000
     (again,) = learn.main(arguments).values()

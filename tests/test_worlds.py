@@ -19,6 +19,13 @@ def worlds_of(make, seed: int, n: int = 2, frames: int = 0, **more) -> tuple[pym
     return space, Worlds(space, n, **more)
 
 
+def check_world(make, seed: int) -> None:
+    space, worlds = worlds_of(make, seed, frames=seed % 60)
+    for _ in range(120):
+        space.step(DT)
+        np.testing.assert_array_equal(worlds.step(DT)[1], state(space))
+
+
 def plain(seed: int) -> pymunk.Space:
     """A scene with joints, of bodies that only pymunk moves."""
     return with_joints(seed)
@@ -41,10 +48,7 @@ def test_a_world_does_what_the_space_alone_does(make, seed, frames):
 @pytest.mark.parametrize("part", range(10))
 def test_five_hundred_of_each(make, part):
     for seed in range(7000 + 50 * part, 7050 + 50 * part):
-        space, worlds = worlds_of(make, seed, frames=seed % 60)
-        for _ in range(120):
-            space.step(DT)
-            np.testing.assert_array_equal(worlds.step(DT)[1], state(space))
+        check_world(make, seed)
 
 
 def test_forces_act_as_the_bodys_own(seed=3):

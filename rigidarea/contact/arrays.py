@@ -48,7 +48,7 @@ from ..kernel.tables import (
 )
 from ..kernel.tree import FREE, NODE
 from ..store import _ARRAYS as ARRAYS
-from ..store import KEPT, OFFSETS, STATE, enter_bodies
+from ..store import LASTING, OFFSETS, STATE, enter_bodies
 from .geometry import Forms, enter_form, read_shapes
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
@@ -68,6 +68,7 @@ class Store:
         self.state = np.zeros(1, STATE)
         self._words = self.state.view(np.int64)  # field by field a record takes ten times as long
         self.at = int(self.state.ctypes.data)
+        self.state["own_at"] = self.at
         self._listed: Sequence[np.ndarray | None] = [None] * len(ARRAYS)  # whose addresses it has
         self.pool = Pool(
             np.zeros((256, 2)),
@@ -117,7 +118,7 @@ class Store:
         self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
         self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
         # room for a copy of what a frame changes, and for places: made when a frame asks for it (`MORE_KEPT`)
-        self._kept = {name: np.zeros(0) for name in (*(f"kept_{name}" for name in KEPT), "seen")}
+        self._kept = {"kept": np.zeros(0, np.uint8), "seen": np.zeros((0, 3))}
         self._keeps = False
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._most = (0, 0)  # points and rings of the largest outline
@@ -155,11 +156,13 @@ class Store:
     def _record(self) -> np.ndarray:
         """The words of the state record of these arrays."""
         tables = self.tables._asdict()
-        for name in KEPT if self._keeps else ():
-            if len(self._kept[f"kept_{name}"]) != len(tables[name]):
-                self._kept = {**self._kept, f"kept_{name}": np.zeros(len(tables[name]), tables[name].dtype)}
-        if self._keeps and len(self._kept["seen"]) != len(self.tables.bodies):
-            self._kept = {**self._kept, "seen": np.zeros((len(self.tables.bodies), 3))}
+        if self._keeps:
+            room = room_to_keep({name: array.nbytes for name, array in tables.items()})
+            if len(self._kept["kept"]) != room:
+                self._kept = {
+                    "kept": np.zeros(room, np.uint8),
+                    "seen": np.zeros((len(self.tables.bodies), 3)),
+                }
         own = {name: getattr(self, name) for name in _OWN} | self._named_forms()
         arrays = {**self.pool._asdict(), **self.work._asdict(), **tables, **own, **self._kept}
         words, known = self._words.copy(), self._listed
@@ -399,6 +402,11 @@ class Store:
     def known_shapes(self) -> np.ndarray:
         """The rows of tables.shapes in use (outline -1: free again)."""
         return self.tables.shapes[: int(self.tables.counters[SHAPES])]
+
+
+def room_to_keep(sizes: dict[str, int]) -> int:
+    """How many bytes `store.keep_tables` wants at the most of tables of these sizes (bytes)."""
+    return sum(-(-sizes[name] // 8) * 8 for name in (*LASTING, "counters"))
 
 
 def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:

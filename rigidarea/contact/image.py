@@ -27,31 +27,19 @@ from ..kernel.tables import (
     TOLD,
 )
 from ..store import _ARRAYS as ARRAYS
-from ..store import KEPT, OFFSETS
-from .arrays import Store
+from ..store import LASTING, OFFSETS
+from .arrays import Store, room_to_keep
 
 #: Bytes of Chipmunk's structs that are copied.
 SPACE_BYTES, BODY_BYTES, SHAPE_BYTES = 200, 248, 192
 #: Arrays of the state record that no frame remembers: a thread's.
 _SCRATCH = (
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("rows", "factors", "mobility", *(f"kept_{name}" for name in KEPT), "seen"),
+    *("rows", "factors", "mobility", "kept", "seen"),
 )
-#: Arrays of a world's own whose size is known, and those that grow with pairs and regions.
-_FIXED = (
-    "counters",
-    "bodies",
-    "shapes",
-    "nodes",
-    "roots",
-    "live",
-    "awake",
-    "movers",
-    "asked",
-    "apart",
-    "joints",
-)
+#: Arrays of a world's own that grow with pairs and regions, and those whose size is known.
 GROWING = ("pairs", "regions", "near", "told", "table")
+_FIXED = ("counters", *(name for name in LASTING if name not in GROWING))
 
 
 @dataclass(frozen=True)
@@ -93,10 +81,8 @@ class Image:
         scratch = self.work
         if work > 0:
             scratch = enlarged(self.work, *(2 * most for most in self.most))
-        if pairs > 0:
-            lengths["pairs"] = (lengths["pairs"] + pairs) * 9 // 8
-        if regions > 0:
-            lengths["regions"] = (lengths["regions"] + regions) * 9 // 8
+        lengths["pairs"] += max(0, pairs)  # there is some to spare in what a frame asks for (`join.roomy`)
+        lengths["regions"] += max(0, regions)
         offsets = dict(self.offsets)
         size = _lay_out(offsets, lengths, self.kinds, offsets["pairs"])
         return replace(self, offsets=offsets, lengths=lengths, size=size, work=scratch)
@@ -108,8 +94,8 @@ class Image:
         arrays = {name: np.zeros_like(array) for name, array in self.work._asdict().items()}
         arrays |= {"rows": np.zeros(rows, kinds["rows"]), "factors": np.zeros(rows, kinds["factors"])}
         arrays |= {"mobility": np.zeros(lengths["bodies"], kinds["mobility"])}
-        arrays |= {f"kept_{name}": np.zeros(lengths[name], kinds[name]) for name in KEPT}
-        arrays |= {"seen": np.zeros((lengths["bodies"], 3))}
+        room = room_to_keep({name: n * kinds[name].itemsize for name, n in lengths.items()})
+        arrays |= {"kept": np.zeros(room, np.uint8), "seen": np.zeros((lengths["bodies"], 3))}
         words = [len(_SCRATCH) * 2]
         for name in _SCRATCH:
             field = ARRAYS.index(name)
@@ -251,6 +237,7 @@ def image_of(store: Store, space: pymunk.Space, rows: tuple[int, int, int] = (0,
         words[ARRAYS.index(name)] = offsets[name]
         words[len(ARRAYS) + ARRAYS.index(name)] = lengths[name]
         fixups.append(state_at // 8 + ARRAYS.index(name))
+    point(record, record.dtype.fields["own_at"][1] // 8, state_at, state_at)
     record["ask_at"], record["phases_at"], record["user_pre_solve"] = alone.no_answer.address, 0, 0
     record["substeps"], record["steps_given"], record["tolerance"] = SUBSTEPS, 0, 0.0
     record["sweeps"], record["joint_count"], record["asleep"] = space.iterations, 0, 0

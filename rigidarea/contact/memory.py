@@ -39,6 +39,7 @@ from ..kernel.tables import (
     end_pair,
     rehash,
 )
+from ..store import LASTING, LASTING_STATE
 from .arrays import Store
 from .snapshots import idle_of, joint_numbers, listed, put_to_sleep, who_sleeps
 
@@ -46,35 +47,18 @@ from .snapshots import idle_of, joint_numbers, listed, put_to_sleep, who_sleeps
 class Memory(NamedTuple):
     """Arrays of a `Store`; shapes and joints by their places in the space's lists."""
 
-    pairs: np.ndarray
-    """(n,) PAIR, the two shapes by their rows."""
-    regions: np.ndarray
-    """(n,) REGION."""
-    near: np.ndarray
-    """(n,) int32: pairs in the order of the sweeps."""
+    tables: dict[str, np.ndarray]
+    """`store.LASTING`, and the counters."""
     rows: np.ndarray
     """(n,) int: each shape's row; -1: it has come since the last frame."""
-    shapes: np.ndarray
-    """(n,) SHAPE, by row."""
-    counters: np.ndarray
+    bodies: np.ndarray
+    """(n,) int: each body's row, the static one's last."""
+    state: dict[str, float]
+    """`store.LASTING_STATE`."""
     joints: list[np.ndarray]
     """Impulses, and what they are made of: pymunk's copies measure a pin's length and a ratchet's angle anew."""
-    state: dict[str, float]
-    """Of the state record, what a frame leaves to the next (`_STATE`)."""
-    nodes: np.ndarray
-    """(n,) NODE and"""
-    roots: np.ndarray
-    """(3,) int32: the trees, whose leaves are shapes by their rows."""
-    movers: np.ndarray
-    """(n,) int32: rows of the shapes that move."""
-    asked: np.ndarray
-    """(n,) int32: rows of shapes that are to be asked whom they meet."""
-    bodies: np.ndarray
-    """(n,) BODY, of each body."""
     held: np.ndarray
     """(n,) bool: whether the solve moves it; who is new is moved by Chipmunk in the first frame."""
-    awake: np.ndarray
-    """(n,) int: the bodies that are awake in the order of sums over them, by their places in the space's list."""
     centres: np.ndarray
     """(n, 2) where each body's centre of gravity is: pymunk restores a body's place before its centre of gravity, and
     leaves one elsewhere whose centre is not its origin."""
@@ -106,9 +90,12 @@ _OWN = {
     ),
     *("ident", "outline", "mirror", "body", "heard", "epoch", "proxy"),
 }
-_BODY = [name for name in BODY.names or () if name not in _OWN]
-_SHAPE = [name for name in SHAPE.names or () if name not in _OWN and name not in ("asked", "leaf", "tree")]
-_STATE = ("before", "frame", "taken", "contacts", "asleep")
+_COPIED = {
+    "bodies": [name for name in BODY.names or () if name not in _OWN],
+    "shapes": [
+        name for name in SHAPE.names or () if name not in _OWN and name not in ("asked", "leaf", "tree")
+    ],
+}
 
 
 def remember(store: Store, space: pymunk.Space) -> Memory:
@@ -116,21 +103,12 @@ def remember(store: Store, space: pymunk.Space) -> Memory:
     rows = [int(store.slots[s._hashid]) if store.knows(s._hashid) else -1 for s in space.shapes]
     tables = store.tables
     return Memory(
-        tables.pairs.copy(),
-        tables.regions.copy(),
-        tables.near.copy(),
+        {name: getattr(tables, name).copy() for name in (*LASTING, "counters")},
         np.array(rows, np.int64),
-        tables.shapes.copy(),
-        tables.counters.copy(),
+        _body_rows(store, space),
+        {name: store.state[name][0].item() for name in LASTING_STATE},
         [np.concatenate(joint_numbers(joint)) for joint in space.constraints],
-        {name: store.state[name][0].item() for name in _STATE},
-        tables.nodes.copy(),
-        tables.roots.copy(),
-        tables.movers[: tables.counters[MOVERS]].copy(),
-        tables.asked[: tables.counters[ASKED]].copy(),
-        tables.bodies[_body_rows(store, space)],
         np.array([_is_held(store, body) for body in space.bodies], bool),
-        _awake(store, space),
         np.array([centre_of(b).copy() for b in space.bodies]),
         *_who_sleeps(space),
         _joint_order(space),
@@ -164,21 +142,14 @@ def _put_to_sleep(space: pymunk.Space, memory: Memory) -> None:
 
 
 def _body_rows(store: Store, space: pymunk.Space) -> np.ndarray:
-    """The row of every body of the space's list; -1: it has none."""
-    return np.array([store.row_of(address_of(b._body)) for b in space.bodies], np.int64)
+    """The row of every body of the space's list, and of its static one; -1: it has none."""
+    bodies = [*space.bodies, space.static_body]
+    return np.array([store.row_of(address_of(body._body)) for body in bodies], np.int64)
 
 
 def _is_held(store: Store, body: pymunk.Body) -> bool:
     off = store.state[0]
     return bool(ffi.cast("uintptr_t *", body._body)[int(off["body_position_func"]) // 8] == off["hold_at"])
-
-
-def _awake(store: Store, space: pymunk.Space) -> np.ndarray:
-    """`Memory.awake`."""
-    place = np.full(len(store.tables.bodies) + 1, -1)
-    place[_body_rows(store, space)] = np.arange(len(space.bodies))
-    places = place[store.tables.awake[: store.tables.counters[AWAKE]]]
-    return places[places >= 0]
 
 
 def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
@@ -188,53 +159,50 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
             put_centre(body, *centre)
             space.reindex_shapes_for_body(body)
     mine = np.array([store.slots[shape._hashid] for shape in space.shapes], np.int64)
-    known = memory.rows >= 0
-    row_of = np.full(len(memory.shapes) + 1, -1)  # its row here by its row there; the last for none
-    row_of[memory.rows[known]] = mine[known]
-    store.grow_shapes(max(len(memory.shapes), len(store.tables.shapes)))
+    known, there = memory.rows >= 0, memory.tables
+    row_of = _numbers(len(there["shapes"]), memory.rows[known], mine[known])
+    store.grow_shapes(max(len(there["shapes"]), len(store.tables.shapes)))
     bodies, shapes = _body_rows(store, space), store.tables.shapes
-    for name in _BODY:
-        store.tables.bodies[name][bodies] = memory.bodies[name]
-    for name in _SHAPE:
-        shapes[name][mine[known]] = memory.shapes[name][memory.rows[known]]
-    if len(memory.pairs) > len(store.tables.pairs):
-        store.grow_pairs(len(memory.pairs))
-    if len(memory.regions) > len(store.tables.regions):
-        store.grow_regions(len(memory.regions))
-    pairs, regions = memory.pairs.copy(), memory.regions.copy()
+    both = (bodies >= 0) & (memory.bodies >= 0)
+    body_of = _numbers(len(there["bodies"]), memory.bodies[both], bodies[both])
+    for name in _COPIED["bodies"]:
+        store.tables.bodies[name][bodies[both]] = there["bodies"][name][memory.bodies[both]]
+    for name in _COPIED["shapes"]:
+        shapes[name][mine[known]] = there["shapes"][name][memory.rows[known]]
+    if len(there["pairs"]) > len(store.tables.pairs):
+        store.grow_pairs(len(there["pairs"]))
+    if len(there["regions"]) > len(store.tables.regions):
+        store.grow_regions(len(there["regions"]))
+    pairs, regions, near = (there[name].copy() for name in ("pairs", "regions", "near"))
     used = pairs["a"] >= 0
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
-    near = memory.near.copy()
-    listed = near[: memory.counters[NEAR]]
+    listed = near[: there["counters"][NEAR]]
     for name in ("a", "b"):
         listed[name] = shapes["body"][pairs[name][listed["pair"]]]
     # as many of each as there, which may be fewer than here: what goes with them is of their size
-    store.tables = store.tables._replace(
-        pairs=pairs,
-        regions=regions,
-        near=near,
-        told=np.zeros(len(pairs), np.int32),
-    )
-    nodes = memory.nodes.copy()
+    told = np.zeros(len(pairs), np.int32)
+    store.tables = store.tables._replace(pairs=pairs, regions=regions, near=near, told=told)
+    nodes = there["nodes"].copy()
     leaves = (nodes["left"] < 0) & (nodes["owner"] >= 0)
     nodes["owner"][leaves] = row_of[nodes["owner"][leaves]]
     if known.all():
-        store.tables = store.tables._replace(nodes=nodes, roots=memory.roots.copy())
+        store.tables = store.tables._replace(nodes=nodes, roots=there["roots"].copy())
         for name in ("leaf", "tree"):
-            shapes[name][mine] = memory.shapes[name][memory.rows]
+            shapes[name][mine] = there["shapes"][name][memory.rows]
     store.renew_rows()
     store.sync()
     tables = store.tables
     if not known.all():  # copied within a step in which some have come
         for i, row in zip(mine[known], memory.rows[known]):
-            put_in_tree(tables, int(i), int(memory.shapes["tree"][row]))
-    tables.counters[_COUNTERS] = memory.counters[_COUNTERS]
-    movers = row_of[memory.movers]
+            put_in_tree(tables, int(i), int(there["shapes"]["tree"][row]))
+    counters = there["counters"]
+    tables.counters[_COUNTERS] = counters[_COUNTERS]
+    movers = row_of[there["movers"][: counters[MOVERS]]]
     movers = movers[movers >= 0]
     tables.movers[: len(movers)], tables.counters[MOVERS] = movers, len(movers)
     tables.counters[ASKED] = 0
-    asked = row_of[memory.asked]
+    asked = row_of[there["asked"][: counters[ASKED]]]
     for row in asked[asked >= 0].tolist():
         ask_about(tables, row)
     lost = used & ((pairs["a"] < 0) | (pairs["b"] < 0))
@@ -242,12 +210,13 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         end_pair(tables, int(p))
     rehash(tables)
     take_arbiters(store, space)
-    awake = bodies[memory.awake]
+    awake = body_of[there["awake"][: counters[AWAKE]]]
+    awake = awake[awake >= 0]
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
     tables.counters[AWAKE] = len(awake)
     drop_pairs(tables, -2)
-    tables.counters[ANEW] = int(memory.counters[ANEW] or lost.any() or not known.all())
+    tables.counters[ANEW] = int(counters[ANEW] or lost.any() or not known.all())
     for name, value in memory.state.items():
         store.state[name] = value
     off = store.state[0]
@@ -260,6 +229,13 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
     _keep_apart(store, space)
     _put_to_sleep(space, memory)
+
+
+def _numbers(n: int, there: np.ndarray, here: np.ndarray) -> np.ndarray:
+    """(n + 1,): the row here of each of n rows there; -1 for none, which is also the last."""
+    rows = np.full(n + 1, -1)
+    rows[there] = here
+    return rows
 
 
 def take_arbiters(store: Store, space: pymunk.Space) -> None:

@@ -12,26 +12,17 @@ from typing import Any
 import numpy as np
 
 from ..chipmunk import function
-from ..kernel.jit import callback, copy_memory, kernel
-from ..kernel.joint import JOINT, KINDS, RATCHET
+from ..kernel.jit import callback, kernel
+from ..kernel.joint import KINDS, RATCHET
 from ..kernel.memory import array_at, record
 from ..kernel.tables import (
-    APART,
-    ASKED,
     AWAKE,
     BODIES,
     BODY,
-    BOXED,
     COUNTED,
     COUNTERS,
     FREE_PAIR,
     FREE_REGION,
-    JOINTS,
-    LIVE,
-    MOVERS,
-    NEIGHBOURS,
-    PAIR,
-    REGION,
     SHAPE,
     SHAPES,
     TOLD,
@@ -42,8 +33,7 @@ from ..kernel.tables import (
     never_used,
     rehash,
 )
-from ..kernel.tree import NODE
-from ..store import load_tables
+from ..store import BACK, OUT, SIZE, load_tables, move, move_tables
 from .joints import KIND_WORDS
 from .record import floats, members, state_of, timestamp, words
 
@@ -71,38 +61,9 @@ SAME, BODIES_CHANGED, SHAPES_CHANGED, JOINTS_CHANGED, DOZED = range(5)
 _JOINT = 32
 _HEAD = HEAD.itemsize
 _TABLES = _HEAD + 8 * COUNTERS
-_BODY, _SHAPE, _PAIR, _REGION, _NODE = (kind.itemsize for kind in (BODY, SHAPE, PAIR, REGION, NODE))
-_NEAR, _JOINED = NEIGHBOURS.itemsize, JOINT.itemsize
+_BODY, _SHAPE = BODY.itemsize, SHAPE.itemsize
 
 _cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
-
-
-@kernel
-def _move(back: int, block: int, at: int, address: int, size: int) -> int:
-    """So many bytes from memory into the block, or back; where the block goes on."""
-    if back:
-        copy_memory(np.uint64(address), np.uint64(block + at), np.uint64(size))
-    else:
-        copy_memory(np.uint64(block + at), np.uint64(address), np.uint64(size))
-    return int(at + (size + 7) // 8 * 8)
-
-
-@kernel
-def _move_tables(s: Any, n: np.ndarray, back: int, block: int, at: int) -> int:
-    """Our tables, as far as the counters n say that they are in use."""
-    at = _move(back, block, at, s.bodies_at, n[BODIES] * _BODY)
-    at = _move(back, block, at, s.shapes_at, n[SHAPES] * _SHAPE)
-    at = _move(back, block, at, s.pairs_at, n[USED_PAIRS] * _PAIR)
-    at = _move(back, block, at, s.regions_at, n[USED_REGIONS] * _REGION)
-    at = _move(back, block, at, s.nodes_at, s.nodes_n * _NODE)
-    at = _move(back, block, at, s.roots_at, 12)
-    at = _move(back, block, at, s.near_at, n[BOXED] * _NEAR)
-    at = _move(back, block, at, s.live_at, 4 * n[LIVE])
-    at = _move(back, block, at, s.awake_at, 4 * n[AWAKE])
-    at = _move(back, block, at, s.movers_at, 4 * n[MOVERS])
-    at = _move(back, block, at, s.asked_at, 4 * n[ASKED])
-    at = _move(back, block, at, s.apart_at, 8 * n[APART])
-    return int(_move(back, block, at, s.joints_at, n[JOINTS] * _JOINED))
 
 
 @kernel
@@ -112,8 +73,8 @@ def _move_bodies(s: Any, bodies: np.ndarray, n: int, idle: int, back: int, block
     for i in range(n):
         address = np.int64(bodies[i].address)
         if address != 0:
-            at = _move(back, block, at, address + first, s.body_transform + 48 - first)
-            at = _move(back, block, at, address + idle, 8)
+            at = move(back, block, at, address + first, s.body_transform + 48 - first)
+            at = move(back, block, at, address + idle, 8)
     return int(at)
 
 
@@ -126,18 +87,18 @@ def _move_joints(s: Any, space: int, back: int, block: int, at: int) -> int:
             continue
         address = np.int64(word)
         kept = floats(block + at, 4)
-        if not back:
+        if back == OUT:
             words(block + at, 1)[0] = word
         for k in range(KINDS):
             if kinds[k, 0] == np.int64(words(address, 1)[0]):
                 impulse = floats(address + kinds[k, 1], kinds[k, 2])
                 angle = floats(address + kinds[k, 3], 1)
                 for i in range(kinds[k, 2]):
-                    if back:
+                    if back == BACK:
                         impulse[i] = kept[1 + i]
                     else:
                         kept[1 + i] = impulse[i]
-                if k == RATCHET and back:
+                if k == RATCHET and back == BACK:
                     angle[0] = kept[3]
                 elif k == RATCHET:
                     kept[3] = angle[0]
@@ -176,11 +137,9 @@ def save(space: int, idle: int, block: int, room: int) -> int:
     n = tables.counters
     joints = len(members(space, s.space_constraints)) - 1
     sleepers = _list_sleepers(s, space, idle, 0)
-    size = _TABLES + n[BODIES] * (_BODY + s.body_transform + 56) + n[SHAPES] * _SHAPE + n[USED_PAIRS] * _PAIR
-    size += n[USED_REGIONS] * _REGION + s.nodes_n * _NODE + n[BOXED] * _NEAR + n[JOINTS] * _JOINED
-    size += 4 * (n[LIVE] + n[AWAKE] + n[MOVERS] + n[ASKED]) + 8 * n[APART] + joints * _JOINT + 64
     listed = members(space, s.space_bodies)
-    size += 8 * (sleepers + len(listed))
+    size = move_tables(s, n, SIZE, 0, _TABLES) + joints * _JOINT + 8 * (sleepers + len(listed))
+    size += n[BODIES] * (s.body_transform + 64 - s.body_inverse_mass)
     if size > room:
         return int(size)
     head = array_at(block, (1,), HEAD)[0]
@@ -196,26 +155,16 @@ def save(space: int, idle: int, block: int, room: int) -> int:
     head.taken = s.taken
     head.contacts = s.contacts
     head.asleep = s.asleep
-    at = _move(0, block, _HEAD, s.counters_at, 8 * COUNTERS)
-    at = _move_tables(s, n, 0, block, at)
-    at = _move_joints(s, space, 0, block, at)
+    at = move(OUT, block, _HEAD, s.counters_at, 8 * COUNTERS)
+    at = move_tables(s, n, OUT, block, at)
+    at = _move_joints(s, space, OUT, block, at)
     at += 8 * _list_sleepers(s, space, idle, block + at)
     for k in range(len(listed)):
         words(block + at + 8 * k, 1)[0] = listed[k]
     at += 8 * len(listed)
-    at = _move_bodies(s, tables.bodies, n[BODIES], idle, 0, block, at)
+    at = _move_bodies(s, tables.bodies, n[BODIES], idle, OUT, block, at)
     head.bytes = at
     return int(at)
-
-
-@kernel(forceinline=True)
-def _after_tables(n: np.ndarray, nodes: int) -> int:
-    """Where a block's joints begin."""
-    at = _TABLES + n[BODIES] * _BODY + n[SHAPES] * _SHAPE + n[USED_PAIRS] * _PAIR
-    at += n[USED_REGIONS] * _REGION + nodes * _NODE + 16 + n[BOXED] * _NEAR
-    for count in (n[LIVE], n[AWAKE], n[MOVERS], n[ASKED]):
-        at += (4 * count + 7) // 8 * 8
-    return int(at + 8 * n[APART] + n[JOINTS] * _JOINED)
 
 
 @callback("int64(uintp, int64, uintp)")
@@ -230,7 +179,7 @@ def compare(space: int, idle: int, block: int) -> int:
         return BODIES_CHANGED
     if then[SHAPES] != n[SHAPES] or head.nodes != s.nodes_n:
         return SHAPES_CHANGED
-    at = block + _TABLES
+    at = block + _TABLES  # bodies come first, then shapes (`store.LASTING`)
     for i in range(n[BODIES]):
         if array_at(at + i * _BODY, (1,), BODY)[0].address != tables.bodies[i].address:
             return BODIES_CHANGED
@@ -245,7 +194,7 @@ def compare(space: int, idle: int, block: int) -> int:
     constraints = members(space, s.space_constraints)
     if head.constraints != len(constraints) - 1:
         return JOINTS_CHANGED
-    at = block + _after_tables(then, head.nodes)
+    at = block + move_tables(s, then, SIZE, 0, _TABLES)
     for address in constraints:
         if address != s.hidden:
             if words(at, 1)[0] != address:
@@ -269,7 +218,7 @@ def reorder(space: int, block: int) -> None:
     s = state_of(space)
     head = array_at(block, (1,), HEAD)[0]
     then = array_at(block + _HEAD, (COUNTERS,), np.int64)
-    at = block + _after_tables(then, head.nodes) + head.constraints * _JOINT + 8 * head.sleepers
+    at = block + move_tables(s, then, SIZE, 0, _TABLES) + head.constraints * _JOINT + 8 * head.sleepers
     listed = members(space, s.space_bodies)
     if len(listed) == head.listed:
         for k in range(head.listed):
@@ -318,9 +267,9 @@ def restore(space: int, idle: int, block: int) -> int:
     pairs = tables.counters[USED_PAIRS]
     regions = tables.counters[USED_REGIONS]
     late = np.int64(timestamp(space)) - head.stamp
-    at = _move(1, block, _HEAD, s.counters_at, 8 * COUNTERS)
-    at = _move_tables(s, then, 1, block, at)
-    at = _move_joints(s, space, 1, block, at)
+    at = move(BACK, block, _HEAD, s.counters_at, 8 * COUNTERS)
+    at = move_tables(s, then, BACK, block, at)
+    at = _move_joints(s, space, BACK, block, at)
     at += 8 * (head.sleepers + head.listed)
     elsewhere = 0
     there = at
@@ -333,7 +282,7 @@ def restore(space: int, idle: int, block: int) -> int:
                 for k in range(6):
                     elsewhere |= place[k] != kept[k]
             there += s.body_transform + 64 - s.body_inverse_mass
-    _move_bodies(s, tables.bodies, then[BODIES], idle, 1, block, at)
+    _move_bodies(s, tables.bodies, then[BODIES], idle, BACK, block, at)
     free_again(tables, head, pairs, regions)
     _delay(tables, late)
     rehash(tables)

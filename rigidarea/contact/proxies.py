@@ -133,7 +133,8 @@ def collide(one: int, other: int, ident: int, space: int) -> int:
             n = _look(s, load_tables(s), i, j)
         if n == 0:
             return ident
-    ident = _call_collide(t.collide_at, one, other, ident, space)
+    # 0: it looks for contact points from the start, not from where it has found them a step ago, which no copy knows
+    ident = _call_collide(t.collide_at, one, other, np.uint32(0), space)
     t.count = 0
     t.arbiter = np.uint64(0)
     return ident

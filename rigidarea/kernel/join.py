@@ -32,7 +32,6 @@ from .tables import (
     MORE_PAIRS,
     MORE_REGIONS,
     MOVERS,
-    NEAR,
     ROWS,
     STRUCK,
     SUBSTEP,
@@ -205,15 +204,7 @@ def has_room(tables: Tables, time: float) -> bool:
 
     Asked before a frame changes anything: hardly ever does one have to be run again from further on.
     """
-    counters = tables.counters
-    pairs = counters[MOVERS] + SPARE - counters[FREE_PAIRS]
-    regions = counters[MOVERS] // 2 + SPARE * (1 + counters[CONCAVE]) - counters[FREE_REGIONS]
-    for i in range(counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        regions += pair.head < 0 and may_touch(tables, pair, -time)
-    counters[MORE_PAIRS] = max(0, pairs)
-    counters[MORE_REGIONS] = max(0, regions)
-    return bool(pairs <= 0 and regions <= 0)
+    return bool(_has_room(tables, tables.counters[MOVERS], 0, time))
 
 
 @kernel
@@ -223,8 +214,13 @@ def roomy(tables: Tables, shapes: int, time: float) -> bool:
 
     Asked when a frame begins: where it had to be run again, it would find other boxes than one that had room.
     """
+    return bool(_has_room(tables, shapes, SPARE // 2 + shapes // 8, time))
+
+
+@kernel
+def _has_room(tables: Tables, shapes: int, more: int, time: float) -> bool:
+    """Whether there is room for so many more pairs and regions than so many shapes may want within `time`."""
     counters = tables.counters
-    more = SPARE // 2 + shapes // 8
     pairs = shapes + SPARE + more - counters[FREE_PAIRS]
     regions = shapes // 2 + SPARE * (1 + counters[CONCAVE]) + more - counters[FREE_REGIONS]
     for i in range(counters[BOXED]):

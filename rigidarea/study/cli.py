@@ -24,6 +24,7 @@ BENCHES = {
     "sleep": "a sleeping pyramid of 5,050 boxes",
     "start": "from import to the first step",
     "step": "one area step beside one native step; where a frame's time goes",
+    "worlds": "many copies of a space at once, beside pymunk's own loop over as many",
 }
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
@@ -159,7 +160,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, start
+    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, start, worlds
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -203,6 +204,8 @@ def _bench(arguments: argparse.Namespace) -> int:
             _keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
     elif arguments.what == "start":
         report = start.start()
+    elif arguments.what == "worlds":
+        report = worlds.worlds(128 if arguments.quick else 1024)
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
     _write(arguments, f"bench-{arguments.what}", report)
