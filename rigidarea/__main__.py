@@ -17,6 +17,7 @@ from pathlib import Path
 
 from . import __version__
 from .alive import alive
+from .checkout import harness
 from .report import lines, output_arguments, write_json
 
 COMMANDS = {
@@ -28,15 +29,14 @@ COMMANDS = {
     "compare": "rigid, compliant and modal beside each other",
     "plan": "the cheapest model and settings within a tolerance, and how often that is right",
     "run": "an existing pymunk program, area contact attached to every space it makes",
-    "compat": "pymunk's own examples and tests with area contact attached",
+    "compat": "pymunk's own examples and tests with area contact attached (in a checkout)",
 }
-#: Where they are: each module has `add_arguments(parser)` and `run(arguments)`.
+#: Where they are (`compat`'s in the harness): each module has `add_arguments(parser)` and `run(arguments)`.
 MODULES = {
     "demo": "draw.demo",
     "case": "cases",
-    "plan": "plan.command",
-    "run": "compat.run",
-    "compat": "compat.command",
+    "plan": "study.plan_command",
+    "run": "programs.run",
 }
 #: The extra that brings a module which commands need (README, "Set up").
 EXTRAS = {
@@ -67,7 +67,13 @@ def parser(command: str | None) -> argparse.ArgumentParser:
             continue
         own = commands.add_parser(name, help=text, description=text[0].upper() + text[1:] + ".")
         if name == command:
-            module = importlib.import_module(f".{MODULES[name]}", __package__)
+            if name == "compat":
+                try:
+                    module = harness("command", name)
+                except FileNotFoundError as error:
+                    top.exit(2, f"rigidarea {error}\n")
+            else:
+                module = importlib.import_module(f".{MODULES[name]}", __package__)
             module.add_arguments(own)
             if name == "case":
                 output_arguments(own, Path("out") / "cases")

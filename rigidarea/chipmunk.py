@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -148,7 +148,7 @@ def _body_and_shape() -> dict[str, int]:
     # Set back, they are not those addresses: what cffi gives for a function is a way into it.
     body.position_func, body.velocity_func = pymunk.Body.update_position, pymunk.Body.update_velocity
     for name in ("position_func", "velocity_func"):
-        found[f"{name}_again"] = _word(body._body, found[f"body_{name}"])
+        found[f"{name}_again"] = word_at(body._body, found[f"body_{name}"])
     memory = _bytes(shape._shape, "shape", np.float64)
     found["shape_surface_velocity"] = _find(memory, "surface velocity", [41.5, 42.5])
     found["shape_elasticity"] = _find(memory, "elasticity and friction", [0.375, 0.625])
@@ -188,7 +188,7 @@ def _geometry() -> dict[str, int]:
         "shape_body": _find_pointer(poly._shape, "shape", "body", address_of(body._body)),
     }
     for kind, shape in enumerate((circle, segment, poly)):
-        if int(ffi.cast("int *", _word(shape._shape, 0))[0]) != kind:
+        if int(ffi.cast("int *", word_at(shape._shape, 0))[0]) != kind:
             raise LayoutError(f"shapes: expected a class that starts with {kind}")
     own = found["shape_hashid"] + 8  # what is a circle's alone
     memory = _bytes(circle._shape, "circle", np.float64)[own // 8 :]
@@ -202,7 +202,7 @@ def _geometry() -> dict[str, int]:
     found["poly_planes"] = found["poly_radius"] + 16
     words = _bytes(poly._shape, "poly", np.int32)
     planes = np.frombuffer(
-        ffi.buffer(ffi.cast("void *", _word(poly._shape, found["poly_planes"])), 8 * 4 * 6), np.float64
+        ffi.buffer(ffi.cast("void *", word_at(poly._shape, found["poly_planes"])), 8 * 4 * 6), np.float64
     )
     # (v0, n) of each edge where it is, and then as it was given
     given = [tuple(vertex) for vertex in poly.get_vertices()]
@@ -235,103 +235,6 @@ def _arbiter() -> dict[str, int]:
     return found
 
 
-class JointKind(NamedTuple):
-    """Where one class of joints keeps its numbers (bytes; chipmunk_structs.h); of how many they are."""
-
-    own_class: int  # address of its four functions
-    impulse: int
-    impulses: int  # one or two
-    parameters: int  # what it is made of, after what all constraints have
-    numbers: int
-    force: int  # a spring's force function; 0: it has none
-    own_force: int  # Chipmunk's own
-
-
-def _make_joint(name: str, one: pymunk.Body, two: pymunk.Body) -> tuple[Any, tuple[float, ...]]:
-    """A joint of a class, and the parameters that its struct should have."""
-    ax, ay, bx, by = 0.25, 0.5, -0.75, 0.125
-    a, b = (ax, ay), (bx, by)
-    if name == "GrooveJoint":
-        joint = pymunk.GrooveJoint(one, two, (-1, 0.5), (2, 0.5), b)
-        return joint, (0, 1, -1, 0.5, 2, 0.5, bx, by)
-    given: dict[str, tuple[Any, ...]] = {
-        "PinJoint": (a, b),
-        "SlideJoint": (a, b, 0, 1),
-        "PivotJoint": (a, b),
-        "DampedSpring": (a, b, 1, 10, 1.5),
-        "DampedRotarySpring": (1, 10, 1.5),
-        "RotaryLimitJoint": (-2, -1),
-        "RatchetJoint": (0, -0.5),
-        "GearJoint": (1, 2),
-        "SimpleMotor": (-4,),
-    }
-    joint = getattr(pymunk, name)(one, two, *given[name])
-    if name == "PinJoint":
-        return joint, (ax, ay, bx, by, joint.distance)
-    if name == "RatchetJoint":
-        return joint, (joint.angle, 0, -0.5)
-    own = given[name]
-    return joint, ((ax, ay, bx, by, *own[2:]) if own[0] == a else own)
-
-
-#: Where a joint keeps its impulse (bytes), and how many numbers that is; `kinds_of_joints` checks.
-_IMPULSES = {
-    "PinJoint": (200, 1),
-    "SlideJoint": (208, 1),
-    "PivotJoint": (200, 2),
-    "GrooveJoint": (256, 2),
-    "DampedSpring": (240, 1),
-    "DampedRotarySpring": (160, 1),
-    "RotaryLimitJoint": (136, 1),
-    "RatchetJoint": (144, 1),
-    "GearJoint": (144, 1),
-    "SimpleMotor": (120, 1),
-}
-
-
-@lru_cache(maxsize=1)
-def kinds_of_joints() -> tuple[JointKind, ...]:
-    """Every class of joints, in the order of `kernel.joint`.
-
-    Each is loaded for a step, and must have what Chipmunk calls its impulse there, and its parameters, else
-    LayoutError.
-    """
-    kinds = []
-    for name, (at, n) in _IMPULSES.items():
-        space = pymunk.Space()
-        one, two = pymunk.Body(1, 1), pymunk.Body(1, 1)
-        two.position = 3, 0.5
-        two.velocity, two.angular_velocity = (5, 7), 3
-        joint, expected = _make_joint(name, one, two)
-        first = layout()["constraint_collide"] + 32  # after its flag, two callbacks, and the user's data
-        found = np.frombuffer(ffi.buffer(ffi.cast("char *", joint._constraint) + first, 8 * len(expected)))
-        if not np.allclose(found, expected, rtol=1e-15, atol=0):
-            raise LayoutError(f"{name}: expected the parameters {expected}, found {found}")
-        force, own_force = _force_function(name, joint, at)
-        space.add(one, two, joint)
-        lib.cpSpaceStep(space._space, 0.125)  # not space.step, which somebody may have wrapped
-        impulse = np.frombuffer(ffi.buffer(ffi.cast("char *", joint._constraint), at + 8 * n))[at // 8 :]
-        if not (joint.impulse != 0 and math.isclose(abs(joint.impulse), math.hypot(*impulse), rel_tol=1e-12)):
-            raise LayoutError(f"{name}: its impulse {joint.impulse} is not where it was expected, {impulse}")
-        kinds.append(JointKind(_word(joint._constraint, 0), at, n, first, len(expected), force, own_force))
-    return tuple(kinds)
-
-
-def _force_function(name: str, joint: Any, size: int) -> tuple[int, int]:
-    """Where a spring keeps its force function (bytes), and Chipmunk's own; (0, 0) of other joints."""
-    names = {"DampedSpring": "force_func", "DampedRotarySpring": "torque_func"}
-    if name not in names:
-        return 0, 0
-    other, _ = _make_joint(name, joint.a, joint.b)
-    before = np.frombuffer(ffi.buffer(ffi.cast("char *", other._constraint), size), np.uint64).copy()
-    setattr(other, names[name], lambda *arguments: 0.0)
-    after = np.frombuffer(ffi.buffer(ffi.cast("char *", other._constraint), size), np.uint64)
-    places = np.flatnonzero(before != after)
-    if len(places) != 1:
-        raise LayoutError(f"{name}: expected one place of its force function, found {len(places)}")
-    return 8 * int(places[0]), int(before[places[0]])
-
-
 def normal_of(arbiter: int) -> tuple[float, float]:
     """The normal of the arbiter at that address as Chipmunk finds it, whatever a callback has made of it."""
     own = ffi.cast("struct cpArbiter *", arbiter)
@@ -352,16 +255,6 @@ def put_centre(body: pymunk.Body, x: float, y: float) -> None:
     c, s = math.cos(body.angle), math.sin(body.angle)
     off = body.center_of_gravity
     transform[:] = c, s, -s, c, x - (c * off.x - s * off.y), y - (s * off.x + c * off.y)
-
-
-def joint_impulse(joint: pymunk.Constraint) -> np.ndarray:
-    """The numbers in which Chipmunk keeps the impulse of a joint, in place: one or two; none of an unknown kind."""
-    own_class = _word(joint._constraint, 0)
-    for kind in kinds_of_joints():
-        if kind.own_class == own_class:
-            memory = ffi.buffer(ffi.cast("char *", joint._constraint) + kind.impulse, 8 * kind.impulses)
-            return np.frombuffer(memory)
-    return np.empty(0)
 
 
 def _space_and_constraint() -> dict[str, int]:
@@ -392,7 +285,7 @@ def _space_and_constraint() -> dict[str, int]:
     found["no_pre_solve"] = address_of(own.preSolveFunc)
     globally = address_of(own)
     found["space_handlers"] = globally - address_of(space._space) - 8
-    entries = ffi.cast("unsigned int *", _word(space._space, found["space_handlers"]))
+    entries = ffi.cast("unsigned int *", word_at(space._space, found["space_handlers"]))
     before = int(entries[0])
     handler(space, 1, 2)
     if int(entries[0]) != before + 1:
@@ -423,15 +316,15 @@ def _contact_buffers(constraints: int) -> int:
     space.add(body, pymunk.Circle(body, 1), pymunk.Circle(space.static_body, 1))
     lib.cpSpaceStep(space._space, 0.125)
     (arbiter,) = space._get_arbiters()
-    head = _word(space._space, constraints + 16)
+    head = word_at(space._space, constraints + 16)
     first = address_of(ffi.cast("struct cpArbiter *", arbiter).contacts)
     if head + 24 != first or int(ffi.cast("unsigned int *", head + 16)[0]) != 1:
         raise LayoutError("contacts: a space's buffer of them is not where it was expected")
-    still, moving = (_word(space._space, constraints - offset) for offset in (16, 8))
-    if _word(ffi.cast("void *", moving), 16) != still or _word(ffi.cast("void *", still), 24) != moving:
+    still, moving = (word_at(space._space, constraints - offset) for offset in (16, 8))
+    if word_at(ffi.cast("void *", moving), 16) != still or word_at(ffi.cast("void *", still), 24) != moving:
         raise LayoutError("indices: a space's dynamic index does not know its static one")
     return constraints + 16
 
 
-def _word(pointer: object, offset: int) -> int:
+def word_at(pointer: object, offset: int) -> int:
     return int(ffi.cast("uintptr_t *", address_of(pointer) + offset)[0])

@@ -13,7 +13,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 import numpy as np
 import pymunk
@@ -23,9 +23,6 @@ from pymunk.space_debug_draw_options import SpaceDebugColor
 from .arcs import Points
 from .outline import Outline
 from .overlap import overlap
-
-if TYPE_CHECKING:
-    from .contact import AreaContact
 
 #: Largest sagitta of what is drawn in the place of an arc (length of the drawing: a pixel, where that is its unit).
 DETAIL = 0.05
@@ -51,6 +48,14 @@ def _triangles(rings: Sequence[Points]) -> Points:
     return corners
 
 
+class HasRegions(Protocol):
+    """What is drawn of a contact: `AreaContact` is one."""
+
+    @property
+    def regions(self) -> Any:
+        """Structured array, a row a region."""
+
+
 class OutlineOptions(pymunk.SpaceDebugDrawOptions):
     """pymunk's drawing options, for outlines: to be inherited before a class that draws.
 
@@ -62,7 +67,7 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
     """Of contact regions, where there is a `contact`."""
     force_color = SpaceDebugColor(120, 30, 0, 255)
     """Of the forces in them."""
-    contact: AreaContact | None = None
+    contact: HasRegions | None = None
     """Its regions and forces are drawn over the shapes; None: they are not."""
     _shape: pymunk.Shape | None = None
 
@@ -141,7 +146,7 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
             self._draw_contact(self.contact)
         super().__exit__(*raised)
 
-    def _draw_contact(self, contact: AreaContact) -> None:
+    def _draw_contact(self, contact: HasRegions) -> None:
         """The regions where the bodies are now, and the forces of the last substep, as long as their roots."""
         regions = contact.regions
         pairs = dict.fromkeys(zip(regions["shape_a"].tolist(), regions["shape_b"].tolist()))

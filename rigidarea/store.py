@@ -125,7 +125,7 @@ STATE = record(
         ("phases_at", "u8"),
         ("scratch_at", "u8"),  # room for what nobody reads
         ("shown_at", "u8"),  # what arbiters of outlines are made to say (`contact/shown.py`)
-        ("kinds_at", "u8"),  # what `chipmunk.kinds_of_joints` has found
+        ("kinds_at", "u8"),  # what `joint_structs.kinds_of_joints` has found
     ],
 )
 

@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from tangent_drawings import at, beside, within
-from tangent_pairs import NONE, Pair, pieces_of, plate
 
 import rigidarea as ra
 from rigidarea import shapes
+from tangent_drawings import at, beside, within
+from tangent_pairs import NONE, Pair, pieces_of, plate
 
 
 def near_radii(rng: np.random.Generator, size: float) -> Pair:

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 
 import numpy as np
-from tangent_pairs import NONE, Pair, Pieces, chord, line, pieces_of, plate
 
 import rigidarea as ra
 from rigidarea import shapes
+from tangent_pairs import NONE, Pair, Pieces, chord, line, pieces_of, plate
 
 Point = tuple[float, float]
 

@@ -7,6 +7,9 @@ import math
 from collections.abc import Callable
 
 import numpy as np
+
+import rigidarea as ra
+from rigidarea import shapes
 from tangent_pairs import (
     NONE,
     Pair,
@@ -20,9 +23,6 @@ from tangent_pairs import (
     plate,
     rounded,
 )
-
-import rigidarea as ra
-from rigidarea import shapes
 
 
 def pin_in_slot(rng: np.random.Generator, size: float) -> Pair:

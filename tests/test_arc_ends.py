@@ -8,9 +8,9 @@ from collections.abc import Callable
 import mpmath
 import numpy as np
 import pytest
-import tangent_families
 
 import rigidarea as ra
+import tangent_families
 from rigidarea import shapes
 
 MAKERS: dict[str, Callable[[np.random.Generator], ra.Outline]] = {

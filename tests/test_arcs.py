@@ -14,12 +14,12 @@ import mpmath
 import numpy as np
 import pytest
 import shapely
-from conftest import PURE_PYTHON, kernel_module
 from hypothesis import given
 from hypothesis import strategies as st
 from shapely.affinity import affine_transform
 
 import rigidarea as ra
+from conftest import PURE_PYTHON, kernel_module
 from rigidarea import shapes
 
 mpmath.mp.dps = 50

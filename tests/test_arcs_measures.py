@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
-from conftest import PURE_PYTHON, kernel_module
-from test_arcs import KINDS, SQUARE, TAU, placed
 
 import rigidarea as ra
+from conftest import PURE_PYTHON, kernel_module
 from rigidarea import shapes
+from test_arcs import KINDS, SQUARE, TAU, placed
 
 
 def loops_of(kernel: Any, a: ra.Outline, b: ra.Outline, pose: Any) -> tuple[Any, Any, Any]:

@@ -10,9 +10,11 @@ import math
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
-import exact_overlap
 import numpy as np
 import pytest
+
+import exact_overlap
+import rigidarea as ra
 import tangent_chains
 import tangent_drawings
 import tangent_families
@@ -20,8 +22,6 @@ import tangent_pairs
 import wide_overlap
 from arc_pairs import Pair, about, bank, random_pair
 from conftest import PURE_PYTHON
-
-import rigidarea as ra
 
 wide = pytest.mark.skipif(not wide_overlap.WIDE, reason="needs 80-bit long doubles")
 

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 import shapely
 import shapely.affinity
-from conftest import kernel_module
 
 import rigidarea as ra
+from conftest import kernel_module
 
 
 def star(draw, points, hole):

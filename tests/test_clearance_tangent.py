@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+
+import rigidarea as ra
 import tangent_chains
 import tangent_drawings
 import tangent_families
 import tangent_pairs
 from conftest import PURE_PYTHON, kernel_module
-
-import rigidarea as ra
 from rigidarea import shapes
 
 TOUCHING = [

@@ -16,8 +16,8 @@ import pytest
 import shapely
 
 import rigidarea as ra
+from harness import page as study_page
 from rigidarea.__main__ import COMMANDS
-from rigidarea.study import page as study_page
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"

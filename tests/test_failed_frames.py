@@ -8,7 +8,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.compat.interrupts import COURSES, FRAMES, _bits
+from harness.interrupts import COURSES, FRAMES, _bits
 from tests.test_ownership import places, steps
 
 DT = 1 / 60

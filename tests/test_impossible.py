@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+
 import tangent_families
 import test_arcs_random
 from conftest import kernel_module

@@ -14,7 +14,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.compat import lives
+from harness import environment, lives
 
 DT = 1 / 60
 
@@ -438,7 +438,9 @@ def test_programs_end_as_natively(name):
 
 def command(*words: str, seconds: float) -> None:
     """It ends well."""
-    done = subprocess.run([sys.executable, *words], capture_output=True, text=True, timeout=seconds)
+    done = subprocess.run(
+        [sys.executable, *words], env=environment(), capture_output=True, text=True, timeout=seconds
+    )
     assert done.returncode == 0, done.stdout[-800:] + done.stderr[-3000:]
 
 
@@ -492,7 +494,8 @@ def test_pymunk_itself_cannot_be_interrupted_while_it_adds_what_a_callback_gave_
 @pytest.mark.parametrize("programs", [6, pytest.param(200, marks=pytest.mark.slow)])
 def test_random_programs(programs):
     """Lifetimes, copies, callbacks, signals, growth, threads, forks: no crash, no hang, whole tables."""
-    words = ("-m", "rigidarea", "compat", "lives", "--programs", str(programs), "--json", "-")
+    program = "import sys, harness, rigidarea.__main__ as m; sys.exit(m.main(sys.argv[1:]))"
+    words = ("-c", program, "compat", "lives", "--programs", str(programs), "--json", "-")
     command(*words, seconds=100 * programs)
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import shapely
+
+import rigidarea as ra
 import tangent_drawings
 import tangent_families
 from conftest import PURE_PYTHON
-
-import rigidarea as ra
 from rigidarea.overlap import covers
 
 FAMILIES = (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS)

@@ -10,9 +10,9 @@ import time
 import numpy as np
 import pymunk
 import pytest
-from world_scenes import DT, mixed, pile, sleepy, state, with_joints
 
 import rigidarea as ra
+from world_scenes import DT, mixed, pile, sleepy, state, with_joints
 
 SCENES = {"piles": pile, "joints": with_joints, "sleepers": sleepy, "mixed": mixed}
 

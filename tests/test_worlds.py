@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pymunk
 import pytest
-from world_scenes import DT, pile, state, with_joints
 
 import rigidarea as ra
 from rigidarea.worlds import Worlds
+from world_scenes import DT, pile, state, with_joints
 
 
 def worlds_of(make, seed: int, n: int = 2, frames: int = 0, **more) -> tuple[pymunk.Space, Worlds]:

@@ -1,7 +1,8 @@
 """The site's pages: their snippets run, and the pictures that snippets draw.
 
 `python tools/pages.py` runs all snippets, draws their pictures anew, makes all figures anew from `docs/results`
-(`rigidarea.study.page`), and says which of those were measured on another solver. `make docs` does so before it builds.
+(`tests/harness/page.py`), and says which of those were measured on another solver. `make docs` does so before it
+builds.
 A Python block is run where it stands, in one namespace a page. Where an image of `pictures/` follows it, the block's
 `screen` (a pygame surface) is that picture.
 """
@@ -70,7 +71,9 @@ def on_page_markdown(markdown: str, page: Any, **more: Any) -> str:
 
 
 if __name__ == "__main__":
-    from rigidarea.study import page
+    from rigidarea.checkout import harness
+
+    page = harness("page", "tools/pages.py")
 
     for path in page.renew(DOCS):
         print(f"renewed: {path.relative_to(ROOT)}", file=sys.stderr)

@@ -15,8 +15,8 @@ from ..contact import attached
 from ..outline import Outline
 from .joints import COMMON, JOINTS, POINT, TYPES
 from .limits import file_of
-from .scene import CONTACT, FORMAT, SPACE
-from .scene import TYPES as BODY_TYPES
+from .scene_reader import CONTACT, FORMAT, SPACE
+from .scene_reader import TYPES as BODY_TYPES
 from .values import FLATTEST
 
 _NAMES = {value: name for name, value in BODY_TYPES.items()}

@@ -4,22 +4,20 @@ from __future__ import annotations
 
 import math
 import os
-import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Unpack
 from xml.parsers import expat
 
-import numpy as np
 import pymunk
-import shapely
 
 from ..gate import ShapeAttributes, size, truth
 from ..outline import Outline
 from .limits import LIMITS, Limits, allowed, check, read, shown, text
-from .rings import outlines_of_polygons, overlapping_boxes, polygons_of_rings
-from .svg_path import NUMBER, Matrix, Segments, finite_numbers, numbers
-from .values import Ring
+from .rings import outlines_of_polygons, polygons_of_rings
+from .svg_path import Matrix, Segments, numbers
+from .svg_strokes import Stroke, stroked
+from .svg_values import STRAIGHT, length_of, times, transform, viewport
 
 #: A drawing is read in Python, some megabyte a second.
 SVG_BYTES = 2 * 2**20
@@ -29,20 +27,6 @@ REFUSED = ("script", "foreignObject")
 ASIDE = ("defs", "symbol", "clipPath", "mask", "marker", "pattern")
 NAMESPACE = "http://www.w3.org/2000/svg"
 
-_UNITS = {
-    "": 1.0,
-    "px": 1.0,
-    "pt": 4 / 3,
-    "pc": 16.0,
-    "in": 96.0,
-    "cm": 96 / 2.54,
-    "mm": 9.6 / 2.54,
-    "q": 2.4 / 2.54,
-}
-_STRAIGHT: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-_TURNS = {"": 1.0, "deg": 1.0, "grad": 0.9, "rad": 180 / math.pi, "turn": 360.0}
-_LENGTH = re.compile(rf"\s*+({NUMBER})\s*+([A-Za-z]*+|%)\s*+")
-_TRANSFORM = re.compile(r"[\s,]*+([A-Za-z]++)\s*+\(([^()]*+)\)[\s,]*+")
 #: Attributes that a style may set too.
 _STYLED = {"display", "transform", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r"}
 #: What an element takes from those around it, and what it is where none says.
@@ -55,8 +39,6 @@ _INK = {
 }
 _SHAPES = ("path", "rect", "circle", "ellipse", "polyline", "polygon", "line")
 _CLOSED = ("rect", "circle", "ellipse", "polygon")
-#: Points of the strokes of one element, and pairs of their edges whose boxes overlap: GEOS pays for every crossing.
-STROKED, CROSSING = 1_000, 50_000
 LABEL = "http://www.inkscape.org/namespaces/inkscape label"
 HREF = "http://www.w3.org/1999/xlink href"
 
@@ -125,7 +107,7 @@ def elements_from_svg(
                 polygons = (
                     polygons_of_rings([ring for ring in rings if len(ring) >= 3], limits)
                     if mark.stroke is None
-                    else _stroked(rings, mark.stroke._replace(width=scale * mark.stroke.width), tolerance)
+                    else stroked(rings, mark.stroke._replace(width=scale * mark.stroke.width), tolerance)
                 )
                 found = outlines_of_polygons(polygons, 0.0, limits)
             made += [Element(outline, mark.id, mark.name, mark.layers) for outline in found]
@@ -151,15 +133,6 @@ class _Node(NamedTuple):
         return f"line {self.line}, <{self.tag[:40]}{named}>"
 
 
-class _Stroke(NamedTuple):
-    """A pen: its width (length), caps and joins as SVG calls them; closed: the element's rings are."""
-
-    width: float
-    cap: str
-    join: str
-    closed: bool
-
-
 class _Mark(NamedTuple):
     """What is drawn: an element of the file, its names, its pen."""
 
@@ -167,7 +140,7 @@ class _Mark(NamedTuple):
     id: str
     name: str
     layers: tuple[str, ...]
-    stroke: _Stroke | None
+    stroke: Stroke | None
 
 
 @contextmanager
@@ -241,7 +214,7 @@ class _Drawing:
         self.named = tree.named
         self.rules = _rules("".join(tree.style))
         assert tree.root is not None  # else expat would have said so
-        todo = [_Place(tree.root, _STRAIGHT, (0.0, 0.0), _INK, (), 1, None)]
+        todo = [_Place(tree.root, STRAIGHT, (0.0, 0.0), _INK, (), 1, None)]
         drawn = 0
         while todo:
             place = todo.pop()
@@ -260,12 +233,12 @@ class _Drawing:
         aside = node.tag in ASIDE and not (node.tag == "symbol" and used is not None)
         if aside or given.get("display", "").strip().lower() == "none":
             return []
-        matrix, view = _times(place.matrix, _transform(given.get("transform", ""))), place.view
+        matrix, view = times(place.matrix, transform(given.get("transform", ""))), place.view
         ink = {name: given.get(name, value) for name, value in place.ink.items()}
         if node.tag in ("svg", "symbol"):
             if used is not None:
                 given = given | {name: used[name] for name in ("width", "height") if name in used}
-            matrix, view = _viewport(matrix, view, given)
+            matrix, view = viewport(matrix, view, given)
             if not (view[0] > 0 and view[1] > 0):
                 return []
         name = (used or {}).get("id", given.get("id", ""))
@@ -282,26 +255,24 @@ class _Drawing:
             target = self.named.get(href[1:]) if href.startswith("#") else None
             if target is None:
                 raise ValueError(f"expected href to name an element of the file, got {shown(href)}")
-            x, y = (_length(given.get(axis), whole, f"use.{axis}") or 0.0 for axis, whole in zip("xy", view))
-            return [
-                inner._replace(node=target, matrix=_times(matrix, (1.0, 0.0, 0.0, 1.0, x, y)), used=given)
-            ]
+            x, y = (
+                length_of(given.get(axis), whole, f"use.{axis}") or 0.0 for axis, whole in zip("xy", view)
+            )
+            return [inner._replace(node=target, matrix=times(matrix, (1.0, 0.0, 0.0, 1.0, x, y)), used=given)]
         if node.tag == "g" and (LABEL in given or name):
             inner = inner._replace(layers=(*place.layers, given.get(LABEL, name)))
         return [inner._replace(node=child) for child in node.children]
 
-    def _pen(
-        self, tag: str, ink: dict[str, str], matrix: Matrix, view: tuple[float, float]
-    ) -> _Stroke | None:
+    def _pen(self, tag: str, ink: dict[str, str], matrix: Matrix, view: tuple[float, float]) -> Stroke | None:
         """The pen of what is drawn by its stroke alone; None: it is solid."""
         hollow = tag == "line" or ink["fill"].strip().lower() in ("none", "transparent")
         if not hollow or ink["stroke"].strip().lower() in ("none", "transparent"):
             return None
-        width = _length(ink["stroke-width"], math.hypot(*view) / math.sqrt(2), f"{tag}.stroke-width") or 0.0
+        width = length_of(ink["stroke-width"], math.hypot(*view) / math.sqrt(2), f"{tag}.stroke-width") or 0.0
         width *= math.sqrt(abs(matrix[0] * matrix[3] - matrix[1] * matrix[2]))
         if not width > 0:
             return None
-        return _Stroke(width, ink["stroke-linecap"].strip(), ink["stroke-linejoin"].strip(), tag in _CLOSED)
+        return Stroke(width, ink["stroke-linecap"].strip(), ink["stroke-linejoin"].strip(), tag in _CLOSED)
 
     def _styled(self, tag: str, given: dict[str, str]) -> dict[str, str]:
         """Attributes, then what style sheets say in the order of their selectors' weight, then the element's style."""
@@ -320,7 +291,7 @@ class _Drawing:
 
     def _shape(self, tag: str, given: dict[str, str], view: tuple[float, float]) -> None:
         def length(name: str, whole: float) -> float | None:
-            return _length(given.get(name), whole, f"{tag}.{name}")
+            return length_of(given.get(name), whole, f"{tag}.{name}")
 
         w, h = view
         if tag == "line":
@@ -348,40 +319,6 @@ class _Drawing:
                 rx, ry = rx if rx is not None else ry, ry if ry is not None else rx
             if rx and ry and rx > 0 and ry > 0:
                 self.segments.ellipse(complex(length("cx", w) or 0.0, length("cy", h) or 0.0), rx, ry)
-
-
-def _stroked(rings: Sequence[Ring], pen: _Stroke, tolerance: float | None) -> list[shapely.Polygon]:
-    """What a pen covers on its way along rings, (n, 2) each."""
-    check(sum(map(len, rings)), STROKED, "points of a stroke")
-    ways = ((r, np.append(True, (r[1:] != r[:-1]).any(axis=1))) for r in rings)
-    rings = [
-        ring[new] for ring, new in ways if np.count_nonzero(new) > 1
-    ]  # a pen that does not move draws nothing
-    if not rings:
-        return []
-    ends = [(ring[:-1], ring[1:]) for ring in rings]
-    low, high = (np.concatenate([how(a, b) for a, b in ends]) for how in (np.minimum, np.maximum))
-    overlapping_boxes(shapely.box(*low.T, *high.T), CROSSING, "edges of a stroke", keep=False)
-    half = pen.width / 2
-    sagitta = min(1e-3 * pen.width if tolerance is None else tolerance, half)
-    quarter = min(64, max(1, math.ceil(math.pi / 4 / math.acos(1 - sagitta / half))))
-    covered = []
-    for ring in rings:
-        closed = pen.closed or (len(ring) > 2 and bool((ring[0] == ring[-1]).all()))
-        way = shapely.LinearRing(ring) if closed and len(ring) > 2 else shapely.LineString(ring)
-        with np.errstate(invalid="ignore"):  # of numbers near the largest; what is not finite is refused
-            covered.append(
-                shapely.buffer(
-                    way,
-                    half,
-                    quad_segs=quarter,
-                    cap_style={"round": "round", "square": "square"}.get(pen.cap, "flat"),
-                    join_style={"round": "round", "bevel": "bevel"}.get(pen.join, "mitre"),
-                    mitre_limit=4.0,
-                )
-            )
-    parts = shapely.get_parts(shapely.union_all(covered))
-    return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]
 
 
 def _parsed(content: str, reader: _Tree) -> None:
@@ -417,130 +354,3 @@ def _declarations(style: str) -> dict[str, str]:
     found = (part.partition(":") for part in style.split(";"))
     told = ((name.strip(), value.replace("!important", "").strip()) for name, _, value in found)
     return {name: value for name, value in told if name in _STYLED or name in _INK}
-
-
-def _length(found: str | None, whole: float, what: str) -> float | None:
-    """CSS pixels, percentages of `whole`; None for none and "auto"."""
-    if found is None or found.strip() == "auto":
-        return None
-    told = _LENGTH.fullmatch(found)
-    unit = told[2].lower() if told else "?"
-    if told is None or (unit != "%" and unit not in _UNITS):
-        raise ValueError(f"{what}: expected a length in {', '.join(_UNITS)[2:]} or %, got {shown(found)}")
-    return finite_numbers([told[1]], what)[0] * (whole / 100 if unit == "%" else _UNITS[unit])
-
-
-def _viewport(
-    matrix: Matrix, outer: tuple[float, float], given: dict[str, str]
-) -> tuple[Matrix, tuple[float, float]]:
-    """The transform within an <svg>, and the size that percentages are of there (SVG 2, 8.2)."""
-    box = numbers(given.get("viewBox", ""), "svg.viewBox")
-    if box and (len(box) != 4 or box[2] < 0 or box[3] < 0):
-        raise ValueError(f"svg.viewBox: expected x, y, width, height, got {shown(given['viewBox'])}")
-    top = outer == (0.0, 0.0)
-    if top:
-        outer = (box[2], box[3]) if box else (1000.0, 1000.0)
-    found = [
-        _length(given.get(name), whole, f"svg.{name}") for name, whole in zip(("width", "height"), outer)
-    ]
-    width, height = (outer[i] if value is None else value for i, value in enumerate(found))
-    x, y = (
-        0.0 if top else _length(given.get(name), whole, f"svg.{name}") or 0.0
-        for name, whole in zip("xy", outer)
-    )
-    if not box:
-        return _times(matrix, (1.0, 0.0, 0.0, 1.0, x, y)), (width, height)
-    if not (box[2] > 0 and box[3] > 0):
-        return matrix, (0.0, 0.0)
-    sx, sy = width / box[2], height / box[3]
-    align, *meet = given.get("preserveAspectRatio", "xMidYMid").split() or ["xMidYMid"]
-    if align != "none":
-        sx = sy = max(sx, sy) if meet == ["slice"] else min(sx, sy)
-    part = {"min": 0.0, "max": 1.0}
-    x += (
-        part.get(align[1:4].lower(), 0.5) * (width - box[2] * sx) - box[0] * sx
-        if align != "none"
-        else -box[0] * sx
-    )
-    y += (
-        part.get(align[5:8].lower(), 0.5) * (height - box[3] * sy) - box[1] * sy
-        if align != "none"
-        else -box[1] * sy
-    )
-    return _times(matrix, (sx, 0.0, 0.0, sy, x, y)), (box[2], box[3])
-
-
-def _times(a: Matrix, b: Matrix) -> Matrix:
-    """First b, then a."""
-    return (
-        a[0] * b[0] + a[2] * b[1], a[1] * b[0] + a[3] * b[1],
-        a[0] * b[2] + a[2] * b[3], a[1] * b[2] + a[3] * b[3],
-        a[0] * b[4] + a[2] * b[5] + a[4], a[1] * b[4] + a[3] * b[5] + a[5],
-    )  # fmt: skip
-
-
-def _transform(found: str) -> Matrix:
-    """The matrix of SVG's transform attribute, or CSS's property."""
-    made: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-    at = 0
-    if found.strip() in ("", "none"):
-        return made
-    while at < len(found):
-        told = _TRANSFORM.match(found, at)
-        if told is None:
-            raise ValueError(f"transform: expected functions of numbers, got {shown(found[at : at + 40])}")
-        made = _times(made, _function(told[1], told[2]))
-        at = told.end()
-    return made
-
-
-def _function(name: str, found: str) -> Matrix:
-    kind = name.lower()
-    units = (
-        _TURNS
-        if kind.startswith(("rotate", "skew"))
-        else _UNITS
-        if kind.startswith("translate")
-        else {"": 1.0}
-    )
-    given = []
-    for i, (value, unit) in enumerate(_ARGUMENTS.findall(found)):
-        table = _UNITS if kind == "rotate" and i else units  # a centre is a length
-        if unit.lower() not in table:
-            raise ValueError(
-                f"transform: expected {name} in {', '.join(table)[2:] or 'numbers'}, got {shown(unit)}"
-            )
-        given.append(finite_numbers([value], "transform")[0] * table[unit.lower()])
-    if _ARGUMENTS.sub("", found).replace(",", " ").strip():
-        raise ValueError(f"transform: expected numbers in {name}, got {shown(found)}")
-    match kind, given:
-        case "matrix", [a, b, c, d, e, f]:
-            return (a, b, c, d, e, f)
-        case "translate" | "translatex", [x]:
-            return (1.0, 0.0, 0.0, 1.0, x, 0.0)
-        case "translate", [x, y]:
-            return (1.0, 0.0, 0.0, 1.0, x, y)
-        case "translatey", [y]:
-            return (1.0, 0.0, 0.0, 1.0, 0.0, y)
-        case "scale", [s]:
-            return (s, 0.0, 0.0, s, 0.0, 0.0)
-        case "scale", [s, t]:
-            return (s, 0.0, 0.0, t, 0.0, 0.0)
-        case "scalex", [s]:
-            return (s, 0.0, 0.0, 1.0, 0.0, 0.0)
-        case "scaley", [s]:
-            return (1.0, 0.0, 0.0, s, 0.0, 0.0)
-        case "rotate", [angle] | [angle, _, _]:
-            c, s = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-            x, y = given[1:] or (0.0, 0.0)
-            return (c, s, -s, c, x - c * x + s * y, y - s * x - c * y)
-        case "skewx", [angle]:
-            return (1.0, 0.0, math.tan(math.radians(angle)), 1.0, 0.0, 0.0)
-        case "skewy", [angle]:
-            return (1.0, math.tan(math.radians(angle)), 0.0, 1.0, 0.0, 0.0)
-    raise ValueError(
-        f"transform: expected a function of SVG with its numbers, got {shown(f'{name}({found})')}"
-    )
-
-
-_ARGUMENTS = re.compile(rf"({NUMBER})\s*+([A-Za-z%]*+)")

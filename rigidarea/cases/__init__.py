@@ -95,9 +95,9 @@ def _run(args: argparse.Namespace, out: Path | None) -> dict[str, Any]:
 
         return pin_joint.run(args.mode or "rigid", args.mesh or 1.0, args.contact, out, cache)
     if name == "geneva":
-        from rigidarea.cases import geneva
+        from rigidarea.cases import geneva, geneva_run
 
-        return geneva.run(args.mode or "compliant", args.mesh or geneva.MESH, args.contact, out, cache)
-    from rigidarea.cases import gearbox
+        return geneva_run.run(args.mode or "compliant", args.mesh or geneva.MESH, args.contact, out, cache)
+    from rigidarea.cases import gearbox_run
 
-    return gearbox.run(args.mode or "compliant", args.mesh or 0.6, args.contact, out, cache)
+    return gearbox_run.run(args.mode or "compliant", args.mesh or 0.6, args.contact, out, cache)

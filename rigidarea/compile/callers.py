@@ -16,7 +16,7 @@ from typing import Any
 
 #: Rooms whose functions judge the package, or show it, and need numba where they call kernels of their own.
 BESIDE = (
-    "study", "compat", "draw", "demos", "compile", "gym", "gallery", "__main__",
+    "study", "programs", "draw", "demos", "compile", "gym", "gallery", "__main__",
     "pygame_util", "pyglet_util", "matplotlib_util",
 )  # fmt: skip
 

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .attach import AreaContact, Settings, SimulationError, attach
+from .attach import AreaContact, Settings, SimulationError, attach, attached
 from .report import REGIONS
-from .space import attached
 
 __all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]

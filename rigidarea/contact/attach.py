@@ -14,8 +14,9 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import address_of, kinds_of_joints, layout, normal_of
+from ..chipmunk import address_of, layout, normal_of
 from ..gate import not_negative, one_of, whole
+from ..joint_structs import kinds_of_joints
 from ..kernel.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..kernel.jit import lock_for_fork
 from ..kernel.join import SPARE
@@ -26,7 +27,7 @@ from .memory import Memory, recall, remember, take_arbiters
 from .register import Register
 from .report import regions_of, total_energy
 from .snapshots import ROOM, Snapshot
-from .space import KEY, attached, attached_class
+from .space import KEY, attached_class
 
 if TYPE_CHECKING:
     from ..flexible import Assembly
@@ -544,3 +545,14 @@ def attach(
     if space._locked:
         raise RuntimeError("attach() within a step: call it after the step")
     return AreaContact(space, settings)
+
+
+def attached(space: pymunk.Space) -> AreaContact | None:
+    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
+
+    Raises ValueError for what is no space.
+    """
+    if not isinstance(space, pymunk.Space):
+        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    contact: AreaContact | None = space.__dict__.get(KEY)
+    return contact

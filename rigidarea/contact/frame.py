@@ -79,6 +79,7 @@ from .record import (
     ask,
     begin,
     floats,
+    listened,
     members,
     read_motion,
     read_place,
@@ -122,6 +123,8 @@ def silence(constraint: int, dt: float) -> None:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
+    if not s.asleep:
+        return
     for arbiter in members(space, s.space_contacts - 8):
         both = words(arbiter + s.arbiter_shape_a, 2)
         a = row_of_shape(s, both[0])
@@ -381,7 +384,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     far, lines = went_far(tables)
     if far and not _whom_it_met(s, space, dt):
         return False
-    if not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
+    if listened(s) and not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
         return False
     if far or lines:
         return_what_passed(load_pool(s), tables, s.frame, far)

@@ -11,7 +11,8 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import LayoutError, address_of, kinds_of_joints
+from ..chipmunk import LayoutError, address_of
+from ..joint_structs import kinds_of_joints
 from ..kernel.constants import SUBSTEPS
 from ..kernel.overlap import Work, enlarged
 from ..kernel.tables import (

@@ -27,7 +27,7 @@ _user_data = function("cpSpaceGetUserData", "uintp(uintp)")
 _call_user = caller("void(uintp, uintp)")
 _call_force = caller("float64(uintp, float64)")
 
-#: Numbers of a `chipmunk.JointKind`.
+#: Numbers of a `joint_structs.JointKind`.
 KIND_WORDS = 7
 
 

@@ -205,11 +205,15 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     used = pairs["a"] >= 0
     for name in ("a", "b"):
         pairs[name][used] = row_of[pairs[name][used]]
+    near = memory.near.copy()
+    listed = near[: memory.counters[NEAR]]
+    for name in ("a", "b"):
+        listed[name] = shapes["body"][pairs[name][listed["pair"]]]
     # as many of each as there, which may be fewer than here: what goes with them is of their size
     store.tables = store.tables._replace(
         pairs=pairs,
         regions=regions,
-        near=memory.near.copy(),
+        near=near,
         told=np.zeros(len(pairs), np.int32),
     )
     nodes = memory.nodes.copy()

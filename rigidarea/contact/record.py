@@ -431,6 +431,12 @@ def _take_back(body: Any, dt: float) -> None:
     place(body)
 
 
+@kernel(forceinline=True)
+def listened(s: Any) -> bool:
+    """Whether callbacks of the user's may be asked about any shape."""
+    return bool(s.heard_all != 0 or s.heard_alone_n > 0 or s.heard_pairs_n > 0)
+
+
 @kernel
 def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
@@ -471,7 +477,8 @@ def begin(s: Any, space: int, dt: float) -> bool:
     if not roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) and not ask(s, GROW):
         return False
     look_at_partners(s, load_tables(s))
-    _last(s, load_tables(s), dt)
+    if listened(s):
+        _last(s, load_tables(s), dt)
     s.asleep = len(members(space, s.space_sleeping)) > 0
     if not s.explicit:
         n = len(members(space, s.space_constraints))

@@ -5,16 +5,14 @@ from __future__ import annotations
 import math
 import weakref
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..chipmunk import LayoutError, address_of, kinds_of_joints, layout
-
-if TYPE_CHECKING:
-    from .attach import AreaContact
+from ..chipmunk import LayoutError, address_of, layout
+from ..joint_structs import kinds_of_joints
 
 _JOINTS, _DOZED = 3, 4
 _CHANGED = {1: "bodies", 2: "shapes", _JOINTS: "joints"}
@@ -31,7 +29,7 @@ class Snapshot:
 
     __slots__ = ("_arbiters", "_asleep", "_block", "_contact", "_groups", "_listed")
 
-    def __init__(self, contact: AreaContact) -> None:
+    def __init__(self, contact: Any) -> None:
         space, (save, *_) = contact.space, _functions()
         at, idle = space._space, idle_time()
         block = np.empty(contact._snapshot_room, np.uint8)
@@ -57,7 +55,7 @@ class Snapshot:
         """Its size (bytes)."""
         return len(self._block)
 
-    def put_back(self, contact: AreaContact) -> None:
+    def put_back(self, contact: Any) -> None:
         """`AreaContact.restore`."""
         space, (_, compare, restore, reorder) = contact.space, _functions()
         at, idle, block = space._space, idle_time(), ffi.from_buffer(self._block)
@@ -95,7 +93,7 @@ class Snapshot:
             _put_arbiters_back(space, self._arbiters, late)
             contact._take_arbiters()
 
-    def _has_joints_of(self, contact: AreaContact) -> bool:
+    def _has_joints_of(self, contact: Any) -> bool:
         """Whether the space has the joints of then, listed by Chipmunk or not."""
         then = {*self._listed.tolist(), *(address_of(joint._constraint) for joint, _ in self._asleep)}
         hidden = int(contact._state["hidden"])

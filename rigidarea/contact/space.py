@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pymunk
 
 from ..debug_draw import true_outlines
 from ..pictures import figure
 from .report import picture_of
-
-if TYPE_CHECKING:
-    from .attach import AreaContact
 
 #: Where a space keeps its contact: they go together, and pymunk does not pickle it.
 KEY = "_area_contact"
@@ -91,25 +88,14 @@ def attached_class(plain: Any) -> type:
     return _classes[plain]
 
 
-def _copy(made: tuple[Any, ...], contact: AreaContact) -> pymunk.Space:
+def _copy(made: tuple[Any, ...], contact: Any) -> pymunk.Space:
     build, arguments, state = made[:3]
     space = build(*arguments)
     space.__setstate__(state)
-    made_anew = attached(space)
+    made_anew = space.__dict__.get(KEY)
     if (
         made_anew is not None
-    ):  # a class that attaches when it is made, or restored: the copy goes on as its original
+    ):  # the class attaches when it is made, or restored: the copy goes on as its original
         made_anew.detach()
     contact._install(space)
     return space
-
-
-def attached(space: pymunk.Space) -> AreaContact | None:
-    """The area contact of a space, None if it has none. Of a copied or unpickled space too.
-
-    Raises ValueError for what is no space.
-    """
-    if not isinstance(space, pymunk.Space):
-        raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
-    contact: AreaContact | None = space.__dict__.get(KEY)
-    return contact

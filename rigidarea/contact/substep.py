@@ -120,8 +120,10 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                 known = True
             elif k == 1 and not jointed:
                 search_together(tables, searches - 1, known)
+        if moved <= SETTLED * small:
+            break
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
-        if (not gained and moved <= small) or moved <= SETTLED * small:
+        if not gained and moved <= small:
             break
     if tables.counters[BOUNCES] > 0 and not jointed:
         bound_bounces(tables, came + held_back(tables, h))

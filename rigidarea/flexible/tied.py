@@ -10,9 +10,10 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi
 
-from rigidarea.chipmunk import address_of, kinds_of_joints, layout
+from rigidarea.chipmunk import address_of, layout
 from rigidarea.flexible.inspace import LINK, MEMBER, PLACES
 from rigidarea.flexible.integrate import Body
+from rigidarea.joint_structs import kinds_of_joints
 from rigidarea.store import OFFSETS
 
 Pair = tuple[float, float]

@@ -114,8 +114,8 @@ def demand(
         pair = tables.pairs[tables.near[i].pair]
         wants = _past_teeth(pool, tables, work, pair, dt)
         if wants > 1:
-            for shape in (pair.a, pair.b):
-                body = tables.bodies[tables.shapes[shape].body]
+            for one in (tables.near[i].a, tables.near[i].b):
+                body = tables.bodies[one]
                 body.wants = max(body.wants, wants)
             most = max(most, wants)
     return most, min(most, least)
@@ -140,9 +140,8 @@ def company(tables: Tables) -> None:
     for k in range(tables.counters[AWAKE]):
         tables.bodies[tables.awake[k]].steps = 0
     for k in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[k].pair]
-        tables.bodies[tables.shapes[pair.a].body].steps = 1
-        tables.bodies[tables.shapes[pair.b].body].steps = 1
+        tables.bodies[tables.near[k].a].steps = 1
+        tables.bodies[tables.near[k].b].steps = 1
 
 
 @kernel
@@ -181,8 +180,7 @@ def part(tables: Tables) -> None:
     for k in range(tables.counters[AWAKE]):
         tables.bodies[tables.awake[k]].island = tables.awake[k]
     for k in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[k].pair]
-        connect(tables, tables.shapes[pair.a].body, tables.shapes[pair.b].body)
+        connect(tables, tables.near[k].a, tables.near[k].b)
 
 
 @kernel
@@ -213,10 +211,8 @@ def number(tables: Tables, gx: float, gy: float) -> int:
     for k in range(counters[NEAR]):
         if moved:
             break
-        pair = tables.pairs[tables.near[k].pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        moved = tables.near[k].turn != turn_of(a, b)
+        near = tables.near[k]
+        moved = near.turn != turn_of(tables.bodies[near.a], tables.bodies[near.b])
     if numbers < 2:
         return numbers
     counters[TURNED] = 1

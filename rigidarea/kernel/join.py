@@ -91,8 +91,8 @@ def nobody_comes_near(tables: Tables, time: float) -> bool:
         pair = tables.pairs[tables.near[i].pair]
         sa = tables.shapes[pair.a]
         sb = tables.shapes[pair.b]
-        a = tables.bodies[sa.body]
-        b = tables.bodies[sb.body]
+        a = tables.bodies[tables.near[i].a]
+        b = tables.bodies[tables.near[i].b]
         speed = abs(a.vx - b.vx) + abs(a.vy - b.vy) + abs(a.gain_x - b.gain_x) + abs(a.gain_y - b.gain_y)
         speed += (abs(a.w) + abs(a.gain_w)) * (a.reach + abs(a.cog_x) + abs(a.cog_y))
         speed += (abs(b.w) + abs(b.gain_w)) * (b.reach + abs(b.cog_x) + abs(b.cog_y))
@@ -267,10 +267,8 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
         i = first + (n - size if n >= size else n)
         p = tables.near[i].pair
         pair = tables.pairs[p]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        a = tables.bodies[sa.body]
-        b = tables.bodies[sb.body]
+        a = tables.bodies[tables.near[i].a]
+        b = tables.bodies[tables.near[i].b]
         if jointed and n == size:
             _add_joints(tables, law, h)
         if a.stamp != frame and b.stamp != frame:
@@ -350,9 +348,6 @@ def join(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float,
     _stray(tables, h)
     for i in range(counters[FIRST], counters[LAST]):
         near = tables.near[i]
-        if first:
-            near.a = tables.shapes[tables.pairs[near.pair].a].body
-            near.b = tables.shapes[tables.pairs[near.pair].b].body
         a = tables.bodies[near.a]
         b = tables.bodies[near.b]
         if not first and a.strayed + b.strayed < near.room:

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from .arc import distance2
 from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .exposed import exposed_patch
@@ -29,7 +30,7 @@ from .motion import (
     unseen_for,
 )
 from .overlap import A_EDGE, OVERFLOW, Work
-from .patch import Patch
+from .patch import centred, faceless
 from .place import Pose, overlap_of_outlines, push_out, seen_from
 from .pool import Pool
 from .region import closing, fill, inverse_mass, region_stiffness, steer
@@ -80,7 +81,7 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
     r = head
     while r >= 0:
         if regions[r].stamp != stamp:
-            d = (regions[r].x - x) ** 2 + (regions[r].y - y) ** 2
+            d = distance2(regions[r].x, regions[r].y, x, y)
             if d < least:
                 least = d
                 best = r
@@ -197,33 +198,10 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             elif against:
                 born = True
         region.past = past
-        x = patch.x
-        y = patch.y
-        middle = patch.middle
-        straight = patch.straight
         if patch.blind or past:
-            middle = 0.0
-            straight = 0.0
+            patch = faceless(patch, wx, wy, past == 1)
         elif law.law == LAW_ENERGY:  # the gradient's line of action: through the chord's middle
-            x -= wy * middle
-            y += wx * middle
-            middle = 0.0
-        patch = Patch(
-            patch.area,
-            x,
-            y,
-            wx,
-            wy,
-            patch.chord,
-            middle,
-            straight,
-            0.0 if past else patch.curve_a,
-            0.0 if past else patch.curve_b,
-            patch.depth,
-            patch.reach,
-            patch.blind,
-            0 if past else patch.radial,
-        )
+            patch = centred(patch)
         region.born = 1 if born else 0
         if born:
             region.placed = 0

@@ -63,8 +63,17 @@ def sieve(tables: Tables) -> None:
     near = tables.near
     n = 0
     for i in range(tables.counters[BOXED]):
-        if may_collide(tables, tables.pairs[near[i].pair]):
-            near[i].pair, near[n].pair = near[n].pair, near[i].pair
+        p = near[i].pair
+        pair = tables.pairs[p]
+        if may_collide(tables, pair):
+            near[i].pair = near[n].pair
+            near[n].pair = p
+            sa = tables.shapes[pair.a]
+            sb = tables.shapes[pair.b]
+            near[n].a = sa.body
+            near[n].b = sb.body
+            near[n].extent = min(sa.extent, sb.extent)
+            near[n].lined = sa.mirror >= 0 or sb.mirror >= 0
             n += 1
     tables.counters[NEAR] = n
 
@@ -81,9 +90,8 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
     sorted_already = True
     for i in range(n):
         one = near[i]
-        pair = tables.pairs[one.pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
+        a = tables.bodies[one.a]
+        b = tables.bodies[one.b]
         x = 0.0
         y = 0.0
         if a.mobile:
@@ -219,9 +227,8 @@ def enlist(tables: Tables) -> None:
             n += 1
     counters[ENLISTED] += 1
     for k in range(counters[NEAR]):
-        pair = tables.pairs[tables.near[k].pair]
-        n = _enlist_fixed(tables, tables.shapes[pair.a].body, n)
-        n = _enlist_fixed(tables, tables.shapes[pair.b].body, n)
+        n = _enlist_fixed(tables, tables.near[k].a, n)
+        n = _enlist_fixed(tables, tables.near[k].b, n)
     for k in range(counters[JOINTS]):
         for i in (tables.joints[k].a, tables.joints[k].b):
             if i >= 0:
@@ -268,6 +275,10 @@ def bound(tables: Tables) -> None:
 @kernel(forceinline=True)
 def _set(one: Any, other: Any) -> None:
     one.pair = other.pair
+    one.a = other.a
+    one.b = other.b
+    one.extent = other.extent
+    one.lined = other.lined
     one.turn = other.turn
     one.order = other.order
     one.beside = other.beside

@@ -260,11 +260,8 @@ def went_far(tables: Tables) -> tuple[bool, bool]:
             way = abs(body.x - body.old_x) + abs(body.y - body.old_y)
             most = max(most, way + abs(body.angle - body.old_a) * (shape.half_x + shape.half_y))
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        lines |= sa.mirror >= 0 or sb.mirror >= 0
-        least = min(least, sa.extent, sb.extent)
+        lines |= tables.near[i].lined == 1
+        least = min(least, tables.near[i].extent)
     return 2.0 * most > LOOK * least, lines
 
 

@@ -96,6 +96,14 @@ def _radial(work: Work, loop: Any, disc: int, nx: float, ny: float) -> tuple[flo
     return nx, ny, 0
 
 
+@kernel(forceinline=True)
+def _is_cut_off(work: Work, start: int) -> bool:
+    """Whether a loop of three is what a straight edge, its first, cuts off a disc: the arc's middle is last."""
+    return bool(
+        work.bows[start, 2] == 0.0 and work.bows[start + 1, 2] != 0.0 and work.bows[start + 2, 2] != 0.0
+    )
+
+
 @kernel
 def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose) -> Patch:
     """Loop k of the work, of outlines ia at `pose` and ib."""
@@ -136,6 +144,14 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
             near = loop.start + 3
             reach = nx * (work.polygon[far, 0] - work.polygon[near, 0])
             reach += ny * (work.polygon[far, 1] - work.polygon[near, 1])
+        elif (
+            (head.disc or pool.heads[ib].disc)
+            and loop.stop - loop.start == 3
+            and _is_cut_off(work, loop.start)
+        ):
+            middle_of_arc = loop.start + 2
+            reach = nx * (work.polygon[middle_of_arc, 0] - work.polygon[loop.start, 0])
+            reach = abs(reach + ny * (work.polygon[middle_of_arc, 1] - work.polygon[loop.start, 1]))
         else:
             reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
         if straight > 0.0 or loop.arcs == 0 or chord == 0.0:
@@ -155,6 +171,48 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
                 )
     return Patch(
         loop.area, x, y, wx, wy, chord, middle, straight, curve_a, curve_b, depth, reach, blind, radial
+    )
+
+
+@kernel
+def faceless(patch: Patch, nx: float, ny: float, past: bool) -> Patch:
+    """A patch along another direction, on no face; `past` the middle of a body, on nothing round either."""
+    return Patch(
+        patch.area,
+        patch.x,
+        patch.y,
+        nx,
+        ny,
+        patch.chord,
+        0.0,
+        0.0,
+        0.0 if past else patch.curve_a,
+        0.0 if past else patch.curve_b,
+        patch.depth,
+        patch.reach,
+        patch.blind,
+        0 if past else patch.radial,
+    )
+
+
+@kernel
+def centred(patch: Patch) -> Patch:
+    """A patch whose point of application is its chord's middle."""
+    return Patch(
+        patch.area,
+        patch.x - patch.ny * patch.middle,
+        patch.y + patch.nx * patch.middle,
+        patch.nx,
+        patch.ny,
+        patch.chord,
+        0.0,
+        patch.straight,
+        patch.curve_a,
+        patch.curve_b,
+        patch.depth,
+        patch.reach,
+        patch.blind,
+        patch.radial,
     )
 
 

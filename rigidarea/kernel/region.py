@@ -110,4 +110,5 @@ def growth(r: Any) -> float:
 @kernel(forceinline=True)
 def beyond(law: Law, phase2: float) -> float:
     """How far a step is too long for a contact of (w h)^2 = phase2: 0 where it follows it, to 1."""
-    return 0.0 if phase2 <= law.followed else 1.0 - (law.followed / phase2) ** 2
+    part = law.followed / phase2 if phase2 > law.followed else 1.0
+    return 1.0 - part * part

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from .arc import distance2
 from .constants import HIT, LEFT, MOVED, ROUNDING
 from .jit import kernel
 from .joint import settle_joint
@@ -144,9 +145,10 @@ def common(tables: Tables) -> tuple[float, float, float]:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
-            mass += 1.0 / body.inverse_mass
-            x += body.vx / body.inverse_mass
-            y += body.vy / body.inverse_mass
+            own = 1.0 / body.inverse_mass
+            mass += own
+            x += own * body.vx
+            y += own * body.vy
     return (mass, x / mass, y / mass) if mass > 0.0 else (0.0, 0.0, 0.0)
 
 
@@ -157,7 +159,7 @@ def kinetic(tables: Tables, x: float, y: float) -> float:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
-            total += 0.5 * ((body.vx - x) ** 2 + (body.vy - y) ** 2) / body.inverse_mass
+            total += 0.5 * distance2(body.vx, body.vy, x, y) / body.inverse_mass
         if body.inverse_moment > 0.0:
             total += 0.5 * body.w * body.w / body.inverse_moment
     return total

@@ -71,9 +71,8 @@ def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float
     """
     if law.stiffness > 0.0:
         return float(law.stiffness)
-    of_face = pair.rate / pair.face
     if law.law != LAW_AREA:
-        return float(of_face * law.length / pair.face)
+        return float(pair.rate / pair.face * law.length / pair.face)
     n = growth(r)
     if r.chord > 0.0:
         part = r.straight / r.chord if n > 1.0 else 0.0
@@ -81,7 +80,7 @@ def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float
     else:
         k = pair.rate * r.depth / r.area
     theta = beyond(law, pair.rate * inverse * h * h)
-    return float((1.0 - theta) * of_face + theta * k)
+    return float(k if theta == 1.0 else (1.0 - theta) * pair.rate / pair.face + theta * k)
 
 
 @kernel(forceinline=True)
@@ -133,16 +132,17 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
         if body.inverse_mass > 0.0:
             most += max(law.gravity, body.thrust / dt) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
-        load = bear(pair, dt, _most(a, b, most))
+        near = tables.near[i]
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
+        load = bear(tables.pairs[near.pair], dt, _most(a, b, most))
         a.load = max(a.load, load)
         b.load = max(b.load, load)
     for i in range(tables.counters[NEAR]):
-        pair = tables.pairs[tables.near[i].pair]
-        a = tables.bodies[tables.shapes[pair.a].body]
-        b = tables.bodies[tables.shapes[pair.b].body]
+        near = tables.near[i]
+        pair = tables.pairs[near.pair]
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
         now = min(_most(a, b, most), pair.carrying / dt)
         carry(pair, min(a.load, b.load), now, allowed_depth(law, a, b))
 

@@ -193,6 +193,8 @@ NEIGHBOURS = record(
         ("beside", "f8"),  # against gravity's left
         ("a", "u4"),  # rows of the two bodies
         ("b", "u4"),
+        ("lined", "i4"),  # 1: a segment without thickness is one of them, whose side is kept
+        ("extent", "f8"),  # the smaller one's smallest extent (length)
         (
             "room",
             "f8",

@@ -22,7 +22,7 @@ from typing import Any
 
 import numpy as np
 
-from .arc import FLAT, flat_segment
+from .arc import FLAT, distance2, flat_segment
 from .jit import kernel
 from .work import A_EDGE
 
@@ -61,7 +61,7 @@ def curvatures(
             doubled += ux * vy - uy * vx
             r = bows[j, 2]
             if r != 0.0:
-                x = min(1.0, 0.5 * math.sqrt((vx - ux) ** 2 + (vy - uy) ** 2) / abs(r))
+                x = min(1.0, 0.5 * math.sqrt(distance2(vx, vy, ux, uy)) / abs(r))
                 if x * x < FLAT:
                     between, _ = flat_segment(x, x * x)
                 else:
@@ -108,7 +108,7 @@ def turning_speed(r: Any, a: Any, b: Any, h: float) -> float:
     s = uy * r.nx - ux * r.ny + wb * r.lean_b - wa * r.lean_a
     mixed = wb * r.curve_a + wa * r.curve_b
     product = r.curve_a * r.curve_b
-    bend = (product * s * s + 2.0 * s * mixed - (wb - wa) ** 2) / both
+    bend = (product * s * s + 2.0 * s * mixed - (wb - wa) * (wb - wa)) / both
     bend += wa * wa * r.lean_a - wb * wb * r.lean_b
     angle = h * (product * s + mixed) / both
     return h * bend / (1.0 + math.sqrt(1.0 + angle * angle))

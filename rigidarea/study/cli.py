@@ -10,6 +10,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from ..checkout import harness, pages
 from ..report import lines, output_arguments, write_json
 
 BENCHES = {
@@ -52,7 +53,10 @@ def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
 
 def _docs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--docs", type=Path, metavar="DIR", help="keep the results there, and renew what pages show of them"
+        "--docs",
+        type=pages,
+        metavar="DIR",
+        help="in a checkout: keep the results there, and renew what pages show of them",
     )
 
 
@@ -115,6 +119,11 @@ def _write(arguments: argparse.Namespace, name: str, report: dict[str, Any]) -> 
         write_csv(arguments.out / f"{name}-summary.csv", report["summary"])
 
 
+def _keep(docs: Path, name: str, report: dict[str, Any], pictures: dict[str, Path]) -> None:
+    """Keep the results and renew what pages show of them: FileNotFoundError in an installed package."""
+    harness("page", "--docs").keep(docs, name, report, pictures)
+
+
 def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict[str, Any]]) -> int:
     """JSON where it was asked for; unless that is standard output, a table there."""
     write_json(report, arguments.json)
@@ -125,18 +134,18 @@ def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict
 
 
 def _compare(arguments: argparse.Namespace) -> int:
-    from . import compare, draw_compare, page
+    from . import compare, draw_compare
 
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
     _write(arguments, "compare", report)
     picture, *_ = draw_compare.levels(report, traces, arguments.out)
     if arguments.docs:
-        page.keep(arguments.docs, "compare", report, {"compare.png": picture})
+        _keep(arguments.docs, "compare", report, {"compare.png": picture})
     return _tell(arguments, report, report["results"])
 
 
 def _atlas(arguments: argparse.Namespace) -> int:
-    from . import atlas, draw_atlas, page
+    from . import atlas, draw_atlas
 
     report = atlas.atlas(map_names=arguments.map, **_swept(arguments))
     _write(arguments, "atlas", report)
@@ -145,12 +154,12 @@ def _atlas(arguments: argparse.Namespace) -> int:
     pictures = draw_atlas.page(report, arguments.out)
     if arguments.docs:
         shown = {"atlas.png": pictures[0]} if pictures else {}
-        page.keep(arguments.docs, "atlas", {**report, "results": atlas.passed(report["results"])}, shown)
+        _keep(arguments.docs, "atlas", {**report, "results": atlas.passed(report["results"])}, shown)
     return _tell(arguments, report, atlas.passed(report["results"]))
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, page, start
+    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -164,7 +173,7 @@ def _bench(arguments: argparse.Namespace) -> int:
         pictures = draw_bench.everyday_times(report, arguments.out)
         if arguments.docs:
             shown = {"everyday.png": pictures[0]} if pictures else {}
-            page.keep(arguments.docs, "everyday", report, shown)
+            _keep(arguments.docs, "everyday", report, shown)
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
         if arguments.json != "-":
             print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
@@ -186,12 +195,12 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = growth.growth(arguments.scene, arguments.bodies or (), arguments.peer)
         pictures = draw_bench.growth(report, arguments.out)
         if arguments.docs:
-            page.keep(arguments.docs, "growth", report, {"growth.png": pictures[0]} if pictures else {})
+            _keep(arguments.docs, "growth", report, {"growth.png": pictures[0]} if pictures else {})
     elif arguments.what == "step":
         report = start.step()
         pictures = draw_bench.phases(report, arguments.out)
         if arguments.docs:
-            page.keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
+            _keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
     elif arguments.what == "start":
         report = start.start()
     else:
@@ -214,7 +223,7 @@ def _setting(text: str) -> tuple[str, Any]:
 
 
 def _chart(arguments: argparse.Namespace) -> int:
-    from . import chart, draw, page
+    from . import chart, draw
 
     report = chart.chart(scene_names=arguments.scene, repeats=arguments.repeats, **_swept(arguments))
     _write(arguments, "chart", report)
@@ -223,6 +232,7 @@ def _chart(arguments: argparse.Namespace) -> int:
     defaults = draw.chart_defaults(report, arguments.out)
     if arguments.docs and pictures:
         shown = {"chart.png": pictures[0]} | ({"chart-defaults.png": defaults[0]} if defaults else {})
+        page = harness("page", "--docs")
         page.keep(arguments.docs, "chart", page.concise(report), shown)
     _tell(
         arguments,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from .draw import colour, marker, pyplot, save
-from .growth import GROWING
+from .growing_scenes import GROWING
 from .records import Row
 
 

@@ -15,14 +15,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .everyday_bodies import (
+    GRAVITY_PX,
+    SIDE_PX,
+    WALL_PX,
+    Maker,
+    a_box,
+    a_disc,
+    a_hexagon,
+    a_rounded_box,
+    anything,
+    ground,
+    open_box,
+    walls,
+)
 from .scene import Body, G, Hinge, Polygon, Scene, Segment, Trace, X, Y, block, box, disc
 
-GRAVITY_PX = 900.0
-"""Of games in pixels (px/s²), as in pymunk's examples."""
-SIDE_PX = 30.0
-"""Of a usual body (px); engines with a unit of length of their own take it for that."""
-WALL_PX = 5.0
-"""Radius of floors and walls (px)."""
 SECONDS = 7.0
 """Simulated time; whether a scene has come to rest is asked of the last second."""
 
@@ -85,72 +93,6 @@ def _scene(
 # Shapes -----------------------------------------------------------------------------------------------------
 
 
-def _walls(*points: tuple[float, float], name: str = "walls") -> Body:
-    """A static body of segments from point to point."""
-    pairs = itertools.pairwise(points)
-    return Body(name, tuple(Segment(a, b, WALL_PX) for a, b in pairs), kind="static")
-
-
-def _open_box(width: float, height: float) -> Body:
-    """A floor whose upper face is y = 0 and two walls whose inner faces are `width` apart."""
-    w, r = width / 2 + WALL_PX, WALL_PX
-    return _walls((-w, height), (-w, -r), (w, -r), (w, height))
-
-
-def _ground(half: float = 1000.0) -> Body:
-    """A floor whose upper face is y = 0."""
-    return _walls((-half, -WALL_PX), (half, -WALL_PX), name="floor")
-
-
-def gon(name: str, corners: int, radius: float, place: tuple[float, float], **more: object) -> Body:
-    """A regular polygon of unit mass in a circle of `radius`."""
-    angles = 2 * math.pi * np.arange(corners) / corners
-    points = tuple(
-        (float(x), float(y)) for x, y in radius * np.column_stack((np.cos(angles), np.sin(angles)))
-    )
-    # of a regular n-gon: m R² (2 + cos(2π/n))/6
-    moment = radius**2 * (2 + math.cos(2 * math.pi / corners)) / 6
-    return Body(name, (Polygon(points),), place, moment=moment, **more)  # type: ignore[arg-type]
-
-
-def rounded(name: str, side: float, radius: float, place: tuple[float, float], **more: object) -> Body:
-    """A square of unit mass, `side` overall, its corners rounded; the moment is that of the sharp square."""
-    core = box(side - 2 * radius, side - 2 * radius)
-    return Body(name, (Polygon(core.points, radius),), place, moment=side**2 / 6, **more)  # type: ignore[arg-type]
-
-
-Maker = Callable[[str, random.Random, tuple[float, float]], Body]
-
-
-def _a_box(name: str, chance: random.Random, place: tuple[float, float]) -> Body:
-    return block(name, SIDE_PX, SIDE_PX, place, angle=chance.uniform(-math.pi, math.pi))
-
-
-def _a_hexagon(name: str, chance: random.Random, place: tuple[float, float]) -> Body:
-    return gon(name, 6, SIDE_PX / 2, place, angle=chance.uniform(-math.pi, math.pi))
-
-
-def _a_disc(name: str, chance: random.Random, place: tuple[float, float]) -> Body:
-    return disc(name, SIDE_PX / 2, place)
-
-
-def _a_rounded_box(name: str, chance: random.Random, place: tuple[float, float]) -> Body:
-    return rounded(name, SIDE_PX, SIDE_PX / 6, place, angle=chance.uniform(-math.pi, math.pi))
-
-
-def _anything(name: str, chance: random.Random, place: tuple[float, float]) -> Body:
-    angle = chance.uniform(-math.pi, math.pi)
-    kind = chance.randrange(5)
-    size = SIDE_PX * chance.uniform(0.6, 1.2)
-    if kind == 0:
-        return disc(name, size / 2, place)
-    if kind == 1:
-        return block(name, size, 0.6 * size, place, angle=angle)
-    if kind == 2:
-        return rounded(name, size, size / 6, place, angle=angle)
-    return gon(name, 3 if kind == 3 else 6, size / 2, place, angle=angle)
-
-
 # Scenes -----------------------------------------------------------------------------------------------------
 
 
@@ -161,7 +103,7 @@ def pit(name: str, maker: Maker, count: int = 150, width: float = 600.0) -> Call
         chance = random.Random(seed)
         pitch = 1.5 * SIDE_PX
         columns = int(width / pitch)
-        bodies = [_open_box(width, 1000.0)]
+        bodies = [open_box(width, 1000.0)]
         for i in range(count):
             x = (i % columns - (columns - 1) / 2) * pitch + chance.uniform(-2, 2)
             y = (i // columns + 1) * pitch + chance.uniform(-2, 2)
@@ -173,7 +115,7 @@ def pit(name: str, maker: Maker, count: int = 150, width: float = 600.0) -> Call
 
 def pit_of_discs(count: int) -> Scene:
     """So many discs in a pit as deep, over its width, as the one of 150."""
-    return pit("discs", _a_disc, count, 600.0 * math.sqrt(count / 150))(0)
+    return pit("discs", a_disc, count, 600.0 * math.sqrt(count / 150))(0)
 
 
 def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list[Body]:
@@ -197,7 +139,7 @@ def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list
 def pyramid(seed: int) -> Scene:
     """15 rows of boxes, a tenth of a side between them."""
     boxes = _pile(15, SIDE_PX, 0.1, 0.01 * SIDE_PX, seed)
-    return _scene("pyramid", [_ground(), *boxes], (-1000.0, 0.0, 1000.0, 1000.0))
+    return _scene("pyramid", [ground(), *boxes], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
 BRICK, COURSES, ACROSS = (40.0, 20.0), 12, 10
@@ -223,14 +165,14 @@ def _bricks(seed: int) -> list[Body]:
 
 def wall(seed: int) -> Scene:
     """A brick wall that stands."""
-    return _scene("wall", [_ground(), *_bricks(seed)], (-1000.0, 0.0, 1000.0, 1000.0))
+    return _scene("wall", [ground(), *_bricks(seed)], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
 def struck_wall(seed: int) -> Scene:
     """The same wall, struck by a ball of the weight of twenty bricks."""
     speed = 1500.0 + 20.0 * random.Random(seed).random()
     ball = disc("ball", 25.0, (-400.0, 140.0), 20.0, velocity=(speed, 50.0))
-    bodies = [_walls((-1000.0, 1000.0), (-1000.0, -WALL_PX), (1000.0, -WALL_PX), (1000.0, 1000.0))]
+    bodies = [walls((-1000.0, 1000.0), (-1000.0, -WALL_PX), (1000.0, -WALL_PX), (1000.0, 1000.0))]
     return _scene("struck_wall", [*bodies, *_bricks(seed), ball], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
@@ -242,7 +184,7 @@ def tower(seed: int) -> Scene:
         block(f"box{i}", SIDE_PX, SIDE_PX, (chance.uniform(-scatter, scatter), (i + 0.5) * SIDE_PX))
         for i in range(12)
     ]
-    return _scene("tower", [_ground(), *boxes], (-1000.0, 0.0, 1000.0, 1000.0))
+    return _scene("tower", [ground(), *boxes], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
 def dominoes(seed: int) -> Scene:
@@ -255,7 +197,7 @@ def dominoes(seed: int) -> Scene:
     ]
     first = tiles[0]
     pushed = block("domino0", width, height, first.position, velocity=(60.0, 0.0), angular_velocity=-2.0)
-    return _scene("dominoes", [_ground(), pushed, *tiles[1:]], (-1000.0, 0.0, 1000.0, 1000.0))
+    return _scene("dominoes", [ground(), pushed, *tiles[1:]], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
 def rope_bridge(seed: int) -> Scene:
@@ -309,10 +251,10 @@ def rope_bridge(seed: int) -> Scene:
 def bouncing(seed: int) -> Scene:
     """Forty shapes of all kinds with e = 0.9 in a closed room."""
     chance = random.Random(seed)
-    bodies = [_walls((-400.0, 0.0), (400.0, 0.0), (400.0, 600.0), (-400.0, 600.0), (-400.0, 0.0))]
+    bodies = [walls((-400.0, 0.0), (400.0, 0.0), (400.0, 600.0), (-400.0, 600.0), (-400.0, 0.0))]
     for i in range(40):
         place = (80.0 * (i % 8 - 3.5), 100.0 + 80.0 * (i // 8))
-        made = _anything(f"body{i}", chance, place)
+        made = anything(f"body{i}", chance, place)
         velocity = (chance.uniform(-300, 300), chance.uniform(-300, 300))
         bodies.append(
             Body(made.name, made.shapes, place, made.angle, velocity, mass=made.mass, moment=made.moment)
@@ -330,13 +272,13 @@ def crates(seed: int) -> Scene:
     ]  # fmt: skip
     heavy = block("heavy", side, side, (chance.uniform(-side, side), 5.5 * side + 5.0), 100.0)
     width = 14 * side
-    return _scene("crates", [_open_box(width, 1000.0), *heap, heavy], (-width / 2, 0.0, width / 2, 1000.0))
+    return _scene("crates", [open_box(width, 1000.0), *heap, heavy], (-width / 2, 0.0, width / 2, 1000.0))
 
 
 def platformer(seed: int) -> Scene:
     """Terrain with a slope and steps, a lift, a belt, crates, capsules that stay upright: a level of a game."""
     chance = random.Random(seed)
-    terrain = _walls(
+    terrain = walls(
         (-600.0, 800.0),
         (-600.0, 150.0),
         (-350.0, 150.0),
@@ -409,11 +351,11 @@ def metre_towers(bodies: int, height: int = 5) -> Callable[[int], Scene]:
 EVERYDAY: dict[str, Everyday] = {
     scene.name: scene
     for scene in (
-        Everyday("boxes", "pit of 150 boxes", pit("boxes", _a_box)),
-        Everyday("hexagons", "pit of 150 hexagons", pit("hexagons", _a_hexagon)),
-        Everyday("discs", "pit of 150 discs", pit("discs", _a_disc), judged=False),
-        Everyday("mixed", "pit of 150 mixed shapes", pit("mixed", _anything), judged=False),
-        Everyday("rounded", "pit of 150 rounded boxes", pit("rounded", _a_rounded_box), judged=False),
+        Everyday("boxes", "pit of 150 boxes", pit("boxes", a_box)),
+        Everyday("hexagons", "pit of 150 hexagons", pit("hexagons", a_hexagon)),
+        Everyday("discs", "pit of 150 discs", pit("discs", a_disc), judged=False),
+        Everyday("mixed", "pit of 150 mixed shapes", pit("mixed", anything), judged=False),
+        Everyday("rounded", "pit of 150 rounded boxes", pit("rounded", a_rounded_box), judged=False),
         Everyday("pyramid", "pyramid of 120 boxes", pyramid, stands=True),
         Everyday("wall", "brick wall", wall, stands=True),
         Everyday("struck_wall", "brick wall struck by a heavy ball", struck_wall, judged=False),

@@ -20,8 +20,8 @@ import shapely
 import rigidarea as ra
 from rigidarea import bring
 from rigidarea.bring.formats import stripped
-from rigidarea.bring.svg import _transform
 from rigidarea.bring.svg_path import Segments
+from rigidarea.bring.svg_values import transform
 from rigidarea.kernel.thin import thinned
 
 READERS = [bring.load_scene, bring.outlines_from_svg, bring.outlines_from_geojson, bring.outlines_from_image]
@@ -354,7 +354,7 @@ def test_random_paths_as_svgelements_reads_them(tmp_path):
         turn = f"rotate({number()}) scale({chance.uniform(0.5, 2):.3f}) translate({number()} {number()})"
         segments = Segments(bring.LIMITS)
         segments.path(data)
-        segments.element(_transform(turn))
+        segments.element(transform(turn))
         ours = [shapely.LinearRing(ring) for ring in segments.rings(1.0, False, 1e-4)[0]]
         ours = list(filter(wide, ours))
         theirs, points = [], []

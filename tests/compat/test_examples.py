@@ -9,8 +9,8 @@ import numpy as np
 import pymunk.examples
 import pytest
 
-from rigidarea.compat import command
-from rigidarea.compat.examples import (
+from harness import command
+from harness.examples import (
     EXAMPLES,
     STEPPING,
     by_chance,
@@ -21,8 +21,8 @@ from rigidarea.compat.examples import (
     typical,
     widened,
 )
-from rigidarea.compat.facts import cradle_swings, stays_in_scene
-from rigidarea.compat.watch import Frame, Watch
+from harness.facts import cradle_swings, stays_in_scene
+from harness.watch import Frame, Watch
 
 pytest.importorskip("pygame")
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from rigidarea.compat.host import Host
-from rigidarea.compat.screen import Input, drag, tap
+from rigidarea.programs.host import Host
+from rigidarea.programs.screen import Input, drag, tap
 
 ROOT = Path(__file__).parents[2]
 ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
@@ -50,9 +50,9 @@ while True:
 HOSTED = """
 import json, sys
 from rigidarea import attached
-from rigidarea.compat.host import Host
-from rigidarea.compat.screen import drag, tap
-import rigidarea.compat.host as host_module
+from rigidarea.programs.host import Host
+from rigidarea.programs.screen import drag, tap
+import rigidarea.programs.host as host_module
 host = Host(sys.argv[1], 20, script=[*tap(3, "SPACE"), *tap(5, "LEFT", 2), *drag(8, 1, [(10, 20), (30, 40)])])
 import runpy
 keep = {}

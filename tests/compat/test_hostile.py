@@ -2,9 +2,9 @@
 
 import pytest
 
-from rigidarea.compat.hostile import fuzz
-from rigidarea.compat.meddling import ACTIONS, CALLBACKS, meddle, run_kind
-from rigidarea.compat.soak import soak
+from harness.hostile import fuzz
+from harness.meddling import ACTIONS, CALLBACKS, meddle, run_kind
+from harness.soak import soak
 
 
 @pytest.mark.slow

@@ -16,7 +16,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.compat.suite import MODES, REASONS, run_suite
+from harness.suite import MODES, REASONS, run_suite
 
 ROOT = Path(__file__).parents[2]
 DT = 1 / 60

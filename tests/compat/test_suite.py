@@ -4,8 +4,8 @@ import os
 
 import pytest
 
-from rigidarea.compat import command
-from rigidarea.compat.suite import MODES, REASONS, modules, run_suite
+from harness import command
+from harness.suite import MODES, REASONS, modules, run_suite
 
 #: Tests that may fail with area contact (issue: at least 205 of 211 pass); every other failure is new.
 LEAST = {"pymunk": 209, "area": 205, "area frames": 205}

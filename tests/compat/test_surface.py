@@ -5,9 +5,9 @@ import random
 import pytest
 
 import rigidarea as ra
+from harness import hostile
+from harness.texts import command_line, drawing, map_text, scene_text
 from rigidarea import bring, flexible, shapes
-from rigidarea.compat import hostile
-from rigidarea.compat.texts import command_line, drawing, map_text, scene_text
 
 #: Public callables that the fuzz does not make, and why.
 LEFT_OUT = {

@@ -7,8 +7,8 @@ import sys
 import pymunk
 import pytest
 
+from harness import trial, validate, variations
 from rigidarea.__main__ import main
-from rigidarea.plan import trial, validate, variations
 
 PROGRAM = """
 import pymunk
@@ -128,8 +128,8 @@ def test_the_page_runs():
 
 
 def test_tables_and_picture_of_the_page(tmp_path):
-    from rigidarea.plan import picture
-    from rigidarea.study.page import keep
+    from harness import plan_picture
+    from harness.page import keep
 
     rows = [
         {
@@ -152,7 +152,7 @@ def test_tables_and_picture_of_the_page(tmp_path):
     }
     assert told["summary"]["scenes"]["within_tolerance_percent"] == 50.0
     assert told["summary"]["scenes"]["cost_ratio_worst"] == 1.5
-    shown = picture.costs_and_errors(rows, tmp_path / "plan.png")
+    shown = plan_picture.costs_and_errors(rows, tmp_path / "plan.png")
     docs = tmp_path / "docs"
     docs.mkdir()
     (docs / "plan.md").write_text(

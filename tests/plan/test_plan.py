@@ -145,8 +145,8 @@ def test_a_hole_is_read_as_arcs_and_as_points():
 
 def test_what_comes_off_an_arc_is_seen_beforehand():
     """A ring on a peg, as stiff as its substeps do not bear: measured 0.23, against 0.0012 where it stays on."""
-    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
+    from rigidarea.study.user_space import space_of
 
     scene = get_scene("ring_on_peg")
     found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
@@ -157,8 +157,8 @@ def test_what_comes_off_an_arc_is_seen_beforehand():
 
 def test_a_pin_in_a_slot_is_no_gear():
     """A Geneva wheel has twelve hollows, six of them for the lock: it begins from nothing with each slot."""
-    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
+    from rigidarea.study.user_space import space_of
 
     scene = get_scene("geneva")
     found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
@@ -196,8 +196,8 @@ def test_a_blow_asks_for_a_stiffer_bed_than_its_weight():
 
 def test_what_starts_overlapped_and_meets_nothing():
     """Chipmunk takes two free boxes apart without a speed that stays: one step a frame will do, given the time."""
-    from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
+    from rigidarea.study.user_space import space_of
 
     scene = get_scene("parted")
     space, bodies = space_of(scene)

@@ -10,11 +10,11 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rigidarea as ra
+from harness.unseen import UNSEEN, billiard, chain_on_a_peg, islands
 from rigidarea.flexible import Material
 from rigidarea.plan import estimates as est
 from rigidarea.plan.promise import name_of
-from rigidarea.plan.trial import space_of
-from rigidarea.plan.unseen import UNSEEN, billiard, chain_on_a_peg, islands
+from rigidarea.study.user_space import space_of
 
 STEEL = Material(207e9, 0.29, 7800.0, 0.02)
 RUBBER = Material(2e6, 0.45, 1100.0, 0.02)

@@ -6,9 +6,9 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.plan.trial import space_of
 from rigidarea.plan.watch import Indicator, PlanWarning
 from rigidarea.study.scene import get_scene
+from rigidarea.study.user_space import space_of
 
 G = 9.81
 

@@ -6,8 +6,9 @@ from pathlib import Path
 
 import pytest
 
+from harness import page
 from rigidarea.report import solver
-from rigidarea.study import atlas, chart, page
+from rigidarea.study import atlas, chart
 from rigidarea.study.scene import get_scene, scenes
 
 
@@ -204,17 +205,18 @@ def test_levels_and_growth():
 
 
 def test_the_everyday_summary_names_what_is_dear_and_what_still_moves():
-    row = {"judged": True, "ratio": 2.0, "speed_left": 0.01, "native_4_ms": 3.0, "frame_ms_median": 2.0}
+    row = {"ratio": 2.0, "speed_left": 0.01, "native_4_ms": 3.0, "frame_ms_median": 2.0}
+    row |= {"moving_ms": 6.0, "native_1_moving_ms": 2.0}
     rows = [
         {"scene": "a", "title": "A", **row},
         {"scene": "b", "title": "B", **row, "ratio": 4.0, "speed_left": 7.0},
     ]
-    rows.append({"scene": "c", "title": "C", **row, "judged": False, "frame_ms_median": 4.0})
-    told = {"ratio_median": 3.0, "scenes": ["a", "b"], "faster_than_native_4": ["a", "b"]}
+    rows.append({"scene": "c", "title": "C", **row, "frame_ms_median": 4.0, "moving_ms": 10.0})
+    told = {"faster_than_native_4": ["a", "b"]}
     lines = page.everyday_summary({"results": rows, "summary": told}).splitlines()
-    assert lines[0].startswith(
-        "- At the defaults the median frame costs 3 of pymunk's single steps (the median of 2"
+    assert lines[0].endswith(
+        "in these 3 scenes: the mean frame while they move 3 (the median scene; the worst, C, 5), "
+        "the median frame of all 2 (the median scene; the worst, B, 4)."
     )
-    assert lines[0].endswith("the worst, B, 4).")
     assert lines[1] == "- More than pymunk's four steps a frame: C."
     assert lines[2].endswith("in: B (7).")

@@ -19,14 +19,16 @@ import re
 import shutil
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from statistics import median
 from typing import Any
 
-from ..report import solver, write_json
-from . import front
+from rigidarea.report import solver, write_json
+from rigidarea.study import front
+from rigidarea.study.chart import points
+from rigidarea.study.peers import KNOWN_WELL
+from rigidarea.study.records import Row
+
 from .causes import CAUSES
-from .chart import points
-from .peers import KNOWN_WELL
-from .records import Row
 
 TABLES = {
     "ratios": ("chart", "ratios"),
@@ -41,10 +43,10 @@ TABLES = {
     "levels": ("growth", "levels"),
     "maps": ("atlas", "maps"),
     "levels_compared": ("compare", "levels_compared"),
-    "plan_summary": ("plan", "..plan.picture:summaries"),
-    "plan_outside": ("plan", "..plan.picture:outside"),
-    "pymunk_examples": ("pymunk-examples", "..compat.command:examples_page"),
-    "pymunk_tests": ("pymunk-tests", "..compat.command:tests_page"),
+    "plan_summary": ("plan", ".plan_picture:summaries"),
+    "plan_outside": ("plan", ".plan_picture:outside"),
+    "pymunk_examples": ("pymunk-examples", ".command:examples_page"),
+    "pymunk_tests": ("pymunk-tests", ".command:tests_page"),
 }
 """Name in a page: (results, what makes it of them: a function of this module, or of another: `module:function`)."""
 
@@ -255,12 +257,18 @@ def everyday_summary(report: Row) -> str:
         for row in rows
         if row["scene"] in told["faster_than_native_4"] and row["speed_left"] > SEEN
     ]
-    worst = max((row for row in rows if row["judged"] and row["ratio"]), key=lambda row: row["ratio"])
-    text = (
-        f"- At the defaults the median frame costs {number(told['ratio_median'])} of pymunk's single steps (the "
-        f"median of {len(told['scenes'])} scenes, those without a star in the study's table; the worst, "
-        f"{worst['title']}, {number(worst['ratio'])}).\n"
-    )
+    moving = {
+        row["title"]: row["moving_ms"] / row["native_1_moving_ms"]
+        for row in rows
+        if row["native_1_moving_ms"]
+    }
+    settled = {row["title"]: row["ratio"] for row in rows if row["ratio"]}
+    text = f"- At the defaults, over pymunk's single step, in these {len(rows)} scenes: "
+    for what, ratios in (("the mean frame while they move", moving), ("the median frame of all", settled)):
+        worst = max(ratios, key=lambda title: ratios[title])
+        text += f"{what} {number(median(ratios.values()))} (the median scene; the worst, {worst}, "
+        text += f"{number(ratios[worst])}), "
+    text = text[:-2] + ".\n"
     if dear:
         text += f"- More than pymunk's four steps a frame: {', '.join(dear)}.\n"
     if restless:
@@ -271,7 +279,7 @@ def everyday_summary(report: Row) -> str:
 
 def growth(report: Row) -> str:
     """Families of scenes at their sizes: mean frames (µs), ours over pymunk's step, and what attaching takes."""
-    from .growth import GROWING
+    from rigidarea.study.growing_scenes import GROWING
 
     keys = ("native_1_us", "box2d_us", "frame_us_mean", "ratio_mean", "ratio_worst_tenth", "start_ms")
     rows = [

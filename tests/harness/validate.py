@@ -22,14 +22,16 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..report import envelope
-from ..study.peers.base import record
-from ..study.records import Progress, Row, append_rows, read_rows
-from ..study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
-from ..study.sweep import key
-from ..study.timing import one_core, timed
-from .plan import plan
-from .trial import Trial, at_settings, planned, space_of
+from rigidarea.plan.plan import plan
+from rigidarea.report import envelope
+from rigidarea.study.peers.base import record
+from rigidarea.study.records import Progress, Row, append_rows, read_rows
+from rigidarea.study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
+from rigidarea.study.sweep import key
+from rigidarea.study.timing import one_core, timed
+from rigidarea.study.user_space import space_of
+
+from .trial import Trial, at_settings, planned
 from .unseen import unseen
 from .variations import variations
 

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from ..outline import Outline
-from ..study.scene import Body, Circle, Curve, Polygon, Rings, Scene, Segment, scenes
+from rigidarea.outline import Outline
+from rigidarea.study.scene import Body, Circle, Curve, Polygon, Rings, Scene, Segment, scenes
 
 LONGEST = 2.0
 """Simulated time of a variation, at most (s): further on, contacts that come and go part any two runs."""

@@ -22,7 +22,9 @@ from typing import Any, NamedTuple
 
 import pymunk
 
-from .. import AreaContact, attach
+from rigidarea import AreaContact, attach
+
+from . import environment
 from .lives import DT
 
 FRAMES = 40
@@ -219,7 +221,7 @@ def sweep(count: int, seed: int, native: bool = False) -> dict[str, dict[str, An
 COMPILING = """
 import os, pymunk
 import rigidarea as ra
-from rigidarea.compat.interrupts import pile
+from harness.interrupts import pile
 os.write(1, b".")
 caught = 0
 for k in range(2):
@@ -239,7 +241,7 @@ def compiling(after: float) -> str:
     with tempfile.TemporaryDirectory() as folder:
         process = subprocess.Popen(
             [sys.executable, "-c", COMPILING],
-            env={**os.environ, "NUMBA_CACHE_DIR": folder},
+            env=environment(NUMBA_CACHE_DIR=folder),
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
             text=True,

@@ -3,49 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
 from typing import Any
 
 import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import lib
 
-from .. import contact as area
-from ..outline import Outline
-from ..study.peers.base import drive
-from ..study.peers.chipmunk import SpaceRun, add_joints, make_body, plain_shape, surface
-from ..study.records import Row
-from ..study.scene import Array, Curve, Scene
-from .plan import Plan
-
-
-@cache
-def _outline(curve: Curve, tolerance: float) -> Outline:
-    """A curve's outline, which knows how to be sampled anew."""
-    outer, holes = curve.rings(tolerance)
-    return Outline(outer, holes).with_curve(partial(_outline, curve))
-
-
-def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
-    """A scene as a user would build it: arcs are arcs, other curves are sampled to a thousandth of its size."""
-    space = pymunk.Space()
-    space.gravity = scene.gravity
-    made: dict[str, pymunk.Body] = {}
-    for body in scene.bodies:
-        made[body.name] = here = make_body(body)
-        shapes: list[pymunk.Shape] = []
-        for shape in body.shapes:
-            if not isinstance(shape, Curve):
-                shapes.append(plain_shape(shape, here))
-            elif shape.exact is not None:
-                shapes.append(shape.exact().add_to(here))
-            else:
-                shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
-        for made_shape in shapes:
-            surface(made_shape, scene, body)
-        space.add(here, *shapes)
-    add_joints(scene, space, made)
-    return space, list(made.values())
+from rigidarea import contact as area
+from rigidarea.plan.plan import Plan
+from rigidarea.study.peers.base import drive
+from rigidarea.study.peers.chipmunk import SpaceRun
+from rigidarea.study.records import Row
+from rigidarea.study.scene import Array, Scene
+from rigidarea.study.user_space import space_of
 
 
 class Trial(SpaceRun):

@@ -12,7 +12,8 @@ from typing import Any
 
 import pymunk
 
-from ..report import envelope, output_arguments, write_json
+from rigidarea.report import envelope, output_arguments, write_json
+
 from . import interrupts, lives, suite
 from .examples import EXAMPLES, FRAMES, GAMES, compare
 from .hostile import fuzz
@@ -162,7 +163,7 @@ Each example of pymunk {asked["pymunk"]} is run from where pymunk installed it, 
 with scripted input and seeded `random`: natively, and with `rigidarea.attach` on every space before its first
 `space.step`. The steps are the example's own. `python -m rigidarea compat examples --docs docs` renews this page.
 
-An example behaves *as meant* if two to five facts written down from reading it hold (`rigidarea/compat/facts.py`:
+An example behaves *as meant* if two to five facts written down from reading it hold (`tests/harness/facts.py`:
 the tower stands, the arrow sticks, the ball stays in the court; all hold natively), and if beside the native run
 nothing is raised or printed on standard error, no body is farther out than the native run's box by its diagonal,
 none is faster than 1.5 times the native fastest (plus a fall through a tenth of the scene), joints are no farther
@@ -355,7 +356,7 @@ def tests_page(report: dict[str, Any]) -> str:
 
 
 def _keep(docs: Path, name: str, report: dict[str, Any]) -> None:
-    from ..study import page
+    from . import page
 
     page.keep(docs, name, report)
     print(f"written: {docs}", file=sys.stderr)

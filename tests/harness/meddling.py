@@ -15,7 +15,7 @@ from typing import Any
 
 import pymunk
 
-from .. import Outline, attach, attached
+from rigidarea import Outline, attach, attached
 
 CALLBACKS = (
     *("begin", "pre_solve", "post_solve", "separate"),

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import gc
 import json
-import os
 import re
 import subprocess
 import sys
@@ -19,7 +18,9 @@ from typing import Any
 
 import pymunk
 
-from ..contact import attach, attached
+from rigidarea.contact import attach, attached
+
+from . import environment
 
 MODES = ("pymunk", "area", "area frames")
 """Native; attached, stepped by `Space.step`; attached, every `Space.step` turned into a `contact.step`."""
@@ -141,19 +142,15 @@ def run_suite(mode: str, folder: str | Path, names: Sequence[str] | None = None)
     rows: list[dict[str, Any]] = []
     names = list(modules() if names is None else names)
     first = 0
-    home = str(Path(__file__).parents[2])
-    paths = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
     while True:
         file = Path(folder) / f"suite-{mode.replace(' ', '-')}-{first}.jsonl"
         file.unlink(missing_ok=True)
-        program = (
-            f"from rigidarea.compat.suite import work; work({mode!r}, {names!r}, {first}, {str(file)!r})"
-        )
+        program = f"from harness.suite import work; work({mode!r}, {names!r}, {first}, {str(file)!r})"
         try:
             ended = subprocess.run(
                 [sys.executable, "-W", "ignore", "-c", program],
                 cwd=folder,
-                env={**os.environ, "PYTHONPATH": paths},
+                env=environment(),
                 capture_output=True,
                 text=True,
                 timeout=TIME_LIMIT,

@@ -17,8 +17,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pymunk
 
-from .. import Outline, attached, bring, plan, shapes
-from ..__main__ import main
+from rigidarea import Outline, attached, bring, plan, shapes
+from rigidarea.__main__ import main
+
 from .texts import command_line, drawing, map_text, scene_text
 
 if TYPE_CHECKING:
@@ -238,7 +239,7 @@ def _planned(trial: Trial) -> Calls:
 
 
 def _flexible(trial: Trial) -> Calls:
-    from .. import flexible
+    from rigidarea import flexible
 
     draw, n = trial.draw, trial.number
     steel = flexible.Material(1e6, 0.3, 1.0)
@@ -366,7 +367,7 @@ def _finite(values: Any) -> None:
 def _environment(trial: Trial) -> Calls:
     import gymnasium
 
-    from ..gym import PegInSlot
+    from rigidarea.gym import PegInSlot
 
     draw, n = trial.draw, trial.number
 

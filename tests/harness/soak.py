@@ -8,7 +8,7 @@ from typing import Any
 
 import pymunk
 
-from .. import Outline, attach
+from rigidarea import Outline, attach
 
 #: Frames that a body lives.
 LIFE = 150

@@ -27,10 +27,10 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .. import AreaContact, SimulationError, attach, attached
-from ..chipmunk import address_of
-from ..contact import arrays
-from ..kernel import tables
+from rigidarea import AreaContact, SimulationError, attach, attached
+from rigidarea.chipmunk import address_of
+from rigidarea.contact import arrays
+from rigidarea.kernel import tables
 
 DT = 1 / 60
 #: A program that takes longer hangs: processor time, and time, which others may take (s).

@@ -13,7 +13,7 @@ import pymunk
 import pymunk.batch
 from numpy.typing import NDArray
 
-from .host import Host
+from rigidarea.programs.host import Host
 
 #: A body slower than this rests (length/time): pymunk's examples count in pixels, their bodies are 10 to 50 wide.
 REST_SPEED = 10.0

@@ -11,8 +11,9 @@ from typing import Any
 
 import pymunk
 
+from ..checkout import harness, pages
+from ..plan.plan import Plan, plan
 from ..report import envelope, lines, output_arguments, write_json
-from .plan import Plan, plan
 
 TOLD = (
     *("scene", "tolerance", "verdict", "error", "predicted_error", "decided_by", "level", "steps", "sweeps"),
@@ -45,7 +46,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add(
         "--validate",
         action="store_true",
-        help="plans against a brute-force sweep: all scenes, or those named",
+        help="plans against a brute-force sweep: all scenes, or those named (in a checkout)",
     )
     add(
         "--variations",
@@ -55,7 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="of --validate: seeded variations (default %(default)s)",
     )
     add("--fresh", action="store_true", help="of --validate: forget what an earlier run left in DIR")
-    add("--docs", type=Path, metavar="DIR", help="of --validate: renew there what docs/plan.md shows")
+    add("--docs", type=pages, metavar="DIR", help="of --validate: renew there what docs/plan.md shows")
     output_arguments(parser, Path("out") / "plan")
 
 
@@ -99,8 +100,8 @@ def told(made: Plan) -> dict[str, Any]:
 
 def of_scene(name: str, arguments: argparse.Namespace) -> Plan:
     """The plan of a scene's space. ValueError lists the known scenes."""
-    from ..study.scene import get_scene
-    from .trial import space_of
+    from .scene import get_scene
+    from .user_space import space_of
 
     scene = get_scene(name)
     space, _ = space_of(scene)
@@ -116,7 +117,7 @@ def of_script(name: str, arguments: argparse.Namespace) -> Plan:
 
     What its bodies are made of it says by `body.material = rigidarea.flexible.Material(...)`.
     """
-    from ..compat.host import Host
+    from ..programs.host import Host
 
     if not Path(name).is_file():
         raise ValueError(f"expected a scene or a Python file, got {name!r}, which is none")
@@ -156,15 +157,16 @@ def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
 
 
 def _validate(arguments: argparse.Namespace) -> int:
-    from ..study import page
-    from ..study.records import write_csv
-    from . import picture
-    from .validate import validate
+    from .records import write_csv
 
-    report = validate(arguments.out, arguments.what, arguments.variations, fresh=arguments.fresh)
+    validate, plan_picture, page = (
+        harness(name, "plan --validate") for name in ("validate", "plan_picture", "page")
+    )
+
+    report = validate.validate(arguments.out, arguments.what, arguments.variations, fresh=arguments.fresh)
     write_json(report, arguments.out / "plan-validate.json")
     write_csv(arguments.out / "plan-validate.csv", report["rows"])
-    shown = picture.costs_and_errors(report["rows"], arguments.out / "plan.png")
+    shown = plan_picture.costs_and_errors(report["rows"], arguments.out / "plan.png")
     if arguments.docs:
         page.keep(arguments.docs, "plan", report, {"plan.png": shown})
     write_json(report, arguments.json)

@@ -7,7 +7,7 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..study.scene import Body, Hinge, Scene, Segment, Trace, block, disc, floor
+from rigidarea.study.scene import Body, Hinge, Scene, Segment, Trace, block, disc, floor
 
 LONGEST = 1.5
 """Simulated time (s) that most of them last: further on contacts that come and go part any two runs."""

@@ -6,9 +6,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-from ..study.draw import pyplot
-from ..study.page import markdown, number
-from ..study.records import Row
+from rigidarea.study.draw import pyplot
+from rigidarea.study.records import Row
+
+from .page import markdown, number
 
 FLOOR = 1e-7
 """Errors below are drawn there."""

@@ -21,10 +21,11 @@ from typing import Any, NamedTuple
 import pymunk
 import pymunk.examples
 
-from ..report import plain
-from . import facts
-from .host import Host, seed_everything
-from .screen import Input, drag, tap
+from rigidarea.programs.host import Host, seed_everything
+from rigidarea.programs.screen import Input, drag, tap
+from rigidarea.report import plain
+
+from . import environment, facts
 from .watch import Watch
 
 FRAMES = 300
@@ -184,16 +185,13 @@ def run_example(name: str, engine: str, frames: int = FRAMES, seed: int = 0) -> 
     with tempfile.TemporaryDirectory(prefix="rigidarea-example-") as folder:
         file = os.path.join(folder, "told.json")
         program = (
-            "from rigidarea.compat.examples import record; "
-            f"record({name!r}, {engine!r}, {frames}, {file!r}, {seed})"
+            f"from harness.examples import record; record({name!r}, {engine!r}, {frames}, {file!r}, {seed})"
         )
-        home = str(Path(__file__).parents[2])
-        paths = os.pathsep.join(filter(None, [home, os.environ.get("PYTHONPATH")]))
         try:
             done = subprocess.run(
                 [sys.executable, "-c", program],
                 cwd=folder,
-                env={**os.environ, "PYTHONPATH": paths, "MPLBACKEND": "Agg"},
+                env=environment(MPLBACKEND="Agg"),
                 capture_output=True,
                 text=True,
                 timeout=TIME_LIMIT,

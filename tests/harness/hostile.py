@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from .. import (
+from rigidarea import (
     Outline,
     SimulationError,
     attach,
@@ -30,7 +30,8 @@ from .. import (
     segment_query,
     shapes,
 )
-from ..bring import scene_from_text
+from rigidarea.bring import scene_from_text
+
 from .surface import surface
 
 SAYS = re.compile(
