@@ -21,7 +21,7 @@ FORMAT = b"1"
 """What the files below look like: another number, another folder."""
 
 USUALLY = "ten minutes" if os.environ.get("RIGIDAREA_AHEAD") else "two to four minutes"
-"""What it takes: 2 to 3 minutes of one core of a Xeon (`bench start`); a library for a wheel compiles more."""
+"""What it takes: 3 minutes of one core (`bench start`); a library for a wheel compiles more."""
 
 _DIGEST = hashlib.sha256().digest_size
 

@@ -26,7 +26,10 @@ from . import cache, whole
 
 _ROOT = Path(__file__).resolve().parent.parent
 #: What has no part in what numba compiles, though what is compiled imports it.
-_ELSEWHERE = {_ROOT / "__init__.py", _ROOT / "compile/plain.py", _ROOT / "compile/chosen.py"}
+_ELSEWHERE = {
+    _ROOT / "__init__.py",
+    *(_ROOT / f"compile/{name}.py" for name in ("cache", "chosen", "interrupts", "plain")),
+}
 
 #: An import from this package (nothing in it imports another way): dots, module, names. Reading syntax trees takes 1 s.
 _IMPORT = re.compile(rf"^ *from (\.+|{_ROOT.name}\.?)([\w.]*) import (\([^)]*\)|.*)", re.MULTILINE)
