@@ -1,8 +1,8 @@
 """What a frame costs, in processor time: a handful of constants, all measured in one run, all here.
 
 Least squares over 1 to 100 boxes, lying on a floor and in free flight, 1 and 8 substeps, 5 and 20 sweeps, on a shared
-core of an Intel Xeon: the model is within 15 % in the middle, 57 % at worst. A plan chooses by their ratios, so a faster
-machine changes nothing; a faster solve does, and then they are to be measured again.
+core of an Intel Xeon: within 12 % in the middle, 57 % at worst. A plan chooses by their ratios, so a faster machine
+changes nothing; a faster solve does, and then they are to be measured again.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ SWEEP_PAIR_S = 0.02e-6
 SUBSTEP_POINT_S = 0.01e-6
 #: A body's share of a copy of a space, attached (s).
 COPY_BODY_S = 60e-6
-#: A run of a copy: places read, calls made (s).
-RUN_S = 1.0e-3
+#: Places of a copy read, and the call that steps it (s).
+SAMPLE_S = 25e-6
 #: A step of Chipmunk's own, and a body's share of it; a pair's that touches, and a sweep's over it (s).
 NATIVE_STEP_S, NATIVE_STEP_BODY_S = 0.5e-6, 0.08e-6
 NATIVE_PAIR_S, NATIVE_SWEEP_PAIR_S = 0.3e-6, 0.05e-6

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import pymunk
@@ -54,14 +54,21 @@ def fastest(space: pymunk.Space, found: dict[str, Measured]) -> None:
     for body in space.bodies:
         if body.body_type != pymunk.Body.STATIC:
             rim = abs(body.angular_velocity)
-            speed = body.velocity.length + (rim * _reach(body) if rim > 0.0 else 0.0)
+            speed = body.velocity.length + (rim * reach_of(body, body.shapes) if rim > 0.0 else 0.0)
             if speed > found.get("speed", (0.0, None))[0]:
                 found["speed"] = speed, body
 
 
-def _reach(body: pymunk.Body) -> float:
-    boxes = [shape.bb for shape in body.shapes]
-    return max((0.5 * math.hypot(box.right - box.left, box.top - box.bottom) for box in boxes), default=0.0)
+def reach_of(body: pymunk.Body, shapes: Iterable[pymunk.Shape]) -> float:
+    """How far the boxes of a body's shapes reach from its centre (length)."""
+    x, y = body.position
+    return max(
+        (
+            math.hypot(max(box.right - x, x - box.left), max(box.top - y, y - box.bottom))
+            for box in (shape.cache_bb() for shape in shapes)
+        ),
+        default=0.0,
+    )
 
 
 def extent_of(shape: pymunk.Shape) -> float:

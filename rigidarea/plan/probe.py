@@ -21,11 +21,11 @@ from pymunk.batch import BodyFields, Buffer, get_space_bodies
 from ..contact import AreaContact, SimulationError, attach
 from ..outline import Outline
 from . import costs
-from .measures import Measured, extent_of, fastest, measure
+from .measures import Measured, extent_of, fastest, measure, reach_of
 
 Array = NDArray[np.float64]
 
-SAMPLES = 30
+SAMPLES = 120
 """Places are compared so often, at the most, in the time that is looked at."""
 LADDER = (2, 5, 12, 29, 70, 169)
 """Substeps of runs that become finer, Pell's numbers: a run's substeps do not fall together with another's, or the two
@@ -157,6 +157,7 @@ class Probe:
         self.spent = 0.0
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
+        self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
         self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
@@ -178,7 +179,7 @@ class Probe:
 
     def look(self, seconds: float, first: Setting) -> None:
         """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
-        self.frames = max(1, min(self.frames, int(seconds / self.cost(first))))
+        self.frames = max(1, min(self.frames, int(seconds / (self.cost(first) + costs.SAMPLE_S))))
 
     # --- runs ---
 
@@ -198,7 +199,7 @@ class Probe:
     ) -> tuple[Array, Seen]:
         """A run, as `track` has it, where bodies have `asked` for substeps, by number; and, given `materials`, what it
         shows."""
-        self.spent += costs.RUN_S + self.cost(setting) * self.frames
+        self.spent += self.cost(setting) * self.frames + costs.SAMPLE_S * min(SAMPLES, self.frames)
         contact: AreaContact | None = None
         if setting.level == "pymunk" or sagitta not in self._spaces:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
@@ -275,18 +276,18 @@ class Probe:
     def apart(self, one: Array, fine: Array) -> Array:
         """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
 
-        A turn counts as half the extent times its angle. What only turns is compared by its spin too, in the middle of
-        all samples: of a drive that is its error, and its angle does not show it.
+        A turn counts as what it moves the farthest point, over the way or the body's diameter. What only turns is
+        compared by its spin too, in the middle of all samples: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
-        off = np.abs(one - fine)
-        half = 0.5 * self.extent
-        gone = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), half * off[:, :, 2]).max(axis=0)
-        steps = np.diff(fine[:, :, :3], axis=0)
+        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0))
         way = np.hypot(steps[:, :, 0], steps[:, :, 1]).sum(axis=0)
-        turned = half * np.abs(steps[:, :, 2]).sum(axis=0)
-        found: Array = gone / np.maximum(np.maximum(way, turned), self.extent)
+        turned = self.reach * steps[:, :, 2].sum(axis=0)
+        far = np.maximum(way, turned)
+        gone = np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=0) / np.maximum(far, self.extent)
+        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, 2.0 * self.reach)
+        found: Array = np.maximum(gone, twisted)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         turns = (way < self.extent) & (turned > self.extent)
         ripple = np.median(off[:, :, 5], axis=0) / np.where(turns, spin, 1.0)

@@ -27,7 +27,7 @@ FINEST_SAGITTA = 1e-6
 
 
 class Tried(NamedTuple):
-    """A setting that was tried: what each body is off, with what the reference may be (relative); a frame's cost (s)."""
+    """A setting tried: what each body is off, with what the reference may be (relative); a frame's cost (s)."""
 
     setting: Setting
     errors: Array  # (bodies,)
@@ -104,8 +104,11 @@ def search(
         chosen = fewer if fewer.error <= tolerance else chosen
     if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
         tried += [Tried(setting, errors, probe.cost(setting)) for setting, errors in rungs]
-    if chosen is None:
-        good = [each for each in tried if each.error <= tolerance]
+    if (
+        chosen is None
+    ):  # what is near the reference by half the tolerance, where that is not known to be right
+        doubt = float(fine.doubt.max(initial=0.0))
+        good = [each for each in tried if each.error <= max(tolerance, doubt + 0.5 * tolerance)]
         chosen = min(good, key=lambda each: each.cost_s) if good else min(tried, key=lambda each: each.error)
     if probe.frames < planned and chosen.setting.level == "rigid" and "steps" not in given:
         chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
