@@ -3,9 +3,8 @@
 They take numbers or NumPy arrays alike. Nothing here is fitted to a scene.
 
 Symbols, and the arguments that they stand for: m `mass` (mass), k `stiffness` of F = k A (force/length²), L `chord`
-(length), w `frequency` of a contact (rad/time), r `radius` of an arc (length), t `tolerance`, the sagitta of a chord
-(length); E `young` (force/area), rho `density` (mass/volume), l `length`, h `height` and `thickness` of what bends
-(length).
+(length), w `frequency` of a contact (rad/time); E `young` (force/area), rho `density` (mass/volume), l `length`, h
+`height` and `thickness` of what bends (length).
 """
 
 from __future__ import annotations
@@ -29,11 +28,6 @@ def penetration(load: Number, stiffness: Number, chord: Number) -> Number:
 def contact_frequency(stiffness: Number, chord: Number, mass: Number) -> Number:
     """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (docs/theory.md, 3)."""
     return np.sqrt(stiffness * chord / mass)
-
-
-def facet_turn(radius: Number, tolerance: Number) -> Number:
-    """Angle between two chords of an arc sampled to a sagitta (radians): 4 asin(sqrt(t/2r)), about 2 sqrt(2 t/r)."""
-    return 4.0 * np.arcsin(np.sqrt(np.minimum(tolerance / (2.0 * radius), 1.0)))
 
 
 def deflection(load: float, young: float, thickness: float, length: float, height: float) -> float:

@@ -19,6 +19,8 @@ RUNS = 12.0
 """Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
 PENETRATIONS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
+DEPTHS = 3
+"""Penetrations that go on to the next number of substeps: those that were best."""
 SWEEPS, FEWER_SWEEPS = 10, 5
 SLOP = 0.1
 """Of the tolerance: the share that Chipmunk's slop may have of it."""
@@ -87,11 +89,17 @@ def search(
         return tried[-1]
 
     chosen: Tried | None = None
+    best_depths: set[float] = set()
     native = native and (probe.frames == planned or given.get("level") == "pymunk")
     for group in _groups(probe, tolerance, native, given, fine, least):
         if tried and probe.spent + sum(map(probe.cost, group)) * probe.frames > budget:
             break
-        best = min((attempt(setting) for setting in group), key=lambda each: each.error)
+        if group[0].level == "rigid" and best_depths:
+            group = [setting for setting in group if setting.penetration in best_depths]
+        found = sorted((attempt(setting) for setting in group), key=lambda each: each.error)
+        best = found[0]
+        if group[0].level == "rigid":
+            best_depths = {each.setting.penetration for each in found[:DEPTHS]}
         if best.error <= tolerance:
             chosen = best
             break

@@ -93,6 +93,7 @@ def test_planning_anew_leaves_the_state():
 
 
 def test_a_drive_that_speeds_up():
+    """A wheel that comes round faster strikes harder what it strikes: warned of, and planned for."""
     space = pymunk.Space()
     wheel = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     wheel.angular_velocity = 1.0
