@@ -22,7 +22,7 @@ SUBSTEP_PAIR_S = 0.8e-6
 #: A sweep over one pair that touches (s).
 SWEEP_PAIR_S = 0.02e-6
 #: A corner's share of a substep, of outlines of their own (s).
-SUBSTEP_POINT_S = 0.01e-6
+SUBSTEP_POINT_S = 0.003e-6
 #: A body's share of a copy of a space, attached (s).
 COPY_BODY_S = 60e-6
 #: Places of a copy read, and the call that steps it (s).

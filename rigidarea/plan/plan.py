@@ -131,7 +131,8 @@ class Plan:
         self._frame_cost = found.chosen.cost_s
         self.cost_s_per_s = self._frame_cost / self.frame
         self.looked, self.planning_s = found.looked * self.frame, clock.thread_time() - started
-        self.unpromised = unpromised(self.space, self.elastic, found.looked / frames, self.looked)
+        begin = found.begin
+        self.unpromised = unpromised(self.space, self.elastic, found.looked / frames, self.looked, begin)
         return self
 
     def _finer(self, found: dict[pymunk.Body, int], before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:

@@ -11,6 +11,7 @@ import io
 import math
 import pickle
 from collections.abc import Mapping
+from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -126,11 +127,13 @@ def _moved(joint: pymunk.Constraint, twins: dict[pymunk.Body, pymunk.Body]) -> p
 
     class Write(pickle.Pickler):
         def persistent_id(self, obj: Any) -> int | None:
-            return bodies.index(obj) if isinstance(obj, pymunk.Body) else None
+            if isinstance(obj, pymunk.Body):
+                return bodies.index(obj)
+            return -1 if isinstance(obj, FunctionType | MethodType) else None
 
     class Read(pickle.Unpickler):
-        def persistent_load(self, pid: int) -> pymunk.Body:
-            return twins[bodies[pid]]
+        def persistent_load(self, pid: int) -> pymunk.Body | None:
+            return twins[bodies[pid]] if pid >= 0 else None
 
     kept = io.BytesIO()
     Write(kept).dump(joint)
@@ -167,6 +170,9 @@ class Probe:
         self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
         self._tracks: dict[tuple[Setting, float | None], Array] = {}
         self._asked: set[int] = set()
+        self.begin: float | None = (
+            None  # depth after the first frame of the first run, over the smallest extent
+        )
 
     # --- cost ---
 
@@ -264,6 +270,8 @@ class Probe:
         if contact is not None:
             rows = contact.regions
             measure(contact, rows, h, seen.measured, materials)
+            if self.begin is None:
+                self.begin = seen.measured.get("penetration", (0.0, None))[0]
             self.pairs += len(rows) / samples
             links += [(row["body_a"], row["body_b"]) for row in rows]
             for ends in links[-len(rows) :] if len(rows) else []:

@@ -9,15 +9,27 @@ import pymunk
 
 from .elastic import Choice
 
+OVERLAP = 0.01
+"""Depth after a frame, over the smallest extent, beyond which bodies have been put into one another."""
 
-def unpromised(space: pymunk.Space, bending: Sequence[Choice], share: float, looked: float) -> list[str]:
+
+def unpromised(
+    space: pymunk.Space, bending: Sequence[Choice], share: float, looked: float, begin: float
+) -> list[str]:
     """One sentence for each; empty where the error is of all that is there.
 
-    share: of the time planned for that was tried out, `looked` (time).
+    share: of the time planned for that was tried out, `looked` (time). begin: depth after the first frame, over the
+    smallest extent.
     """
     out = []
-    if share < 1.0:
+    if share == 0.0:
+        out.append(
+            "anything: a copy alone would cost more than trying out may; plan for more seconds, or fewer bodies"
+        )
+    elif share < 1.0:
         out.append(f"what comes after the first {looked:.3g} s: so far it was tried out")
+    if begin > OVERLAP:
+        out.append(f"how bodies part that start {begin:.2g} of their size deep: by this solve's own law")
     if callbacks(space):
         out.append("what your callbacks do: they were not run")
     bends = [choice for choice in bending if choice.level != "rigid"]

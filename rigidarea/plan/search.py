@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pymunk
 
+from ..contact.attach import PENETRATION
 from ..kernel.constants import SUBSTEPS
 from . import costs
 from .probe import Array, Probe, Reference, Seen, Setting, reference
@@ -53,6 +54,7 @@ class Found(NamedTuple):
     end: Array  # (bodies, 6) its last states
     way: Array  # (bodies,) how far each was from where it began, at the most (length)
     looked: int  # frames
+    begin: float  # depth after the reference's first frame, over the smallest extent
 
 
 def search(
@@ -71,8 +73,11 @@ def search(
     planned = probe.frames
     run = probe.cost(Setting("rigid", given.get("steps", SUBSTEPS), SWEEPS, PENETRATIONS[0])) * planned
     budget = max(SHARE * run, UNNOTICED_S)
+    copies = costs.COPY_BODY_S * len(probe.bodies)
+    if copies > 0.5 * budget:
+        return _untried(probe, tolerance, given, least)
     probe.look(
-        max(0.0, budget - costs.COPY_BODY_S * len(probe.bodies)) / RUNS,
+        (budget - copies) / RUNS,
         Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]),
     )
     sagitta = None
@@ -141,7 +146,18 @@ def search(
     end, way = np.zeros((len(probe.bodies), 6)), np.full(len(probe.bodies), np.inf)
     if len(states):
         end, way = states[-1], np.hypot(*np.moveaxis(states[:, :, :2] - states[0, :, :2], 2, 0)).max(axis=0)
-    return Found(chosen, finer, sagitta, tried, fine, seen, end, way, probe.frames)
+    return Found(chosen, finer, sagitta, tried, fine, seen, end, way, probe.frames, probe.begin or 0.0)
+
+
+def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Setting | None) -> Found:
+    """The defaults, no deeper than a tenth of the tolerance, where a copy alone would cost too much."""
+    setting = least or Setting("rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * tolerance))
+    setting = setting._replace(**{k: v for k, v in given.items() if k in Setting._fields})
+    n = len(probe.bodies)
+    chosen = Tried(setting, np.full(n, np.inf), probe.cost(setting))
+    seen = Seen({}, np.arange(n), np.zeros(n, bool))
+    end, way = np.zeros((n, 6)), np.full(n, np.inf)
+    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, 0, 0.0)
 
 
 def _groups(
@@ -187,9 +203,10 @@ def _apart(
 ) -> tuple[Tried, dict[int, int]]:
     """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
     mixture is too; and what that costs."""
-    alike = [
-        chosen,
-        *(each for each in tried if each.setting._replace(steps=0) == chosen.setting._replace(steps=0)),
+    alike = [chosen] + [
+        each
+        for each in tried
+        if each.setting.level == "rigid" and each.setting.penetration == chosen.setting.penetration
     ]
     numbers = np.unique(seen.groups[probe.free])
     wanted = {

@@ -39,7 +39,11 @@ def lines_of(plan: Plan) -> list[Line]:
     if mine:
         head += f" (yours: {', '.join(sorted(mine))})"
     fine = found.fine
-    against = f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
+    against = (
+        "the defaults"
+        if not found.tried
+        else f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
+    )
     out = [Line("space", head, against, plan.error, plan._frame_cost, None)]
     cheaper = [each for each in found.tried if each.cost_s < found.chosen.cost_s]
     finer = [each for each in found.tried if each.cost_s > found.chosen.cost_s and each.error < plan.error]
@@ -49,7 +53,7 @@ def lines_of(plan: Plan) -> list[Line]:
             out.append(Line(f"  {what}", _told(plan, one.setting), text, one.error, one.cost_s, None))
     errors = found.chosen.errors
     for i in np.argsort(-errors, kind="stable")[:WORST]:
-        if errors[i] > 0.0:
+        if 0.0 < errors[i] < math.inf:
             where = name_of(plan.space, probe.bodies[i])
             text = f"its place or turn is off, of which {fine.doubt[i]:.1e} is the finer run's own"
             out.append(Line(where, "as the space", text, float(errors[i]), 0.0, probe.bodies[i]))
@@ -124,6 +128,8 @@ def text_of(plan: Plan) -> str:
         told = f"off by {plan.error:.1e} where it was tried out" if plan.error > 0.0 else "nothing moves"
     else:
         told = f"no setting that was tried is within it: the least is {plan.error:.1e}"
+    if not plan.tried:
+        told = "nothing was tried out"
     told += "".join(f"\nnot promised: {reason}" for reason in plan.unpromised)
     tried = f"tried out: {plan.looked:.3g} s in {len(plan.tried)} settings, {1e3 * plan.planning_s:.0f} ms"
     return f"plan for {plan.tolerance:g} over {plan.seconds:g} s: {told}\n{tried}\n{table}"

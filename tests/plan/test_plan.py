@@ -42,22 +42,17 @@ def state(space):
 # --- what is found ---
 
 
-def test_what_starts_overlapped_and_meets_nothing():
-    """Chipmunk takes two free boxes apart without a speed that stays: one step a frame will do, given the time."""
+def test_what_starts_overlapped_is_not_promised():
     from rigidarea.plan.trial import space_of
     from rigidarea.study.scene import get_scene
 
     scene = get_scene("parted")
-    space, bodies = space_of(scene)
-    made = ra.plan(space, 0.001, scene.duration)
-    assert (made.level, made.steps) == ("pymunk", 1)
-    short = ra.plan(space, 0.001, 0.1)
-    assert short.error > 0.1 and not short.reachable
-    bodies[0].velocity = 1.0, 1.0  # now they part, or meet
-    assert (made.again().level, made.steps) != ("pymunk", 1)
+    made = ra.plan(space_of(scene)[0], 0.001, scene.duration)
+    assert any("deep: by this solve's own law" in reason for reason in made.unpromised)
 
 
-def test_two_hits_in_a_row_want_a_substep_each():
+def test_two_hits_in_a_row_arrive():
+    """Equal discs hand on the blow: the last one goes on with it."""
     space = pymunk.Space()
     gap, speed = 0.02, 4.0
     for i in range(4):
@@ -68,16 +63,15 @@ def test_two_hits_in_a_row_want_a_substep_each():
         disc.elasticity = 1.0
         space.add(body, disc)
     made = ra.plan(space, 0.01, 0.5).override(level="rigid")
-    finest = max(made.finer.values(), default=made.steps)
-    assert finest >= math.ceil(1 / 60 / (gap / speed)) and made.reachable
+    made.apply()
+    made.step(frames=30)
+    assert made.reachable and body.velocity.x == pytest.approx(speed, rel=0.01)
 
 
 def test_what_is_out_of_reach_is_said_beforehand():
-    space = pymunk.Space()
-    for x in (-0.3, 0.3):
-        box(space, (x, 0))
-    made = ra.plan(space, 0.01, 2.0).override(level="rigid")
-    assert not made.reachable and made.error > 0.01
+    space, _ = tilted()
+    made = ra.plan(space, 1e-6, 2.0).override(steps=1, level="rigid")
+    assert not made.reachable and made.error > 1e-6
     assert "no setting that was tried is within it" in str(made)
 
 
@@ -115,7 +109,7 @@ def test_what_may_sleep_lies_flush_and_still():
     space, bodies = stack(3)
     flying = box(space, (5, 9))
     rolling = pymunk.Body(1, 1)
-    rolling.position = -5, 0.5
+    rolling.position, rolling.velocity = (-5, 0.5), (1, 0)
     space.add(rolling, pymunk.Circle(rolling, 0.5))
     assert set(ra.plan(space, 0.01).may_sleep) == set(bodies)
     bodies[2].velocity = 0.5, 0

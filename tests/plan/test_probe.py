@@ -1,5 +1,6 @@
 """A space tried out on copies: what a copy is, how far two runs are apart, what a plan makes of it."""
 
+import itertools
 import math
 
 import numpy as np
@@ -83,10 +84,12 @@ def test_the_ladder_doubts_a_first_order_error_by_what_it_is():
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Circle(body, 0.5))
     probe = Known(space, 0.1, 1, None, {})
-    fine, rungs = reference(probe, 1e-6, None, 4.5, None)
+    fine, rungs = reference(probe, 1e-6, None, 3.5, None)
     assert fine.setting.steps == LADDER[3] and len(rungs) == 4  # as far as the budget goes
-    assert fine.doubt == pytest.approx([0.3 / LADDER[3]], rel=0.05)  # Pell's quotients are within 2 % of the limit
-    assert all(math.gcd(a, b) == 1 for a, b in zip(LADDER, LADDER[1:]))
+    assert fine.doubt == pytest.approx(
+        [0.3 / LADDER[3]], rel=0.05
+    )  # Pell's quotients are within 2 % of the limit
+    assert all(math.gcd(a, b) == 1 for a, b in itertools.pairwise(LADDER))
     assert LADDER[-1] / LADDER[-2] == pytest.approx(RATIO, rel=1e-3)
 
 
