@@ -32,20 +32,18 @@ NATIVE_STEP_S, NATIVE_STEP_BODY_S = 0.5e-6, 0.08e-6
 NATIVE_PAIR_S, NATIVE_SWEEP_PAIR_S = 0.3e-6, 0.05e-6
 
 
-def area_frame(bodies: int, pairs: float, steps: int, sweeps: int, points: int = 0) -> float:
-    """A frame of area contact (s): bodies that move, pairs that touch, substeps, sweeps a substep, corners of outlines
-    of their own."""
-    substep = SUBSTEP_S + SUBSTEP_BODY_S * bodies + SUBSTEP_POINT_S * points
-    substep += (SUBSTEP_PAIR_S + SWEEP_PAIR_S * sweeps) * pairs
-    return FRAME_S + FRAME_BODY_S * bodies + steps * substep
-
-
-def turns_frame(parts: Iterable[tuple[int, float, int]], sweeps: int) -> float:
+def area_frame(parts: Iterable[tuple[float, float, int]], sweeps: int, points: int = 0) -> float:
     """A frame of area contact whose islands take substeps of their own (s).
 
-    parts: (bodies, pairs, substeps) of each. sweeps: a substep.
+    parts: (bodies that move, pairs that touch, substeps) of each. sweeps: a substep. points: corners of outlines of
+    their own.
     """
-    return sum(area_frame(bodies, pairs, steps, sweeps) for bodies, pairs, steps in parts)
+    pair = SUBSTEP_PAIR_S + SWEEP_PAIR_S * sweeps
+    total, most = FRAME_S, 0
+    for bodies, pairs, steps in parts:
+        total += FRAME_BODY_S * bodies + steps * (SUBSTEP_BODY_S * bodies + pair * pairs)
+        most = max(most, steps)
+    return total + most * (SUBSTEP_S + SUBSTEP_POINT_S * points)
 
 
 def native_frame(bodies: int, pairs: float, steps: int, sweeps: int) -> float:

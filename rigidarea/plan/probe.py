@@ -28,6 +28,8 @@ Array = NDArray[np.float64]
 
 SAMPLES = 120
 """Places are compared so often, at the most, in the time that is looked at."""
+NOTES = 12
+"""What contacts do is noted so often, and after the first sample."""
 LADDER = (2, 5, 12, 29, 70, 169)
 """Substeps of runs that become finer, Pell's numbers: a run's substeps do not fall together with another's, or the two
 would be off alike."""
@@ -170,6 +172,7 @@ class Probe:
         self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
         self._tracks: dict[tuple[Setting, float | None], Array] = {}
         self._asked: set[int] = set()
+        self._touching: list[int] = []
         self.begin: float | None = (
             None  # depth after the first frame of the first run, over the smallest extent
         )
@@ -181,13 +184,18 @@ class Probe:
         moving = int(self.free.sum())
         if setting.level == "pymunk":
             return costs.native_frame(moving, self.pairs, setting.steps, setting.sweeps)
-        return costs.area_frame(moving, self.pairs, setting.steps, setting.sweeps, self.points)
+        return costs.area_frame([(moving, self.pairs, setting.steps)], setting.sweeps, self.points)
 
     def look(self, seconds: float, first: Setting) -> None:
         """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
         self.frames = max(1, min(self.frames, int(seconds / (self.cost(first) + costs.SAMPLE_S))))
 
     # --- runs ---
+
+    def forget(self) -> None:
+        """Let go of the copies and what they did."""
+        self._spaces.clear()
+        self._tracks.clear()
 
     def track(self, setting: Setting, sagitta: float | None = None) -> Array:
         """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
@@ -236,8 +244,7 @@ class Probe:
         seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
         twins = {twin: body for twin, body in zip(bodies, self.bodies)}
         made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
-        if materials is not None:
-            self.pairs = 0.0
+        every = max(1, (len(ends) - 1) // NOTES)
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
@@ -246,12 +253,13 @@ class Probe:
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
                 states[k + 1] = read(space, names)
-                if materials is not None:
-                    self._note(
-                        space, contact, self.frame / setting.steps, index, seen, made_of, len(ends) - 1
-                    )
+                if materials is not None and (k == 0 or k % every == every - 1):
+                    self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
         except SimulationError:
             states[:] = math.nan
+        if self._touching:
+            self.pairs = sum(self._touching) / len(self._touching)
+            self._touching.clear()
         return states[: len(states) if np.isfinite(states).all() else 0], seen
 
     def _note(
@@ -262,7 +270,6 @@ class Probe:
         index: Mapping[pymunk.Body, int],
         seen: Seen,
         materials: Mapping[pymunk.Body, Any],
-        samples: int,
     ) -> None:
         fastest(space, seen.measured)
         seen.touched[:] = False
@@ -272,7 +279,7 @@ class Probe:
             measure(contact, rows, h, seen.measured, materials)
             if self.begin is None:
                 self.begin = seen.measured.get("penetration", (0.0, None))[0]
-            self.pairs += len(rows) / samples
+            self._touching.append(len(rows))
             links += [(row["body_a"], row["body_b"]) for row in rows]
             for ends in links[-len(rows) :] if len(rows) else []:
                 seen.touched[[index[end] for end in ends if end in index]] = True
@@ -322,7 +329,7 @@ def reference(
     runs: list[tuple[Setting, Array]] = []
     doubt = np.full(len(probe.bodies), math.inf)
     for j, steps in enumerate(LADDER):
-        depth = max(LEAST_DEPTH, 0.1 * tolerance * 0.1**j)
+        depth = max(LEAST_DEPTH, ENOUGH * tolerance * 0.1**j)
         setting = Setting("rigid", steps, FINE_SWEEPS, depth)
         if least is not None:
             setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))

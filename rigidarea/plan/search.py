@@ -143,6 +143,7 @@ def search(
     ):
         chosen, finer = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine)
     tried.sort(key=lambda each: (each.cost_s, each.error))
+    probe.forget()
     end, way = np.zeros((len(probe.bodies), 6)), np.full(len(probe.bodies), np.inf)
     if len(states):
         end, way = states[-1], np.hypot(*np.moveaxis(states[:, :, :2] - states[0, :, :2], 2, 0)).max(axis=0)
@@ -226,8 +227,7 @@ def _apart(
     errors = probe.apart(probe.run(setting, sagitta, finer)[0], fine.track) + fine.doubt
     if not errors.max(initial=0.0) <= tolerance:
         return chosen, {}
-    sizes = [(int((seen.groups == g).sum()), n) for g, n in wanted.items()]
-    most = max(1, len(probe.bodies))
-    cost = costs.turns_frame(((size, probe.pairs * size / most, n) for size, n in sizes), setting.sweeps)
-    cost += costs.SUBSTEP_POINT_S * probe.points * max(wanted.values())
+    share = {g: float((seen.groups == g).sum()) / len(probe.bodies) for g in wanted}
+    parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
+    cost = costs.area_frame(parts, setting.sweeps, probe.points)
     return Tried(setting, errors, min(cost, chosen.cost_s)), finer

@@ -39,11 +39,9 @@ def lines_of(plan: Plan) -> list[Line]:
     if mine:
         head += f" (yours: {', '.join(sorted(mine))})"
     fine = found.fine
-    against = (
-        "the defaults"
-        if not found.tried
-        else f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
-    )
+    against = f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
+    if not found.tried:
+        against = "the defaults"
     out = [Line("space", head, against, plan.error, plan._frame_cost, None)]
     cheaper = [each for each in found.tried if each.cost_s < found.chosen.cost_s]
     finer = [each for each in found.tried if each.cost_s > found.chosen.cost_s and each.error < plan.error]
@@ -110,7 +108,7 @@ def text_of(plan: Plan) -> str:
     """The table as text."""
     rows = [("", "choice", "decided by", "error", "ms a frame")]
     for line in plan.lines:
-        error = "" if math.isnan(line.error) else f"{line.error:.1e}"
+        error = "" if not math.isfinite(line.error) else f"{line.error:.1e}"
         rows.append(
             (
                 line.what,

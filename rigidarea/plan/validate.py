@@ -244,6 +244,7 @@ def judge(
         "error": error if math.isfinite(error) else None,
         "predicted_error": own.error,
         "planning_s": own.planning_s,
+        "decided_by": next((line.what for line in own.lines[1:] if line.error == own.error), ""),
         "level": own.level,
         "steps": own.steps,
         "sweeps": own.sweeps,

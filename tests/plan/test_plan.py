@@ -113,7 +113,7 @@ def test_what_may_sleep_lies_flush_and_still():
     space.add(rolling, pymunk.Circle(rolling, 0.5))
     assert set(ra.plan(space, 0.01).may_sleep) == set(bodies)
     bodies[2].velocity = 0.5, 0
-    assert set(ra.plan(space, 0.01).may_sleep) == set(bodies[:2])
+    assert bodies[2] not in ra.plan(space, 0.01).may_sleep  # it slides, and stops
     assert flying not in ra.plan(space, 0.01).may_sleep
 
 
