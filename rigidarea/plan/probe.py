@@ -291,7 +291,7 @@ class Probe:
     def apart(self, one: Array, fine: Array) -> Array:
         """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
 
-        A turn counts as what it moves the farthest point, over the way or the body's diameter. What only turns is
+        A turn counts as what it moves the farthest point. What only turns is
         compared by its spin too, in the middle of all samples: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
@@ -301,7 +301,7 @@ class Probe:
         turned = self.reach * steps[:, :, 2].sum(axis=0)
         far = np.maximum(way, turned)
         gone = np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=0) / np.maximum(far, self.extent)
-        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, 2.0 * self.reach)
+        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, self.extent)
         found: Array = np.maximum(gone, twisted)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         turns = (way < self.extent) & (turned > self.extent)

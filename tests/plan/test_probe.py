@@ -53,7 +53,7 @@ def test_a_copy_has_joints_filters_and_outlines():
 
 def test_how_far_apart_two_runs_are():
     """A body that goes 4 and ends 0.02 off: 0.005. At rest, over its smallest extent. Turned, by what its farthest
-    point moves over its diameter."""
+    point moves."""
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Poly.create_box(body, (3.0, 1.0)))
@@ -64,7 +64,7 @@ def test_how_far_apart_two_runs_are():
     assert probe.apart(moved, fine) == pytest.approx([0.02])
     turned = fine.copy()
     turned[2, 0, 2] = -0.02
-    assert probe.apart(turned, fine) == pytest.approx([0.01])
+    assert probe.apart(turned, fine) == pytest.approx([0.02 * math.hypot(1.5, 0.5)])
     fine[:, 0, 0] = moved[:, 0, 0] = np.arange(5)
     assert probe.apart(moved, fine) == pytest.approx([0.005])
     assert probe.apart(moved[:0], fine) == [math.inf]
