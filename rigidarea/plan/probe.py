@@ -292,7 +292,7 @@ class Probe:
         """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
 
         A turn counts as what it moves the farthest point. What only turns is
-        compared by its spin too, in the middle of all samples: a drive's error is in its speed, not in its angle.
+        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
@@ -305,7 +305,7 @@ class Probe:
         found: Array = np.maximum(gone, twisted)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         turns = (way < self.extent) & (turned > self.extent)
-        ripple = np.median(off[:, :, 5], axis=0) / np.where(turns, spin, 1.0)
+        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
         return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
 
 
