@@ -8,7 +8,6 @@ import random
 import numpy as np
 import pymunk
 import pytest
-from test_snapshots import SCENES, attached, steps
 
 import rigidarea as ra
 from rigidarea.chipmunk import address_of
@@ -26,6 +25,7 @@ from rigidarea.kernel.tables import (
     Tables,
 )
 from rigidarea.store import LASTING, LASTING_STATE, SCRATCH
+from test_snapshots import SCENES, attached, steps
 
 #: Of pairs, who Chipmunk's arbiter is; of shapes, where they are in lists and trees that are compared themselves.
 OWN = {"bodies": memory._OWN, "shapes": {*memory._OWN, "asked"}, "pairs": {"arbiter"}, "near": {"a", "b"}}

@@ -8,9 +8,8 @@ import pytest
 ray = pytest.importorskip("ray")
 pytest.importorskip("gymnasium")
 
-from test_cluster import slid  # noqa: E402
-
 from rigidarea.vector import PushToGoalVector  # noqa: E402
+from test_cluster import slid  # noqa: E402
 
 
 @pytest.fixture(scope="module", autouse=True)

@@ -1,7 +1,7 @@
 """What a frame costs, in processor time: a handful of constants, all measured in one run, all here.
 
-Measured 2026-11-22 on a shared core of an Intel Xeon with 1 to 100 resting boxes and discs, 1 to 8 substeps, 5 to 20
-sweeps: the model is within 15 % in the middle, 57 % at worst. A plan chooses by their ratios, so a faster machine
+Least squares over 1 to 100 boxes, lying on a floor and in free flight, 1 and 8 substeps, 5 and 20 sweeps, on a shared
+core of an Intel Xeon: within 12 % in the middle, 57 % at worst. A plan chooses by their ratios, so a faster machine
 changes nothing; a faster solve does, and then they are to be measured again.
 """
 
@@ -10,33 +10,43 @@ from __future__ import annotations
 from collections.abc import Iterable
 
 #: A frame, whatever is in it (s).
-FRAME_S = 1.2e-6
+FRAME_S = 4.7e-6
 #: A body's share of what is done once a frame: Chipmunk's own pass, boxes, reports (s).
-FRAME_BODY_S = 0.5e-6
+FRAME_BODY_S = 0.2e-6
 #: A substep (s).
 SUBSTEP_S = 0.2e-6
-#: A body's share of a substep: drift, and the overlap that it has with what it lies on (s).
-SUBSTEP_BODY_S = 0.7e-6
+#: A body's share of a substep: drift (s).
+SUBSTEP_BODY_S = 0.03e-6
+#: The overlap of one pair that touches, a substep (s).
+SUBSTEP_PAIR_S = 0.8e-6
 #: A sweep over one pair that touches (s).
-SWEEP_PAIR_S = 0.07e-6
-#: A step of Chipmunk's own, and a body's share of it at ten iterations (s).
-NATIVE_STEP_S, NATIVE_STEP_BODY_S = 1.0e-6, 1.1e-6
+SWEEP_PAIR_S = 0.02e-6
+#: A corner's share of a substep, of outlines of their own (s).
+SUBSTEP_POINT_S = 0.003e-6
+#: A body's share of a copy of a space, attached (s).
+COPY_BODY_S = 60e-6
+#: Places of a copy read, and the call that steps it (s).
+SAMPLE_S = 25e-6
+#: A step of Chipmunk's own, and a body's share of it; a pair's that touches, and a sweep's over it (s).
+NATIVE_STEP_S, NATIVE_STEP_BODY_S = 0.5e-6, 0.08e-6
+NATIVE_PAIR_S, NATIVE_SWEEP_PAIR_S = 0.3e-6, 0.05e-6
 
 
-def area_frame(bodies: int, pairs: int, steps: int, sweeps: int) -> float:
-    """A frame of area contact (s): bodies that move, pairs that touch, substeps, sweeps a substep."""
-    substep = SUBSTEP_S + SUBSTEP_BODY_S * bodies + SWEEP_PAIR_S * pairs * sweeps
-    return FRAME_S + FRAME_BODY_S * bodies + steps * substep
-
-
-def turns_frame(parts: Iterable[tuple[int, int, int]], sweeps: int) -> float:
+def area_frame(parts: Iterable[tuple[float, float, int]], sweeps: int, points: int = 0) -> float:
     """A frame of area contact whose islands take substeps of their own (s).
 
-    parts: (bodies, pairs, substeps) of each. sweeps: a substep.
+    parts: (bodies that move, pairs that touch, substeps) of each. sweeps: a substep. points: corners of outlines of
+    their own.
     """
-    return sum(area_frame(bodies, pairs, steps, sweeps) for bodies, pairs, steps in parts)
+    pair = SUBSTEP_PAIR_S + SWEEP_PAIR_S * sweeps
+    total, most = FRAME_S, 0
+    for bodies, pairs, steps in parts:
+        total += FRAME_BODY_S * bodies + steps * (SUBSTEP_BODY_S * bodies + pair * pairs)
+        most = max(most, steps)
+    return total + most * (SUBSTEP_S + SUBSTEP_POINT_S * points)
 
 
-def native_frame(bodies: int, steps: int, sweeps: int) -> float:
-    """A frame of Chipmunk's own response (s): bodies that move, steps a frame, iterations (`sweeps`) a step."""
-    return steps * (NATIVE_STEP_S + NATIVE_STEP_BODY_S * bodies * (0.5 + 0.05 * sweeps))
+def native_frame(bodies: int, pairs: float, steps: int, sweeps: int) -> float:
+    """A frame of Chipmunk's own response (s): bodies that move, pairs that touch, steps a frame, sweeps a step."""
+    pair = NATIVE_PAIR_S + NATIVE_SWEEP_PAIR_S * sweeps
+    return steps * (NATIVE_STEP_S + NATIVE_STEP_BODY_S * bodies + pair * pairs)

@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import pymunk
@@ -12,7 +13,6 @@ import shapely
 
 from ..outline import Outline
 from . import estimates as est
-from .curves import pockets
 
 if TYPE_CHECKING:
     from ..flexible import Assembly
@@ -41,6 +41,14 @@ class Shape(NamedTuple):
     reach: float  # radius of the hull (length)
     bore: float  # radius of a hole, 0 without (length)
     area: float
+
+
+@lru_cache(maxsize=256)
+def pockets(outline: Outline) -> int:
+    """Teeth or slots of an outline: pockets between it and its hull."""
+    hull = shapely.convex_hull(outline.polygon)
+    found = shapely.get_parts(shapely.difference(hull, shapely.Polygon(outline.polygon.exterior)))
+    return sum(part.area > 1e-6 * hull.area for part in found)
 
 
 def shape_of(outline: Outline) -> Shape:

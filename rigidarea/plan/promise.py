@@ -1,44 +1,56 @@
-"""What a plan cannot promise, and why: what bears on an error and no estimate knows."""
+"""What a plan cannot promise, and why; and what things are called."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
-import numpy as np
 import pymunk
-import shapely
 
 from .elastic import Choice
-from .predict import Cause
-from .survey import Survey
 
-ROW = 3
-"""Bodies that blows may pass through, from which on the order of the blows is a question of the step."""
+OVERLAP = 0.01
+"""Depth after a frame, over the smallest extent, beyond which bodies have been put into one another."""
 
 
 def unpromised(
-    space: pymunk.Space, seen: Survey, causes: Sequence[Cause], bending: Sequence[Choice], seconds: float
+    space: pymunk.Space, bending: Sequence[Choice], share: float, looked: float, begin: float
 ) -> list[str]:
-    """One sentence for each; empty where the predicted error is of all that is there.
+    """One sentence for each; empty where the error is of all that is there.
 
-    Of a row of blows every one magnifies what a body was off before by about 1 + 2 l/r, l its way and r its radius (N.
-    Chernov, R. Markarian, Chaotic Billiards, 2006, chapter 3): no bound holds after a few.
+    share: of the time planned for that was tried out, `looked` (time). begin: depth after the first frame, over the
+    smallest extent.
     """
     out = []
+    if share == 0.0:
+        out.append(
+            "anything: a copy alone would cost more than trying out may; plan for more seconds, or fewer bodies"
+        )
+    elif share < 1.0:
+        out.append(f"what comes after the first {looked:.3g} s: so far it was tried out")
+    if begin > OVERLAP:
+        out.append(f"how bodies part that start {begin:.2g} of their size deep: by this solve's own law")
+    if callbacks(space):
+        out.append("what your callbacks do: they were not run")
     bends = [choice for choice in bending if choice.level != "rigid"]
+    if bends:
+        out.append("how what bends moves: rigid copies were tried out")
     if any(_meets_rigid(space, choice.body, bends) for choice in bends):
         out.append("what bends meets what is rigid with its undeformed outline")
     if any(choice.load == 0.0 for choice in bending):
         out.append("what presses a body with a material: neither weight, motor nor blow is seen on one")
-    if _hinged(space):
-        out.append("bodies that hang in one another by joints: no estimate knows what joints pull")
-    row = _row(seen, seconds)
-    if row:
-        out.append(f"blows may pass through {row} bodies, and each magnifies what was off before")
-    if not out and seen.moves.any() and (not causes or causes[0].error == 0.0):
-        out.append("something moves, and no estimate bears on it")
     return out
+
+
+def callbacks(space: pymunk.Space) -> bool:
+    """Whether functions of the user's are called in a step."""
+    empty = pymunk.empty_callback
+    handlers = space._handlers.values()
+    return (
+        any(f != empty for h in handlers for f in (h._begin, h._pre_solve, h._post_solve, h._separate))
+        or any(b._velocity_func is not None or b._position_func is not None for b in space.bodies)
+        or any(j._pre_solve_func is not None or j._post_solve_func is not None for j in space.constraints)
+    )
 
 
 def _meets_rigid(space: pymunk.Space, body: pymunk.Body, bends: Sequence[Choice]) -> bool:
@@ -46,32 +58,6 @@ def _meets_rigid(space: pymunk.Space, body: pymunk.Body, bends: Sequence[Choice]
     others = {choice.body for choice in bends}
     joined = {end for joint in body.constraints for end in (joint.a, joint.b)}
     return any(s.body not in others and s.body not in joined and not s.sensor for s in space.shapes)
-
-
-def _hinged(space: pymunk.Space) -> bool:
-    """Whether joints other than motors and springs are between two bodies that move."""
-    free = (pymunk.SimpleMotor, pymunk.DampedSpring, pymunk.DampedRotarySpring, pymunk.GearJoint)
-    dynamic = pymunk.Body.DYNAMIC
-    return any(
-        joint.a.body_type == dynamic and joint.b.body_type == dynamic and not isinstance(joint, free)
-        for joint in space.constraints
-    )
-
-
-def _row(seen: Survey, seconds: float) -> int:
-    """The most bodies, itself too, that one may come to in the time planned for, as fast as it is: one that comes on at
-    more than a fall through a tenth of its own extent gives; 0 below ROW."""
-    mine = np.flatnonzero(seen.moves)
-    if len(mine) < ROW:
-        return 0
-    speed, reach = seen.speed[mine], seen.reach[mine]
-    fast = speed > np.sqrt(0.2 * seen.g * seen.extent[mine])
-    at = np.array([tuple(seen.bodies[i].position) for i in mine])
-    points = shapely.points(at)
-    ways = speed[fast] * seconds + reach[fast] + reach.max()
-    one, _ = shapely.STRtree(points).query(points[fast], predicate="dwithin", distance=ways)
-    most = int(np.bincount(one).max(initial=0))
-    return most if most >= ROW else 0
 
 
 def name_of(space: pymunk.Space, who: Any) -> str:

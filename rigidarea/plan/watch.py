@@ -5,14 +5,12 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
-import numpy as np
 import pymunk
 
 from ..contact import attached
-from ..kernel.constants import HIT
-from . import estimates as est
+from .measures import Measured, fastest, measure
 from .promise import name_of
 
 if TYPE_CHECKING:
@@ -72,24 +70,13 @@ class Watch:
     def _promise(self) -> None:
         """What the plan's own numbers are, as of now."""
         plan = self.plan
-        found, seen = plan._facts, plan._survey
-        moves = seen.moves
-        h = plan.frame / plan.steps
-        smallest = float(seen.extent[moves].min(initial=math.inf))
-        presses = seen.g
-        loads = found.flat.value if found.flat else 1.0
-        phase2 = est.resting_phase2(presses, h, plan.penetration, smallest) if presses > 0.0 else math.inf
-        if plan.stiffness is not None:
-            phase2 = math.inf  # the user's own: nothing is promised
-        rim = seen.speed + seen.spin * np.where(np.isfinite(seen.reach), seen.reach, 0.0)
-        falls = math.sqrt(float(np.max(seen.speed**2, initial=0.0)) + 2.0 * seen.g * _height(seen))
-        pile = max((cause.error for cause in plan.causes if cause.name == "pile"), default=0.0)
+        seen = {name: value for name, (value, _) in plan._found.seen.measured.items()}
         promised = {
-            "penetration": plan.penetration * max(1.0, loads) if plan.stiffness is None else math.inf,
-            "phase": math.sqrt(phase2 * max(1.0, loads)),
-            "load": max(1.0, loads) if presses > 0.0 else math.inf,
-            "speed": max(float(rim.max(initial=0.0)), falls),
-            "sweeps": max(pile, plan.tolerance),
+            "penetration": seen.get("penetration", plan.penetration),
+            "phase": seen.get("phase", math.inf),
+            "load": seen.get("load", 1.0 if plan.space.gravity.length else math.inf),
+            "speed": seen.get("speed", 0.0),
+            "sweeps": max(seen.get("sweeps", 0.0), plan.tolerance),
             "energy": plan.tolerance / OUTGROWN,
             "strain": plan.tolerance,
         }
@@ -150,55 +137,18 @@ class Watch:
         plan = self.plan
         space = plan.space
         contact = attached(space)
-        found: dict[str, tuple[float, str]] = {}
-        fastest, who = 0.0, None
-        for body in space.bodies:
-            if body.body_type == pymunk.Body.STATIC:
-                continue
-            rim = abs(body.angular_velocity)
-            if rim > 0.0:
-                rim *= _reach(body)
-            speed = body.velocity.length + rim
-            if speed > fastest:
-                fastest, who = speed, body
-        found["speed"] = fastest, name_of(plan.space, who)
+        worst: dict[str, Measured] = {"speed": (0.0, None)}
+        fastest(space, worst)
+        if contact is not None:
+            measure(contact, contact.regions, plan.frame / plan.steps, worst, plan.materials)
+        found = {
+            name: (value, " and ".join(name_of(space, each) for each in where))
+            if isinstance(where, tuple)
+            else (value, name_of(space, where))
+            for name, (value, where) in worst.items()
+        }
         if contact is None:
             return found
-        h = plan.frame / plan.steps
-        gravity = space.gravity.length
-        extents = dict(zip(plan._survey.shapes, plan._survey.thickness))
-        worst: dict[str, tuple[float, Any]] = {}
-
-        def most(name: str, value: float, pair: Any) -> None:
-            if value > worst.get(name, (0.0, None))[0]:
-                worst[name] = value, pair
-
-        for region in contact.regions:
-            a, b = region["body_a"], region["body_b"]
-            free = [body for body in (a, b) if body.body_type == pymunk.Body.DYNAMIC]
-            if not free or region["chord"] <= 0.0:
-                continue
-            shapes = region["shape_a"], region["shape_b"]
-            sizes = [
-                extents.get(shape) or _extent(shape) for shape, body in zip(shapes, (a, b)) if body in free
-            ]
-            extent = min(sizes)
-            hit = region["speed"] * h > HIT * extent
-            if not hit:
-                most("penetration", float(region["area"] / region["chord"]) / extent, shapes)
-                most("sweeps", max(0.0, float(region["speed"])) * h / extent, shapes)
-            lightest = min(body.mass for body in free)
-            if gravity > 0.0:
-                most("load", float(region["force"]) / (lightest * gravity), shapes)
-            inverse = sum(1.0 / body.mass for body in free)
-            most("phase", h * math.sqrt(float(region["stiffness"] * region["chord"]) * inverse), shapes)
-            for body in free:
-                material = plan.materials.get(body)
-                if material is not None:
-                    pressure = float(region["force"] / (region["chord"] * material.thickness))
-                    most("strain", pressure / material.young, shapes)
-        for name, (value, shapes) in worst.items():
-            found[name] = value, " and ".join(name_of(plan.space, shape) for shape in shapes)
         if not _driven(space):
             energy = contact.energy()
             kinetic = sum(
@@ -211,25 +161,15 @@ class Watch:
         return found
 
 
-def _height(seen: Any) -> float:
-    """The height of what there is, along gravity: how far anything may fall (length)."""
-    if not len(seen.boxes) or seen.g == 0.0:
-        return 0.0
-    axis = 1 if abs(seen.gravity[1]) >= abs(seen.gravity[0]) else 0
-    free = seen.moves[seen.owner]
-    if not free.any():
-        return 0.0
-    low = float(seen.boxes[:, axis][free].min())
-    return float(seen.boxes[:, axis + 2][free].max()) - low
-
-
 def _weight_energy(plan: Plan) -> float:
     """What the space's bodies would get in falling by their own extent (force length)."""
-    seen = plan._survey
-    moves = seen.moves
-    return float(
-        np.sum(seen.mass[moves] * seen.g * np.where(np.isfinite(seen.extent[moves]), seen.extent[moves], 0.0))
-    )
+    probe = plan._probe
+    weights = [
+        body.mass * extent
+        for body, extent, free in zip(probe.bodies, probe.extent, probe.free)
+        if free and math.isfinite(extent)
+    ]
+    return float(plan.space.gravity.length * sum(weights))
 
 
 def _driven(space: pymunk.Space) -> bool:
@@ -242,13 +182,3 @@ def _driven(space: pymunk.Space) -> bool:
     ):
         return True
     return any(shape.surface_velocity != (0.0, 0.0) for shape in space.shapes)
-
-
-def _reach(body: pymunk.Body) -> float:
-    boxes = [shape.bb for shape in body.shapes]
-    return max((0.5 * math.hypot(box.right - box.left, box.top - box.bottom) for box in boxes), default=0.0)
-
-
-def _extent(shape: pymunk.Shape) -> float:
-    box = shape.bb
-    return min(box.right - box.left, box.top - box.bottom)

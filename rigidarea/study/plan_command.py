@@ -89,7 +89,8 @@ def told(made: Plan) -> dict[str, Any]:
         "stiffness": made.stiffness,
         "reachable": made.reachable,
         "unpromised": made.unpromised,
-        "predicted_error": made.error,
+        "error": made.error,
+        "looked_s": made.looked,
         "predicted_cost_s_per_s": made.cost_s_per_s,
         "lines": [
             {"what": line.what, "choice": line.choice, "decided_by": line.decided_by, "error": line.error}

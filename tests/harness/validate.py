@@ -170,7 +170,8 @@ def study(
         swept.append({**settings, "error": row["error"], "rough_s": row["rough_s"]})
     for tolerance in judged:
         chosen = plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
-        task = {**name, "tolerance": tolerance, "plan": str(chosen)}
+        told = (chosen.level, chosen.steps, chosen.sweeps, chosen.penetration, *sorted(chosen.finer.values()))
+        task = {**name, "tolerance": tolerance, "plan": told, "sampling": sorted(chosen.sampling.values())}
         look = partial(judge, scene, tolerance, swept, varied, reference)
         rows.append({k: v for k, v in kept(task, look).items() if k != "task"})
     return rows
@@ -244,7 +245,8 @@ def judge(
         "verdict": verdict,
         "error": error if math.isfinite(error) else None,
         "predicted_error": own.error,
-        "decided_by": own.causes[0].name if own.causes else "",
+        "planning_s": own.planning_s,
+        "decided_by": next((line.what for line in own.lines[1:] if line.error == own.error), ""),
         "level": own.level,
         "steps": own.steps,
         "sweeps": own.sweeps,

@@ -26,7 +26,7 @@ raise SystemExit("not reached: a plan ends before the first step")
 def test_a_scene(capsys):
     assert main(["plan", "stack", "--tolerance", "0.01"]) == 0
     text = capsys.readouterr().out
-    assert text.startswith("plan for 0.01 over 5 s: predicted") and "pile" in text
+    assert text.startswith("plan for 0.01 over 5 s: off by") and "tried out: " in text
 
 
 def command(*words):

@@ -8,10 +8,6 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.plan import elastic
-from rigidarea.plan import estimates as est
-from rigidarea.plan.facts import facts
-from rigidarea.plan.predict import Setting, causes, total
-from rigidarea.plan.survey import bases, survey
 
 G = 9.81
 
@@ -43,198 +39,20 @@ def state(space):
     return [(*b.position, b.angle, *b.velocity, b.angular_velocity) for b in space.bodies], space.iterations
 
 
-# --- what a survey sees ---
+# --- what is found ---
 
 
-@pytest.mark.parametrize("size", [(1.0, 1.0), (3.0, 0.1), (0.2, 2.0)])
-@pytest.mark.parametrize("angle", [0.0, 0.3, 0.8])
-def test_thickness_of_boxes_is_exact(size, angle):
-    space = pymunk.Space()
-    box(space, (0, 0), size, mass=2.0, angle=angle)
-    assert survey(space).thickness[0] == pytest.approx(min(size), rel=1e-9)
-
-
-def test_layers_and_loads():
-    space, _ = stack(5)
-    box(space, (0, 5.5), mass=40.0)
-    seen = survey(space)
-    from rigidarea.plan.survey import support
-
-    layers, load, heavier, shared = support(seen)
-    assert not shared
-    assert layers[:6].tolist() == [1, 2, 3, 4, 5, 6]
-    assert load[:6] == pytest.approx([45, 44, 43, 42, 41, 40])
-    assert heavier == 40
-
-
-def test_where_a_load_presses_on_its_base():
-    """Books over an edge, each 0.9 of the classical overhang: by statics the load of n of them lies 0.1 of half a
-    book inside the edge of what is below."""
-    space = pymunk.Space()
-    space.gravity = 0, -G
-    table = pymunk.Poly(space.static_body, [(-10, -1), (0, -1), (0, 0), (-10, 0)])
-    space.add(table)
-    edge, count = 0.0, 4
-    for i in range(count):
-        edge += 0.9 / (2 * (count - i))
-        box(space, (edge - 0.5, 0.2 * i + 0.1), (1.0, 0.2))
-    margin, width = bases(survey(space))
-    overlap = 1.0 - 0.9 / (2 * np.array([4, 3, 2, 1]))
-    assert width[:count] == pytest.approx(overlap)
-    assert margin[:count] == pytest.approx(0.05 / (overlap / 2))
-    straight, _ = stack(3)
-    assert bases(survey(straight))[0][:3] == pytest.approx(1.0)
-
-
-def test_a_load_is_shared():
-    space = pymunk.Space()
-    space.gravity = 0, -G
-    ground(space)
-    for x in (-0.75, 0.75):
-        box(space, (x, 0.5))
-    box(space, (0, 1.5), (2.5, 1.0), mass=10.0)
-    from rigidarea.plan.survey import support
-
-    _, load, _, shared = support(survey(space))
-    assert shared
-    assert load[:3] == pytest.approx([6, 6, 10])
-
-
-def test_filters_sensors_and_pairs():
-    space, _ = stack(2)
-    assert len(survey(space).pairs) == 2
-    for shape in space.shapes:
-        shape.filter = pymunk.ShapeFilter(group=1)
-    assert len(survey(space).pairs) == 0
-    for shape in space.shapes:
-        shape.filter = pymunk.ShapeFilter()
-        shape.sensor = True
-    assert len(survey(space).shapes) == 0
-
-
-def test_curvature_of_outlines():
-    from rigidarea.plan.survey import curvature_radius
-
-    disc = ra.Outline.circle(0.7)
-    assert curvature_radius(disc) == pytest.approx(0.7)
-    assert curvature_radius(disc.sample(1e-4)) == pytest.approx(0.7, rel=1e-2)
-    hole = ra.Outline([(-2, -2), (2, -2), (2, 2), (-2, 2)], [disc.sample(1e-4).rings[0]])
-    assert curvature_radius(hole) == pytest.approx(-0.7, rel=1e-2)
-    assert curvature_radius(ra.Outline([(0, 0), (1, 0), (1, 1), (0, 1)])) == 0
-
-
-# --- what is predicted ---
-
-
-def test_a_hole_is_read_as_arcs_and_as_points():
-    """A disc in a journal: the hole's radius, hollow, whether it is an arc or sampled."""
-    hole = ra.Outline.from_bulges(
-        [(-2, -2, 0), (2, -2, 0), (2, 2, 0), (-2, 2, 0)], holes=[[(1.0, 0.0, -1.0), (-1.0, 0.0, -1.0)]]
-    )
-    for outline in (hole, hole.sample(1e-4)):
-        space = pymunk.Space()
-        space.gravity = 0, -G
-        outline.add_to(space.static_body)
-        space.add(*space.static_body.shapes)
-        pin = pymunk.Body(1, 1)
-        pin.position = 0, -0.1
-        space.add(pin, pymunk.Circle(pin, 0.9))
-        seen = survey(space)
-        assert sorted(seen.radius) == pytest.approx([-1.0, 0.9], rel=1e-3)
-
-
-def test_what_comes_off_an_arc_is_seen_beforehand():
-    """A ring on a peg, as stiff as its substeps do not bear: measured 0.23, against 0.0012 where it stays on."""
-    from rigidarea.study.scene import get_scene
-    from rigidarea.study.user_space import space_of
-
-    scene = get_scene("ring_on_peg")
-    found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
-    assert total(found, Setting("rigid", 2, 5, 1e-5)) < 0.01
-    assert total(found, Setting("rigid", 2, 5, 1e-6)) > 0.1
-    assert total(found, Setting("rigid", 8, 5, 1e-6)) < 0.001
-
-
-def test_a_pin_in_a_slot_is_no_gear():
-    """A Geneva wheel has twelve hollows, six of them for the lock: it begins from nothing with each slot."""
-    from rigidarea.study.scene import get_scene
-    from rigidarea.study.user_space import space_of
-
-    scene = get_scene("geneva")
-    found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
-    assert found.driven[0] == 0.0 and found.slots[0] == pytest.approx(math.pi)
-    scene = get_scene("gears")
-    found = facts(survey(space_of(scene)[0]), scene.frame, scene.duration)
-    assert found.driven[0] > 0.0 and found.slots[0] == 0.0
-
-
-def test_what_is_heavy_on_light_wants_two_substeps():
-    for ratio, steps in ((50.0, 1), (1000.0, 2)):
-        space = pymunk.Space()
-        space.gravity = 0, -G
-        ground(space)
-        for x in (-0.75, 0.75):
-            box(space, (x, 0.5))
-        box(space, (0.05, 1.5), (2.5, 1.0), mass=ratio)
-        made = ra.plan(space, 0.1).override(level="rigid")
-        assert made.steps == steps and made.sweeps == est.LEAST_PILE_SWEEPS
-
-
-def test_a_blow_asks_for_a_stiffer_bed_than_its_weight():
-    """Dropped from ten sides: v/(g h) times as deep as it would lie, where the bed is stiff."""
-    space, _ = stack(1)
-    box(space, (0, 11.5))
-    found = facts(survey(space), 1 / 60, 2.0)
-    speed, p, h = math.sqrt(2 * G * 10.0), 1e-6, 1 / 60
-    blow = next(cause for cause in causes(found, Setting("rigid", 1, 10, p)) if cause.name == "blow")
-    assert blow.error == pytest.approx(p * speed / (G * h), rel=1e-2)
-    resting, _ = stack(2)
-    assert "blow" not in {
-        c.name for c in causes(facts(survey(resting), 1 / 60, 2.0), Setting("rigid", 1, 10, p))
-    }
-
-
-def test_what_starts_overlapped_and_meets_nothing():
-    """Chipmunk takes two free boxes apart without a speed that stays: one step a frame will do, given the time."""
+def test_what_starts_overlapped_is_not_promised():
     from rigidarea.study.scene import get_scene
     from rigidarea.study.user_space import space_of
 
     scene = get_scene("parted")
-    space, bodies = space_of(scene)
-    made = ra.plan(space, 0.001, scene.duration)
-    assert (made.level, made.steps) == ("pymunk", 1)
-    short = ra.plan(space, 0.001, 0.1)
-    assert short.error > 0.1 and not short.reachable
-    bodies[0].velocity = 1.0, 1.0  # now they part, or meet
-    assert (made.again().level, made.steps) != ("pymunk", 1)
+    made = ra.plan(space_of(scene)[0], 0.001, scene.duration)
+    assert any("deep: by this solve's own law" in reason for reason in made.unpromised)
 
 
-def test_more_is_never_worse():
-    """Substeps and sweeps may only lower what is predicted: else the cheapest would not be found by growing them."""
-    space, _ = stack(6)
-    found = facts(survey(space), 1 / 60, 5.0)
-    errors = [total(found, Setting("rigid", n, 10, 1e-5)) for n in (2, 3, 4, 8, 16)]
-    assert errors == sorted(errors, reverse=True) and errors[0] > errors[-1]
-    errors = [total(found, Setting("rigid", 2, m, 1e-5)) for m in (10, 20, 40)]
-    assert errors == sorted(errors, reverse=True)  # a tower's loads are found by the first ten
-    space, _ = stack(0)
-    for row in range(6):
-        for i in range(6 - row):
-            box(space, (i + 0.5 * row, row + 0.5))
-    found = facts(survey(space), 1 / 60, 5.0)
-    errors = [total(found, Setting("rigid", 2, m, 1e-5)) for m in (10, 20, 40)]
-    assert errors == sorted(errors, reverse=True) and errors[0] > errors[-1]
-
-
-def test_a_tower_that_would_buckle_is_not_planned_soft():
-    space, _ = stack(12)
-    found = facts(survey(space), 1 / 60, 5.0)
-    assert total(found, Setting("rigid", 16, 40, 1e-3)) == 1.0
-    assert causes(found, Setting("rigid", 16, 40, 1e-3))[0].name == "buckling"
-    assert ra.plan(space, 0.1).penetration <= 0.65 / (3 * 12) ** 3
-
-
-def test_two_hits_in_a_row_want_a_substep_each():
+def test_two_hits_in_a_row_arrive():
+    """Equal discs hand on the blow: the last one goes on with it."""
     space = pymunk.Space()
     gap, speed = 0.02, 4.0
     for i in range(4):
@@ -245,17 +63,16 @@ def test_two_hits_in_a_row_want_a_substep_each():
         disc.elasticity = 1.0
         space.add(body, disc)
     made = ra.plan(space, 0.01, 0.5).override(level="rigid")
-    finest = max(made.finer.values(), default=made.steps)
-    assert finest >= math.ceil(1 / 60 / (gap / speed)) and made.reachable
+    made.apply()
+    made.step(frames=30)
+    assert made.reachable and body.velocity.x == pytest.approx(speed, rel=0.01)
 
 
 def test_what_is_out_of_reach_is_said_beforehand():
-    space = pymunk.Space()
-    for x in (-0.3, 0.3):
-        box(space, (x, 0))
-    made = ra.plan(space, 0.01, 2.0).override(level="rigid")
-    assert not made.reachable and made.error > 0.01
-    assert "no setting is predicted to reach it" in str(made)
+    space, _ = tilted()
+    made = ra.plan(space, 1e-6, 2.0).override(steps=1, level="rigid")
+    assert not made.reachable and made.error > 1e-6
+    assert "no setting that was tried is within it" in str(made)
 
 
 # --- the plan ---
@@ -267,12 +84,6 @@ def test_planning_changes_nothing():
     str(ra.plan(space, 0.01, 5.0))
     assert (state(space), space.collision_slop) == before
     assert ra.attached(space) is None
-
-
-def test_a_finer_tolerance_is_never_cheaper():
-    for build in (stack, lambda: tilted()):
-        costs = [ra.plan(build()[0], tolerance, 2.0).cost_s_per_s for tolerance in (0.1, 0.01, 0.001)]
-        assert costs == sorted(costs)
 
 
 def tilted():
@@ -290,19 +101,19 @@ def test_the_table_says_what_decided(build):
     lines = made.lines
     assert f"{made.steps} x {made.sweeps} sweeps" in text or made.level == "pymunk"
     assert lines[0].what == "space" and lines[0].error == made.error
-    assert made.causes[0].number in text and "box at (" in text
-    assert len(text.splitlines()) == len(lines) + 2 + len(made.unpromised)
+    assert "box at (" in text and "tried out: 2 s in" in text
+    assert len(text.splitlines()) == len(lines) + 3 + len(made.unpromised)
 
 
 def test_what_may_sleep_lies_flush_and_still():
     space, bodies = stack(3)
     flying = box(space, (5, 9))
     rolling = pymunk.Body(1, 1)
-    rolling.position = -5, 0.5
+    rolling.position, rolling.velocity = (-5, 0.5), (1, 0)
     space.add(rolling, pymunk.Circle(rolling, 0.5))
     assert set(ra.plan(space, 0.01).may_sleep) == set(bodies)
     bodies[2].velocity = 0.5, 0
-    assert set(ra.plan(space, 0.01).may_sleep) == set(bodies[:2])
+    assert bodies[2] not in ra.plan(space, 0.01).may_sleep  # it slides, and stops
     assert flying not in ra.plan(space, 0.01).may_sleep
 
 
@@ -538,7 +349,7 @@ def test_what_is_delicate_takes_substeps_of_its_own():
     assert made.cost_s_per_s < whole.cost_s_per_s and not whole.finer
     contact = made.apply()
     assert contact.step(1 / 60, steps=made.steps) == made.finer[gears[0]]
-    assert "teeth or slots" in str(made)
+    assert f"{made.finer[gears[0]]} substeps" in str(made)
 
 
 def test_a_body_may_be_given_more_substeps():

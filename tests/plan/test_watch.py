@@ -68,7 +68,7 @@ def test_a_heavy_crate_is_warned_of_and_planned_for():
     crate = add(space, (1.5, 4.8), mass=1000.0)
     with pytest.warns(PlanWarning, match=r"outgrown its plan: bodies of the space is 11, planned for 10"):
         watch.step(frames=1)
-    assert made.steps * made.sweeps >= before[0] * before[1] and made.penetration < before[2]
+    assert made.steps * made.sweeps > before[0] * before[1] and made.penetration <= before[2]
     assert space.iterations == made.sweeps and ra.attached(space).penetration == made.penetration
     assert crate.position.y < 4.8
 
@@ -93,6 +93,7 @@ def test_planning_anew_leaves_the_state():
 
 
 def test_a_drive_that_speeds_up():
+    """Warned of once; a wheel that meets nothing wants no more substeps for it."""
     space = pymunk.Space()
     wheel = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     wheel.angular_velocity = 1.0
@@ -105,7 +106,7 @@ def test_a_drive_that_speeds_up():
     with pytest.warns(PlanWarning, match=r"speed of outline at \(0, 0\)") as told:
         watch.step(frames=3)
     assert len(told) == 1  # once
-    assert made.steps > before
+    assert made.steps >= before
 
 
 def test_each_indicator_warns_once():

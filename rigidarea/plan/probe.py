@@ -1,0 +1,360 @@
+"""A space tried out beforehand: copies of it run at several settings, and how far bodies are from a finer run's.
+
+A setting's error is the distance to the finest run made, plus what that run itself may be off: a run of substeps h that
+is of first order at least, e(h) ~ h, differs from one of r h by (r - 1) e(h) (Richardson's estimate, with the least
+order that the solve has; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary Differential Equations I, section II.4).
+"""
+
+from __future__ import annotations
+
+import io
+import math
+import pickle
+from collections.abc import Mapping
+from types import FunctionType, MethodType
+from typing import Any, NamedTuple
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+from pymunk.batch import BodyFields, Buffer, get_space_bodies
+
+from ..contact import AreaContact, SimulationError, attach
+from ..outline import Outline
+from . import costs
+from .measures import Measured, extent_of, fastest, measure, reach_of
+
+Array = NDArray[np.float64]
+
+SAMPLES = 120
+"""Places are compared so often, at the most, in the time that is looked at."""
+NOTES = 12
+"""What contacts do is noted so often, and after the first sample."""
+LADDER = (2, 5, 12, 29, 70, 169)
+"""Substeps of runs that become finer, Pell's numbers: a run's substeps do not fall together with another's, or the two
+would be off alike."""
+RATIO = 1.0 + math.sqrt(2.0)
+"""Of one of the ladder to the next."""
+FINE_SWEEPS = 20
+"""Sweeps of the ladder's runs."""
+ENOUGH = 0.01
+"""Of the tolerance: a reference that may be off by less needs no finer one."""
+LEAST_DEPTH = 1e-8
+"""Penetration of the finest: below, an overlap has lost half its digits (fraction of the smallest extent)."""
+
+
+class Setting(NamedTuple):
+    """What a plan chooses for a whole space."""
+
+    level: str  # "rigid" or "pymunk"
+    steps: int
+    sweeps: int
+    penetration: float  # fraction of the smallest extent; of "pymunk" the slop
+
+
+class Seen(NamedTuple):
+    """What else is noted of a run: see `measures`."""
+
+    measured: dict[str, Measured]
+    groups: NDArray[np.int64]  # (bodies,) those of a number have touched or are jointed
+    touched: NDArray[np.bool_]  # (bodies,) at the end
+
+
+class Original:
+    """What copies of a space are made from; the space itself is only read."""
+
+    def __init__(self, space: pymunk.Space, given: Mapping[pymunk.Shape, float]) -> None:
+        self.space, self.given = space, dict(given)  # sagittas that the user has asked for (length)
+        self.bodies = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+
+    def copy(self, sagitta: float | None = None) -> tuple[pymunk.Space, list[pymunk.Body]]:
+        """A space like it, awake, without callbacks; outlines that know their curve sampled to `sagitta` (fraction of
+        their smallest extent), but for those given; and its bodies that move or are moved, in the original's order."""
+        space = self.space
+        made = pymunk.Space()
+        made.gravity, made.damping, made.iterations = space.gravity, space.damping, space.iterations
+        made.collision_slop, made.collision_bias = space.collision_slop, space.collision_bias
+        made.collision_persistence = space.collision_persistence
+        twins = {space.static_body: made.static_body}
+        for body in space.bodies:
+            if body.body_type == pymunk.Body.DYNAMIC:
+                twin = pymunk.Body(body.mass, body.moment)
+            else:
+                twin = pymunk.Body(body_type=body.body_type)
+            twins[body] = twin
+            _set(twin, body, ("center_of_gravity", "position", "angle"))
+            if body.body_type != pymunk.Body.STATIC:
+                _set(twin, body, ("velocity", "angular_velocity", "force", "torque"))
+            made.add(twin)
+        for shape in space.shapes:
+            if shape.body in twins and not shape.sensor:
+                made.add(_twin(shape, twins[shape.body], sagitta, self.given.get(shape)))
+        for joint in space.constraints:
+            if joint.a in twins and joint.b in twins:
+                made.add(_moved(joint, twins))
+        return made, [twins[body] for body in self.bodies]
+
+
+def _twin(shape: pymunk.Shape, body: pymunk.Body, sagitta: float | None, given: float | None) -> pymunk.Shape:
+    """A shape like it on another body."""
+    outline = vars(shape).get("outline")
+    if isinstance(outline, Outline):
+        if given is not None:
+            outline = outline.sample(given)
+        elif sagitta is not None and outline._resample is not None:
+            outline = outline.sample(sagitta * outline.smallest_extent)
+        twin = outline.add_to(body)
+    elif isinstance(shape, pymunk.Circle):
+        twin = pymunk.Circle(body, shape.radius, shape.offset)
+    elif isinstance(shape, pymunk.Segment):
+        twin = pymunk.Segment(body, shape.a, shape.b, shape.radius)
+    else:
+        assert isinstance(shape, pymunk.Poly)
+        twin = pymunk.Poly(body, shape.get_vertices(), radius=shape.radius)
+    _set(twin, shape, ("friction", "elasticity", "filter", "surface_velocity"))
+    return twin
+
+
+def _set(twin: Any, thing: Any, names: tuple[str, ...]) -> None:
+    """Give the twin these attributes: pymunk's setters are slow, so only where they differ."""
+    for name in names:
+        value = getattr(thing, name)
+        if getattr(twin, name) != value:
+            setattr(twin, name, value)
+
+
+def _moved(joint: pymunk.Constraint, twins: dict[pymunk.Body, pymunk.Body]) -> pymunk.Constraint:
+    """A joint like it between the twins of its bodies: pymunk's own pickling, bodies apart, without callbacks."""
+    bodies = [joint.a, joint.b]
+
+    class Write(pickle.Pickler):
+        def persistent_id(self, obj: Any) -> int | None:
+            if isinstance(obj, pymunk.Body):
+                return bodies.index(obj)
+            return -1 if isinstance(obj, FunctionType | MethodType) else None
+
+    class Read(pickle.Unpickler):
+        def persistent_load(self, pid: int) -> pymunk.Body | None:
+            return twins[bodies[pid]] if pid >= 0 else None
+
+    kept = io.BytesIO()
+    Write(kept).dump(joint)
+    kept.seek(0)
+    twin: pymunk.Constraint = Read(kept).load()
+    twin.pre_solve = twin.post_solve = None
+    return twin
+
+
+class Probe:
+    """Copies of a space run at settings, each once; what they cost is counted by `costs` (s)."""
+
+    def __init__(
+        self,
+        space: pymunk.Space,
+        frame: float,
+        frames: int,
+        stiffness: float | None,
+        given: Mapping[pymunk.Shape, float],
+    ) -> None:
+        self.original = Original(space, given)
+        self.bodies = self.original.bodies
+        self.frame, self.frames, self.stiffness = frame, frames, stiffness
+        self.spent = 0.0
+        shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
+        self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
+        self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
+        self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
+        outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
+        self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
+        self.sampled = any(outline._resample is not None for outline in outlines)
+        self.stands_in = bool(outlines)
+        self.pairs = float(len(self.bodies))  # that touch, on the average
+        self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
+        self._tracks: dict[tuple[Setting, float | None], Array] = {}
+        self._asked: set[int] = set()
+        self._touching: list[int] = []
+        self.begin: float | None = (
+            None  # depth after the first frame of the first run, over the smallest extent
+        )
+
+    # --- cost ---
+
+    def cost(self, setting: Setting) -> float:
+        """Processor time of a frame (s)."""
+        moving = int(self.free.sum())
+        if setting.level == "pymunk":
+            return costs.native_frame(moving, self.pairs, setting.steps, setting.sweeps)
+        return costs.area_frame([(moving, self.pairs, setting.steps)], setting.sweeps, self.points)
+
+    def look(self, seconds: float, first: Setting) -> None:
+        """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
+        self.frames = max(1, min(self.frames, int(seconds / (self.cost(first) + costs.SAMPLE_S))))
+
+    # --- runs ---
+
+    def forget(self) -> None:
+        """Let go of the copies and what they did."""
+        self._spaces.clear()
+        self._tracks.clear()
+
+    def track(self, setting: Setting, sagitta: float | None = None) -> Array:
+        """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
+        key = setting, sagitta
+        if key not in self._tracks:
+            self._tracks[key] = self.run(setting, sagitta, materials=None if self._tracks else {})[0]
+        return self._tracks[key]
+
+    def run(
+        self,
+        setting: Setting,
+        sagitta: float | None,
+        asked: Mapping[int, int] | None = None,
+        materials: Mapping[pymunk.Body, Any] | None = None,
+    ) -> tuple[Array, Seen]:
+        """A run, as `track` has it, where bodies have `asked` for substeps, by number; and, given `materials`, what it
+        shows."""
+        self.spent += self.cost(setting) * self.frames + costs.SAMPLE_S * min(SAMPLES, self.frames)
+        contact: AreaContact | None = None
+        if setting.level == "pymunk" or sagitta not in self._spaces:
+            self.spent += costs.COPY_BODY_S * len(self.bodies)
+        if setting.level == "pymunk":
+            space, bodies = self.original.copy()
+            smallest = float(self.extent[self.free].min(initial=math.inf))
+            space.collision_slop = setting.penetration * smallest if math.isfinite(smallest) else 0.0
+        else:
+            if sagitta not in self._spaces:
+                space, bodies = self.original.copy(sagitta)
+                made = attach(space, self.stiffness, penetration=setting.penetration)
+                self._spaces[sagitta] = made, made.snapshot(), bodies
+            contact, begin, bodies = self._spaces[sagitta]
+            contact.restore(begin)
+            contact.penetration, space = setting.penetration, contact.space
+            for i in self._asked | (asked or {}).keys():
+                contact.ask(bodies[i], (asked or {}).get(i))
+            self._asked = set(asked or {})
+        space.iterations = setting.sweeps
+        even = np.linspace(0, self.frames, min(SAMPLES, self.frames) + 1).astype(int)
+        ends = np.unique(
+            np.append(even, [1, 2, min(4, self.frames)][: self.frames])
+        )  # loads are found at first
+        states = np.zeros((len(ends), len(bodies), 6))
+        names = np.array([body.id for body in bodies], np.uintp)
+        states[0] = read(space, names)
+        index = {body: i for i, body in enumerate(bodies)}
+        seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
+        twins = {twin: body for twin, body in zip(bodies, self.bodies)}
+        made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
+        every = max(1, (len(ends) - 1) // NOTES)
+        try:
+            for k, frames in enumerate(np.diff(ends).tolist()):
+                if contact is None:
+                    for _ in range(frames * setting.steps):
+                        space.step(self.frame / setting.steps)
+                else:
+                    contact.step(self.frame, frames, steps=setting.steps)
+                states[k + 1] = read(space, names)
+                if materials is not None and (k == 0 or k % every == every - 1):
+                    self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
+        except SimulationError:
+            states[:] = math.nan
+        if self._touching:
+            self.pairs = sum(self._touching) / len(self._touching)
+            self._touching.clear()
+        return states[: len(states) if np.isfinite(states).all() else 0], seen
+
+    def _note(
+        self,
+        space: pymunk.Space,
+        contact: AreaContact | None,
+        h: float,
+        index: Mapping[pymunk.Body, int],
+        seen: Seen,
+        materials: Mapping[pymunk.Body, Any],
+    ) -> None:
+        fastest(space, seen.measured)
+        seen.touched[:] = False
+        links = [(joint.a, joint.b) for joint in space.constraints]
+        if contact is not None:
+            rows = contact.regions
+            measure(contact, rows, h, seen.measured, materials)
+            if self.begin is None:
+                self.begin = seen.measured.get("penetration", (0.0, None))[0]
+            self._touching.append(len(rows))
+            links += [(row["body_a"], row["body_b"]) for row in rows]
+            for ends in links[-len(rows) :] if len(rows) else []:
+                seen.touched[[index[end] for end in ends if end in index]] = True
+        groups = seen.groups
+        for a, b in links:
+            if a in index and b in index and groups[index[a]] != groups[index[b]]:
+                groups[groups == groups[index[b]]] = groups[index[a]]
+
+    def apart(self, one: Array, fine: Array) -> Array:
+        """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
+
+        A turn counts as what it moves the farthest point. What only turns is
+        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
+        """
+        if not len(one) or not len(fine):
+            return np.full(len(self.bodies), math.inf)
+        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0))
+        way = np.hypot(steps[:, :, 0], steps[:, :, 1]).sum(axis=0)
+        turned = self.reach * steps[:, :, 2].sum(axis=0)
+        far = np.maximum(way, turned)
+        gone = np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=0) / np.maximum(far, self.extent)
+        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, self.extent)
+        found: Array = np.maximum(gone, twisted)
+        spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
+        turns = (way < self.extent) & (turned > self.extent)
+        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
+        return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
+
+
+class Reference(NamedTuple):
+    """The finest run, and what it may be off."""
+
+    setting: Setting
+    track: Array
+    doubt: Array  # (bodies,)
+
+
+def reference(
+    probe: Probe, tolerance: float, sagitta: float | None, budget: float, least: Setting | None
+) -> tuple[Reference, list[tuple[Setting, Array]]]:
+    """Runs ever finer, until the last is off by nothing that matters, or the next would cost more than what is left of
+    the budget (s); and what the coarser ones are off. Runs that agree may all have missed what a finer one sees, bodies
+    that are struck in another order, say: so it is not enough that they do.
+
+    least: as fine as that at least.
+    """
+    runs: list[tuple[Setting, Array]] = []
+    doubt = np.full(len(probe.bodies), math.inf)
+    for j, steps in enumerate(LADDER):
+        depth = max(LEAST_DEPTH, ENOUGH * tolerance * 0.1**j)
+        setting = Setting("rigid", steps, FINE_SWEEPS, depth)
+        if least is not None:
+            setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))
+        if len(runs) > 1 and probe.spent + probe.cost(setting) * probe.frames > budget:
+            break
+        runs.append((setting, probe.track(setting, sagitta)))
+        if j:
+            near = [probe.apart(track, runs[-1][1]) for _, track in runs[-3:-1]]
+            doubt = near[-1] / (RATIO - 1.0)
+            if len(near) > 1:
+                doubt = np.maximum(doubt, near[0] / (RATIO**2 - 1.0))
+            if j > 2 and doubt.max(initial=0.0) <= ENOUGH * tolerance:
+                break
+    setting, track = runs[-1]
+    told = [(each, probe.apart(other, track) + doubt) for each, other in runs[:-1]]
+    return Reference(setting, track, doubt), [*told, (setting, doubt)]
+
+
+def read(space: pymunk.Space, names: NDArray[np.uintp]) -> Array:
+    """(bodies, 6) states of the bodies with these ids: place, angle, velocity, spin."""
+    fields = BodyFields.BODY_ID | BodyFields.POSITION | BodyFields.ANGLE
+    fields |= BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+    buffer = Buffer()
+    get_space_bodies(space, fields, buffer)
+    ids = np.frombuffer(buffer.int_buf(), np.uintp)
+    states = np.frombuffer(buffer.float_buf(), np.float64).reshape(len(ids), 6)
+    order = np.argsort(ids)
+    return states[order[np.searchsorted(ids, names, sorter=order)]]
