@@ -208,7 +208,6 @@ LONGER: set[str] = {
     "rigidarea.kernel.row",
     "rigidarea.kernel.tables",
     "rigidarea.outline",
-    "rigidarea.plan.facts",
     "rigidarea.plan.plan",
     "rigidarea.worlds",
 }

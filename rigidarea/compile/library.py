@@ -168,9 +168,7 @@ def _overload(library: Library, described: dict[str, Any]) -> Callable[..., Any]
             put(value, words)
         return words
 
-    def give(words: tuple[Any, ...]) -> Any:
-        return give_of(iter(words))
-
+    give: Callable[[tuple[Any, ...]], Any] = lambda words: give_of(iter(words))  # noqa: E731
     if _numbers(returns):
         give = operator.itemgetter(0)
     elif returns and set(returns) == {"of"} and all(map(_numbers, returns["of"])):

@@ -118,7 +118,7 @@ class Store:
         self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
         self.heard_pairs = np.zeros(0, np.uint64)  # and with one other
         # room for a copy of what a frame changes, and for places: made when a frame asks for it (`MORE_KEPT`)
-        self._kept = {"kept": np.zeros(0, np.uint8), "seen": np.zeros((0, 3))}
+        self._kept: dict[str, np.ndarray] = {"kept": np.zeros(0, np.uint8), "seen": np.zeros((0, 3))}
         self._keeps = False
         self._outlines: dict[int, tuple[int, HasRings]] = {}  # by id: number, and what keeps the id
         self._most = (0, 0)  # points and rings of the largest outline
@@ -158,7 +158,7 @@ class Store:
         tables = self.tables._asdict()
         if self._keeps:
             room = room_to_keep({name: array.nbytes for name, array in tables.items()})
-            if len(self._kept["kept"]) != room:
+            if self._kept["kept"].size != room:
                 self._kept = {
                     "kept": np.zeros(room, np.uint8),
                     "seen": np.zeros((len(self.tables.bodies), 3)),

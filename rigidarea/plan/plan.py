@@ -1,6 +1,6 @@
 """`plan(space, tolerance)`: the cheapest settings that are within a tolerance on a copy of a space, and why.
 
-A plan reads a space and changes nothing; `Plan.apply` makes it so. What is tried is in `search`, how in `probe`; which
+A plan reads a space and changes nothing; `Plan.apply` makes it so. What is tried is in `choose`, how in `probe`; which
 bodies bend is in `elastic`.
 """
 
@@ -18,9 +18,9 @@ from ..contact import AreaContact, SimulationError, attach, attached
 from ..gate import positive, truth, whole
 from ..outline import Outline
 from . import elastic
+from .choose import Found, Tried, search
 from .probe import Probe, Setting
 from .promise import unpromised
-from .search import Found, Tried, search
 from .table import Line, lines_of, text_of
 
 if TYPE_CHECKING:

@@ -22,11 +22,11 @@ def unpromised(
     smallest extent.
     """
     out = []
-    if share == 0.0:
+    if share == 0.0 and space.bodies:
         out.append(
             "anything: a copy alone would cost more than trying out may; plan for more seconds, or fewer bodies"
         )
-    elif share < 1.0:
+    elif share < 1.0 and space.bodies:
         out.append(f"what comes after the first {looked:.3g} s: so far it was tried out")
     if begin > OVERLAP:
         out.append(f"how bodies part that start {begin:.2g} of their size deep: by this solve's own law")

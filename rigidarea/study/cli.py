@@ -160,7 +160,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, start, worlds
+    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, many_worlds, start
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -205,7 +205,7 @@ def _bench(arguments: argparse.Namespace) -> int:
     elif arguments.what == "start":
         report = start.start()
     elif arguments.what == "worlds":
-        report = worlds.worlds(128 if arguments.quick else 1024)
+        report = many_worlds.worlds(128 if arguments.quick else 1024)
     else:
         report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
     _write(arguments, f"bench-{arguments.what}", report)

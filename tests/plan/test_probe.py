@@ -12,6 +12,7 @@ from harness.trial import at_settings
 from harness.unseen import box_dropped_askew, chain_on_a_peg, heavy_dropped, over_a_step
 from rigidarea.plan.probe import LADDER, RATIO, Original, Probe, Setting, reference
 from rigidarea.study.peers.base import record
+from rigidarea.study.user_space import space_of
 
 G = 9.81
 
