@@ -254,7 +254,7 @@ def run(program: str, seconds: float = 60, **variables: str) -> subprocess.Compl
         capture_output=True,
         text=True,
         timeout=seconds,
-        env={**os.environ, **variables},
+        env=environment(**variables),
     )
 
 
