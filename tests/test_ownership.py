@@ -3,7 +3,6 @@
 import copy
 import gc
 import itertools
-import os
 import pickle
 import subprocess
 import sys
