@@ -8,7 +8,9 @@ import pymunk
 import pytest
 
 import rigidarea as ra
+from harness import interrupts
 from harness.interrupts import COURSES, FRAMES, _bits
+from rigidarea.contact.arrays import Store
 from tests.test_ownership import places, steps
 
 DT = 1 / 60
@@ -113,3 +115,29 @@ def undisturbed_callbacks() -> list[bytes]:
         course.step(1)
         bits.append(_bits(course.space))
     return bits
+
+
+def test_an_interrupt_while_a_frame_asks_for_room_leaves_it_as_it_was(monkeypatch):
+    """With a joint among those that come to touch: it acts on nobody in the frame that could not begin."""
+    known, _ = interrupts.undisturbed("steps", False)
+    grow, left, raised = Store.grow_regions, [0], 0
+
+    def interrupted(store, n):
+        left[0] -= 1
+        if left[0] == 0:
+            raise KeyboardInterrupt
+        grow(store, n)
+
+    for calls in range(2, 6):  # the first makes the tables
+        left[0] = calls
+        with monkeypatch.context() as patch:
+            patch.setattr(Store, "grow_regions", interrupted)
+            course, done = interrupts.COURSES["steps"](False), 0
+            while done < interrupts.FRAMES:
+                try:
+                    course.step(1)
+                    done += 1
+                except KeyboardInterrupt:
+                    raised += 1
+                assert interrupts._bits(course.space) == known[done]
+    assert raised > 0

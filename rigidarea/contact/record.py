@@ -474,8 +474,6 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.pending = 2
         if not ask(s, REGISTER) or not _watch(s, load_tables(s), space, dt):
             return False
-    if not roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) and not ask(s, GROW):
-        return False
     look_at_partners(s, load_tables(s))
     if listened(s):
         _last(s, load_tables(s), dt)
@@ -493,8 +491,10 @@ def begin(s: Any, space: int, dt: float) -> bool:
         tables = load_tables(s)
         take_joints(s, tables, members(space, s.space_constraints))
         _look_at_jointed(s, tables)
+    # last: a joint that is not taken acts on bodies after a frame that could not begin
+    good = roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) or ask(s, GROW)
     lap(s, WATCHING)
-    return True
+    return bool(good)
 
 
 @callback("void(uintp, float64)")
