@@ -80,7 +80,7 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     ax.xaxis.set_minor_formatter("{x:.1g}")
     ax.axvline(1, color="#666666", lw=1)
     note = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "center"}
-    ax.annotate("* shown, not in the summary", (0, 0), (-8, -30), fontsize=8, **note)
+    ax.annotate("* shown, not judged", (0, 0), (-8, -30), fontsize=8, **note)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return save(figure, out, "bench-everyday")
 
