@@ -45,19 +45,25 @@ def statements(body: list[ast.stmt], inside_functions: bool) -> Iterator[ast.stm
             yield from statements(handler.body, inside_functions)
 
 
+def imported_from(node: ast.ImportFrom, module: str, path: Path) -> str:
+    """The absolute name of what a module imports from."""
+    base = node.module or ""
+    if node.level:
+        package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+        up = package.split(".")[: len(package.split(".")) - node.level + 1]
+        base = ".".join(up + ([base] if base else []))
+    return base
+
+
 def imports(path: Path, inside_functions: bool = False) -> set[str]:
     """Absolute names of the modules that a file imports."""
     module = name_of(path)
-    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     found = set()
     for node in statements(ast.parse(path.read_text()).body, inside_functions):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                up = package.split(".")[: len(package.split(".")) - node.level + 1]
-                base = ".".join(up + ([base] if base else []))
+            base = imported_from(node, module, path)
             found.add(base)
             found |= {f"{base}.{a.name}" for a in node.names if f"{base}.{a.name}" in MODULES}
     return found
@@ -143,16 +149,12 @@ def all_imports(module: str) -> set[str]:
     `from . import name` is an import of name, where that is a module and nothing that the package itself defines.
     """
     path = MODULES[module]
-    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
     found = set()
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom):
-            base = node.module or ""
-            if node.level:
-                up = package.split(".")[: len(package.split(".")) - node.level + 1]
-                base = ".".join(up + ([base] if base else []))
+            base = imported_from(node, module, path)
             names = {f"{base}.{alias.name}" for alias in node.names}
             found |= names & MODULES.keys() if names & MODULES.keys() else {base}
     return (found & MODULES.keys()) - {module}
