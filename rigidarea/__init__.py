@@ -6,10 +6,10 @@ space.step(1 / 60)  # as ever
 """
 
 from . import shapes
+from .chipmunk import REGIONS, AreaContact, SimulationError, attach, attached
 from .compile.chosen import backend
-from .contact import REGIONS, AreaContact, SimulationError, attach, attached
-from .outline import Outline
-from .overlap import OVERLAP, OVERLAPS, covers, overlap, overlaps
+from .geometry.outline import Outline
+from .overlap_queries import OVERLAP, OVERLAPS, covers, overlap, overlaps
 from .plan import Plan, plan
 from .queries import point_query, segment_query
 

@@ -36,7 +36,7 @@ MODULES = {
     "demo": "draw.demo",
     "case": "cases",
     "plan": "study.plan_command",
-    "run": "programs.run",
+    "run": "programs.run_program",
 }
 #: The extra that brings a module which commands need (README, "Set up").
 EXTRAS = {

@@ -20,9 +20,9 @@ import pymunk
 import shapely
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .arcs import Points
-from .outline import Outline
-from .overlap import overlap
+from .geometry.arcs import Points
+from .geometry.outline import Outline
+from .overlap_queries import overlap
 
 #: Largest sagitta of what is drawn in the place of an arc (length of the drawing: a pixel, where that is its unit).
 DETAIL = 0.05

@@ -18,9 +18,9 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
-from .contact import AreaContact, attach
-from .gate import ShapeAttributes
-from .outline import Outline
+from .chipmunk import AreaContact, attach
+from .geometry.gate import ShapeAttributes
+from .geometry.outline import Outline
 
 ENGINES = ("area", "pymunk")
 

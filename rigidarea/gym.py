@@ -17,9 +17,9 @@ import pymunk
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from .contact import attach
-from .gate import not_negative, whole
-from .outline import Outline
+from .chipmunk import attach
+from .geometry.gate import not_negative, whole
+from .geometry.outline import Outline
 
 PEG = (2.0, 6.0)
 """Width and length of the peg (cm); it points down its own -y."""

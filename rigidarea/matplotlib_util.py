@@ -14,11 +14,11 @@ from matplotlib.patches import PathPatch
 from matplotlib.path import Path
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .arcs import Points
 from .debug_draw import OutlineOptions
+from .geometry.arcs import Points
 
 if TYPE_CHECKING:
-    from .contact import AreaContact
+    from .chipmunk import AreaContact
 
 __all__ = ["DrawOptions"]
 

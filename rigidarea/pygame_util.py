@@ -15,11 +15,11 @@ import pymunk.pygame_util
 from numpy.typing import NDArray
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .arcs import Points
 from .debug_draw import OutlineOptions
+from .geometry.arcs import Points
 
 if TYPE_CHECKING:
-    from .contact import AreaContact
+    from .chipmunk import AreaContact
 
 __all__ = ["DrawOptions"]
 

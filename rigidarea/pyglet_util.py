@@ -13,11 +13,11 @@ import pyglet
 import pymunk.pyglet_util
 from pymunk.space_debug_draw_options import SpaceDebugColor
 
-from .arcs import Points
 from .debug_draw import OutlineOptions
+from .geometry.arcs import Points
 
 if TYPE_CHECKING:
-    from .contact import AreaContact
+    from .chipmunk import AreaContact
 
 __all__ = ["DrawOptions"]
 

@@ -9,10 +9,10 @@ import numpy as np
 import pymunk
 from pymunk import PointQueryInfo, SegmentQueryInfo, Vec2d
 
-from .arcs import Points, on_arc
-from .gate import numbers
-from .outline import Outline
-from .overlap import covers
+from .geometry.arcs import Points, on_arc
+from .geometry.gate import numbers
+from .geometry.outline import Outline
+from .overlap_queries import covers
 
 #: Every shape; pymunk's default.
 ANY = pymunk.ShapeFilter()

@@ -58,9 +58,11 @@ def machine() -> dict[str, Any]:
 
 
 def solver() -> str:
-    """Twelve digits that say on which solver a result was measured: a hash of the sources of kernels and contact."""
+    """Twelve digits that say on which solver a result was measured: a hash of the sources of what solves."""
     package = Path(__file__).parent
-    sources = sorted(path for room in ("kernel", "contact") for path in (package / room).glob("*.py"))
+    sources = sorted(
+        path for room in ("geometry", "contact", "chipmunk") for path in (package / room).glob("*.py")
+    )
     return hashlib.sha256(b"\0".join(path.read_bytes() for path in sources)).hexdigest()[:12]
 
 

@@ -22,8 +22,8 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from . import gym
-from .contact import attach
-from .gate import whole
+from .chipmunk import attach
+from .geometry.gate import whole
 from .worlds import Worlds
 
 FRAME = gym.FRAME

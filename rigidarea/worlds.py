@@ -3,7 +3,7 @@
     worlds = rigidarea.worlds.Worlds(space, 1024)  # or Worlds([one, another, ...], 1024)
     states = worlds.step(1 / 60, forces)
 
-A world is one block of memory (`contact/alone.py`); geometry is shared by all.
+A world is one block of memory (`chipmunk/alone.py`); geometry is shared by all.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ import pymunk
 from numpy.typing import ArrayLike, NDArray
 from pymunk._chipmunk_cffi import ffi
 
-from .contact import attached
-from .contact.image import BODY_BYTES, SHAPE_BYTES, Image
-from .contact.many import Many, WorldSnapshot
-from .contact.steppable import check_steppable
-from .gate import whole
-from .kernel.tables import SUBSTEP
-from .outline import positive
+from .chipmunk import attached
+from .chipmunk.many import Many, WorldSnapshot
+from .chipmunk.steppable import check_steppable
+from .chipmunk.world_image import BODY_BYTES, SHAPE_BYTES, Image
+from .contact.tables import SUBSTEP
+from .geometry.gate import whole
+from .geometry.outline import positive
 
 CONTACTS = np.dtype(
     [
@@ -140,8 +140,8 @@ class Worlds(Many):
 
     def _try_again(self, numbers: Any, forces: Any, dt: float, frames: int, states: Any) -> None:
         """Worlds whose tables were too small get more room, and the rest of their frames."""
-        from .contact import SimulationError
-        from .contact.alone import NOT_FINITE, TOO_SMALL, WORLD
+        from .chipmunk import SimulationError
+        from .chipmunk.alone import NOT_FINITE, TOO_SMALL, WORLD
 
         outcomes, done = self._field(WORLD, "outcome")[numbers], self._field(WORLD, "done")[numbers]
         broken = np.flatnonzero(outcomes == NOT_FINITE)
@@ -219,7 +219,7 @@ class Worlds(Many):
     @property
     def damping(self) -> NDArray[np.float64]:
         """(n,), in place: the share of its velocity that a body keeps in a unit of time."""
-        from .contact.alone import WORLD
+        from .chipmunk.alone import WORLD
 
         return self._field(WORLD, "damping")
 

@@ -26,7 +26,7 @@ import numpy as np
 import pymunk
 
 import rigidarea as ra
-from rigidarea.contact import arrays
+from rigidarea.chipmunk import arrays
 
 DT = 1 / 60
 PAGE = mmap.PAGESIZE

@@ -27,8 +27,9 @@ BACKEND = rigidarea.backend()
 
 
 def kernel_module(name: str) -> ModuleType:
-    """A kernel module by its short name: the one line that knows where in the package kernels live."""
-    return importlib.import_module(f"rigidarea.kernel.{name}")
+    """A kernel module by its short name: the one place that knows where in the package kernels live."""
+    room = "geometry" if (Path(rigidarea.__file__).parent / "geometry" / f"{name}.py").exists() else "contact"
+    return importlib.import_module(f"rigidarea.{room}.{name}")
 
 
 def _compiled(function: Callable[..., Any]) -> Any:

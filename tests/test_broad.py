@@ -11,7 +11,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.kernel import tables as t
+from rigidarea.contact import tables as t
 
 DT = 1 / 60
 OTHERS = pymunk.ShapeFilter(mask=0)

@@ -23,7 +23,7 @@ DAMAGES = {
 
 TINY = """
 import ctypes
-from rigidarea.kernel.jit import callback, njit
+from rigidarea.compile.jit import callback, njit
 
 @njit
 def twice(x):
@@ -197,14 +197,16 @@ def test_a_module_is_compiled_again_when_what_it_imports_changes(tmp_path):
         jit._imports.cache_clear()
         return {path.name for path in jit._imports(tmp_path / "some.py")[1]}
 
-    assert imported("from rigidarea.kernel.arc import on_arc") == {"arc.py"}
-    assert imported("def f():\n    from rigidarea.kernel import (\n        arc,\n        disc,\n    )\n") == {
+    assert imported("from rigidarea.geometry.arc import on_arc") == {"arc.py"}
+    assert imported(
+        "def f():\n    from rigidarea.geometry import (\n        arc,\n        disc,\n    )\n"
+    ) == {
         "arc.py",
         "disc.py",
         "__init__.py",
     }
-    kernels = ROOT / "rigidarea" / "kernel"
+    kernels = ROOT / "rigidarea" / "contact"
     assert kernels / "tables.py" in jit._imports(kernels / "row.py")[1]
-    assert ROOT / "rigidarea" / "store.py" in jit._imports(ROOT / "rigidarea" / "contact" / "record.py")[1]
+    assert kernels / "space_record.py" in jit._imports(ROOT / "rigidarea" / "chipmunk" / "record.py")[1]
     folders = {jit.cache_folder(path) for path in kernels.glob("*.py")}
     assert len(folders) == len(list(kernels.glob("*.py")))  # names and contents differ

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidarea.kernel import conjugate, row, tables
+from rigidarea.contact import conjugate, row, tables
 
 
 def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e9) -> SimpleNamespace:
@@ -49,7 +49,7 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
 
 def tables_of(s: SimpleNamespace) -> Any:
     """The kernels' tables; what the search does not look at is empty."""
-    from rigidarea.contact.arrays import Store
+    from rigidarea.chipmunk.arrays import Store
 
     return Store().tables._replace(
         bodies=s.bodies, rows=s.rows, factors=s.factors, mobility=s.mobility, live=s.live, counters=s.counters

@@ -70,7 +70,7 @@ NO_RESULT = re.compile(
     re.MULTILINE,
 )
 #: Derivations, not results: equations, constants of the law.
-DERIVED = {"theory", "architecture"}
+DERIVED = {"theory", "architecture", "contact"}
 
 
 def typed_figures(text: str) -> list[str]:

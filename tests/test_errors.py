@@ -406,11 +406,11 @@ def test_a_contact_alone_cannot_be_pickled_into_use():
 
 def test_an_unknown_layout_is_refused(monkeypatch):
     """Where Chipmunk's memory is not as it must be, attach says so, and the space stays pymunk's."""
-    from rigidarea.chipmunk import LayoutError
+    from rigidarea.chipmunk.structs import LayoutError
 
     module = sys.modules[
-        "rigidarea.contact.attach"
-    ]  # `rigidarea.contact.attach` is the function of that name
+        "rigidarea.chipmunk.attach"
+    ]  # `rigidarea.chipmunk.attach` is the function of that name
 
     def strange():
         raise LayoutError("a layout never seen")

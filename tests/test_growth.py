@@ -8,10 +8,10 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.contact.arrays import Store
-from rigidarea.contact.attach import AreaContact
-from rigidarea.contact.register import Register
-from rigidarea.kernel import tables
+from rigidarea.chipmunk.arrays import Store
+from rigidarea.chipmunk.attach import AreaContact
+from rigidarea.chipmunk.register import Register
+from rigidarea.contact import tables
 
 DT = 1 / 60
 

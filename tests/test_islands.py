@@ -10,7 +10,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.contact import AreaContact, attach
+from rigidarea.chipmunk import AreaContact, attach
 
 FRAME = 1 / 60
 

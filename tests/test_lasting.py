@@ -10,9 +10,10 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.chipmunk import address_of
-from rigidarea.contact import memory, moved
-from rigidarea.kernel.tables import (
+from rigidarea.chipmunk import memory, moved
+from rigidarea.chipmunk.structs import address_of
+from rigidarea.contact.space_record import LASTING, LASTING_STATE, SCRATCH
+from rigidarea.contact.tables import (
     ASKED,
     AWAKE,
     BOXED,
@@ -24,7 +25,6 @@ from rigidarea.kernel.tables import (
     USED_REGIONS,
     Tables,
 )
-from rigidarea.store import LASTING, LASTING_STATE, SCRATCH
 from test_snapshots import SCENES, attached, steps
 
 #: Of pairs, who Chipmunk's arbiter is; of shapes, where they are in lists and trees that are compared themselves.

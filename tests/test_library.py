@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 import rigidarea
-from rigidarea.kernel.memory import record
+from rigidarea.compile.raw_memory import record
 
 POINT = record([("x", "f8"), ("n", "i4")])
 
@@ -188,12 +188,12 @@ def test_what_python_calls_is_found() -> None:
     """By the names in the code of functions that are no kernels: those that are known to be called so."""
     found = set(kernels())
     assert {
-        "rigidarea.store.overlap_by_address",
-        "rigidarea.contact.geometry.read_shapes",
-        "rigidarea.kernel.bed.stored",
+        "rigidarea.contact.space_record.overlap_by_address",
+        "rigidarea.chipmunk.chipmunk_outlines.read_shapes",
+        "rigidarea.contact.bed.stored",
         "rigidarea.flexible.run.run_steps",
     } <= found
-    assert "rigidarea.kernel.meet.meet" not in found
+    assert "rigidarea.contact.meet.meet" not in found
 
 
 CALLING = """

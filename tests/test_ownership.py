@@ -338,7 +338,7 @@ PROGRAMS = {
         space = fill(Changing())
         ra.attach(space)
         steps(space, 3)
-        register = sys.modules["rigidarea.contact.register"].Register
+        register = sys.modules["rigidarea.chipmunk.register"].Register
         before = {body: (*body.position, body.angle, *body.velocity, *body.force) for body in space.bodies}
         enter, register._enter = register._enter, none
         try:
@@ -359,7 +359,7 @@ PROGRAMS = {
         ra.attach(space)
         space.on_collision(post_solve=add)
         while not space.shapes or len(space.bodies) < 10: space.step(DT)
-        register = sys.modules["rigidarea.contact.register"].Register
+        register = sys.modules["rigidarea.chipmunk.register"].Register
         ra.attached(space).energy()  # all is entered
         enter, register._enter = register._enter, none
         try:
@@ -379,7 +379,7 @@ PROGRAMS = {
             space.add(shape)
             space.remove(shape)
         counters = contact._store.tables.counters
-        tables = sys.modules["rigidarea.kernel.tables"]
+        tables = sys.modules["rigidarea.contact.tables"]
         assert counters[tables.ASKED] <= counters[tables.SHAPES], counters
         steps(space, 3)
     """,

@@ -8,7 +8,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.draw.window import Hand
-from rigidarea.overlap import covers
+from rigidarea.overlap_queries import covers
 
 
 @pytest.mark.parametrize("place", [(0, 0, 0), (3, -4, 0.7), (1e5, 2e5, -2.1)])

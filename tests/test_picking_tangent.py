@@ -13,7 +13,7 @@ import rigidarea as ra
 import tangent_drawings
 import tangent_families
 from conftest import PURE_PYTHON
-from rigidarea.overlap import covers
+from rigidarea.overlap_queries import covers
 
 FAMILIES = (*tangent_families.FAMILIES, *tangent_drawings.DRAWINGS)
 

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import rigidarea as ra
-from rigidarea.contact.arrays import Store
-from rigidarea.kernel import broad, order, tables, tree
-from rigidarea.kernel.place import place
+from rigidarea.chipmunk.arrays import Store
+from rigidarea.contact import broad, order, tables, tree
+from rigidarea.geometry.place import place
 
 SQUARE = ra.Outline([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
 BLADE = ra.Outline([(-1.5, -0.1), (1.5, -0.1), (1.5, 0.1), (-1.5, 0.1)])

@@ -9,7 +9,8 @@ import pytest
 import shapely
 
 import rigidarea as ra
-from rigidarea import arcs, shapes
+from rigidarea import shapes
+from rigidarea.geometry import arcs
 
 SQUARE = [(-1, -1, 0), (1, -1, 0), (1, 1, 0), (-1, 1, 0)]
 QUARTER = math.tan(math.pi / 8)  # bulge of a quarter turn

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rigidarea.kernel import tree
+from rigidarea.contact import tree
 
 N = 60
 

@@ -9,11 +9,11 @@ import pytest
 
 import rigidarea as ra
 from rigidarea import shapes
-from rigidarea.kernel.overlap import new_work
-from rigidarea.kernel.place import Pose, overlap_of_outlines
-from rigidarea.kernel.tables import BODY, REGION
-from rigidarea.kernel.turning import curvatures, turning_speed
-from rigidarea.overlap import _packed, _pose
+from rigidarea.contact.tables import BODY, REGION
+from rigidarea.geometry.overlap import new_work
+from rigidarea.geometry.place import Pose, overlap_of_outlines
+from rigidarea.geometry.turning import curvatures, turning_speed
+from rigidarea.overlap_queries import _packed, _pose
 
 
 def bodies(rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:

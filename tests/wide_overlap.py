@@ -2,7 +2,7 @@
 
 Every edge is cut wherever it meets an edge of the other outline; of each piece one point is asked, by its winding
 number, whether it lies inside the other; Green's theorem is summed over the pieces that do. No sign at an end decides
-anything, no order along a ring is needed for area and centroid, nothing is shared with `rigidarea.kernel`. Loops, for
+anything, no order along a ring is needed for area and centroid, nothing is shared with `rigidarea.contact`. Loops, for
 the number of regions, follow the pieces from crossing to crossing.
 """
 
@@ -153,7 +153,7 @@ def _green(p: np.ndarray, q: np.ndarray, radius: np.ndarray, angle: np.ndarray) 
         1,
     )
     # what lies between chord and arc, by Gauss along the arc about the chord's middle, where nothing cancels however
-    # flat it is (as in `rigidarea.arcs.segments`); moments of degree 4 in sine and cosine of half a turn
+    # flat it is (as in `rigidarea.geometry.arcs.segments`); moments of degree 4 in sine and cosine of half a turn
     size, half = np.abs(radius)[:, None], np.abs(angle)[:, None] / 2
     psi = half * _NODES
     along = size * np.sin(psi)

@@ -65,10 +65,10 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
             write_json(json.loads(file.read_text()), getattr(args, "json", None))
         raise
     if wanted:
-        from rigidarea.cases import film
+        from rigidarea.cases import stress_film
 
         told["film"] = str(
-            film.make(args.name, args.mode, args.mesh, args.contact, Path(out), cache_directory())
+            stress_film.make(args.name, args.mode, args.mesh, args.contact, Path(out), cache_directory())
         )
     write_json(told, file)
     return told
@@ -85,9 +85,9 @@ def _run(args: argparse.Namespace, out: Path | None) -> dict[str, Any]:
             from rigidarea.cases import hertz
 
             return hertz.run(out, cache=cache)
-        from rigidarea.cases import patch
+        from rigidarea.cases import patch_case
 
-        return patch.run(out)
+        return patch_case.run(out)
     if args.mesh is not None and not args.mesh > 0:
         raise ValueError(f"--mesh must be positive (millimetres), got {args.mesh}")
     if name == "pin-joint":
@@ -95,9 +95,11 @@ def _run(args: argparse.Namespace, out: Path | None) -> dict[str, Any]:
 
         return pin_joint.run(args.mode or "rigid", args.mesh or 1.0, args.contact, out, cache)
     if name == "geneva":
-        from rigidarea.cases import geneva, geneva_run
+        from rigidarea.cases import geneva_case, geneva_run
 
-        return geneva_run.run(args.mode or "compliant", args.mesh or geneva.MESH, args.contact, out, cache)
+        return geneva_run.run(
+            args.mode or "compliant", args.mesh or geneva_case.MESH, args.contact, out, cache
+        )
     from rigidarea.cases import gearbox_run
 
     return gearbox_run.run(args.mode or "compliant", args.mesh or 0.6, args.contact, out, cache)

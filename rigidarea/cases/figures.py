@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.flexible.integrate import Record, Simulation
 
 Array = NDArray[np.float64]
@@ -43,7 +43,7 @@ def nodal_forces(ax: Any, sim: Simulation, names: tuple[str, str], middle: Array
         on = w.touched[: w.touched[-1]]
         loads.append((1e3 * w.position[on], w.point_load[on]))
     largest = max(float(np.hypot(*f.T).max()) for _, f in loads)
-    for i, colour in ((0, report.RED), (1, report.BLUE)):
+    for i, colour in ((0, case_report.RED), (1, case_report.BLUE)):
         p = perimeter(sim, i)
         ax.plot(*p.T, ".-", ms=5, lw=1, color=colour)
         (at, f), name = loads[i], names[i]
@@ -86,50 +86,50 @@ def step_cost(
     event: the shortest contact event, in words and seconds. error: key of the rows and label, drawn between
     ``limits``. paper: its cheapest step.
     """
-    fig, axes = report.figure(10, 6.6, 2, 1, sharex=True, height_ratios=(3, 2))
+    fig, axes = case_report.figure(10, 6.6, 2, 1, sharex=True, height_ratios=(3, 2))
     top, bottom = axes
     ok = [r for r in rows if "failed" not in r]
     h = [r["step_s"] for r in ok]
-    top.loglog(h, [r["run_cpu_s"] for r in ok], "o-", color=report.BLUE, label="processor time")
+    top.loglog(h, [r["run_cpu_s"] for r in ok], "o-", color=case_report.BLUE, label="processor time")
     halved = [r for r in ok if r["steps_halved"]]
     failed = [r for r in rows if "failed" in r]
     for some, mark, colour, label in (
-        (halved, "s", report.PURPLE, "some steps halved"),
-        (failed, "X", report.RED, "given up: no convergence"),
+        (halved, "s", case_report.PURPLE, "some steps halved"),
+        (failed, "X", case_report.RED, "given up: no convergence"),
     ):
         if some:
             x, y = [r["step_s"] for r in some], [r["run_cpu_s"] for r in some]
             top.loglog(x, y, mark, ms=11, fillstyle="none", color=colour, label=label)
     twin = top.twinx()
-    twin.plot(h, [r["evaluations_a_step"] for r in ok], "^--", color=report.ORANGE)
+    twin.plot(h, [r["evaluations_a_step"] for r in ok], "^--", color=case_report.ORANGE)
     twin.set_ylim(0, None)
-    twin.set_ylabel("contact evaluations a step\n(Newton iterations, all attempts)", color=report.ORANGE)
+    twin.set_ylabel("contact evaluations a step\n(Newton iterations, all attempts)", color=case_report.ORANGE)
     twin.grid(False)
     top.set_ylabel(f"processor time of {duration:g} s (s)")
-    bottom.plot(h, [r[error[0]] for r in ok], "o-", color=report.BLUE)
+    bottom.plot(h, [r[error[0]] for r in ok], "o-", color=case_report.BLUE)
     bottom.set(xlabel="time step (s)", ylabel=error[1], ylim=limits)
     right = max(r["step_s"] for r in rows) * 1.4
     coarse = f"fewer than ten steps for {event[0]}"
     for ax in axes:
-        ax.axvspan(0.1 * event[1], right, color=report.ORANGE, alpha=0.12, lw=0, label=coarse)
+        ax.axvspan(0.1 * event[1], right, color=case_report.ORANGE, alpha=0.12, lw=0, label=coarse)
         if paper is not None:
-            ax.axvline(paper, color=report.BLACK, ls=":", label=f"the paper's optimum, {paper:g} s")
+            ax.axvline(paper, color=case_report.BLACK, ls=":", label=f"the paper's optimum, {paper:g} s")
     top.set_xlim(min(h) / 1.4, right)
     fig.legend(*top.get_legend_handles_labels(), loc="outside upper center", ncol=3, fontsize=9)
-    report.save(fig, out, name)
+    case_report.save(fig, out, name)
 
 
 def iteration_history(out: Path, name: str, records: dict[float, Record], until: float) -> None:
     """The paper's Fig. 20 and 28: Newton iterations over time, a panel a step."""
-    fig, axes = report.figure(10, 1 + 2 * len(records), len(records), 1, sharex=True, sharey=True)
+    fig, axes = case_report.figure(10, 1 + 2 * len(records), len(records), 1, sharex=True, sharey=True)
     top = max(r.iterations[r.t <= until].max() for r in records.values())
     for ax, (h, r) in zip(axes, records.items(), strict=True):
         keep = r.t <= until
-        ax.plot(r.t[keep], r.iterations[keep], ".", ms=3, color=report.BLUE)
+        ax.plot(r.t[keep], r.iterations[keep], ".", ms=3, color=case_report.BLUE)
         mean = r.iterations[keep].mean()
-        ax.axhline(mean, color=report.ORANGE, label=f"mean {mean:.2f}")
+        ax.axhline(mean, color=case_report.ORANGE, label=f"mean {mean:.2f}")
         ax.set(ylabel="Newton\niterations", title=f"h = {1e6 * h:g} µs", ylim=(0, top + 1))
         ax.legend(loc="upper right", frameon=True, framealpha=0.9, edgecolor="none")
         ax.yaxis.get_major_locator().set_params(integer=True)
     axes[-1].set_xlabel("time (s)")
-    report.save(fig, out, name)
+    case_report.save(fig, out, name)

@@ -36,7 +36,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
@@ -153,7 +153,7 @@ def simulation(
 
 def through_hook(duration: float, addendum: float = ADDENDUM) -> Record:
     """The rigid level: exact flanks, through the pymunk hook."""
-    from rigidarea.cases.hook import turn
+    from rigidarea.cases.rigid_level import turn
 
     pinion, wheel = outlines(addendum)
     return turn(
@@ -232,7 +232,7 @@ def mesh_sweep(
     mode: str, contact: str, duration: float, addendum: float, refine: int, cache: Path | None
 ) -> Iterator[dict[str, Any]]:
     """One row a mesh of Table 6."""
-    clock = report.Clock
+    clock = case_report.Clock
     for m in MESHES:
         setup = clock()
         sim = simulation(mode, m, contact, addendum=addendum, refine=refine, cache=cache)

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
-from rigidarea.cases import figures, gear_statics, report
+from rigidarea.cases import case_report, figures, gear_statics
 from rigidarea.cases import gearbox as gb
 from rigidarea.flexible.element import stiffness
 from rigidarea.flexible.integrate import Record, Simulation
@@ -33,10 +33,10 @@ def draw(
     _load_sharing(out)
     r = _three_pairs(sim)
     _displacements(out, sim, (made[0][1], made[1][1]), r)
-    fig, ax = report.figure(8.4, 8)
+    fig, ax = case_report.figure(8.4, 8)
     figures.nodal_forces(ax, sim, NAMES, 1e3 * r[r[:, 0].argmax(), 3:5], 1.2)
     ax.set_title(f"nodal forces of the pair that carries most, t = {sim.time:.3f} s, mesh {mesh_mm:g} mm")
-    report.save(fig, out, "gearbox_fig24")
+    case_report.save(fig, out, "gearbox_fig24")
     if "dampers" in results:
         _dampers(out, results["dampers"])
     if "meshes" in results and "variants" in results:
@@ -59,8 +59,8 @@ def draw(
 
 def _configuration(out: Path, sim: Simulation) -> None:
     """Fig. 21."""
-    fig, ax = report.figure(10, 7.4)
-    for i, (colour, at) in enumerate(((report.GREEN, 0.0), (report.BLACK, gb.CENTRES))):
+    fig, ax = case_report.figure(10, 7.4)
+    for i, (colour, at) in enumerate(((case_report.GREEN, 0.0), (case_report.BLACK, gb.CENTRES))):
         ax.fill(*figures.perimeter(sim, i).T, facecolor=colour, alpha=0.12)
         ax.plot(
             *figures.perimeter(sim, i).T,
@@ -77,27 +77,27 @@ def _configuration(out: Path, sim: Simulation) -> None:
         title=f"t = 0; module {1e3 * gb.MODULE:g} mm, addendum {gb.ADDENDUM:.4f} modules",
     )
     fig.legend(loc="outside lower center", ncol=2)
-    report.save(fig, out, "gearbox_fig21")
+    case_report.save(fig, out, "gearbox_fig21")
 
 
 def _speeds(out: Path, r: Record, results: dict[str, Any]) -> None:
     """Fig. 25, and the ratio in its steady state."""
-    fig, (top, bottom) = report.figure(10, 6.4, 2, 1, height_ratios=(3, 2))
-    top.plot(r.t, r.hub_rate[:, 0], color=report.BLUE, label="pinion")
-    top.plot(r.t, -r.hub_rate[:, 1], color=report.RED, label="wheel (turns the other way)")
+    fig, (top, bottom) = case_report.figure(10, 6.4, 2, 1, height_ratios=(3, 2))
+    top.plot(r.t, r.hub_rate[:, 0], color=case_report.BLUE, label="pinion")
+    top.plot(r.t, -r.hub_rate[:, 1], color=case_report.RED, label="wheel (turns the other way)")
     top.set(xlabel="time (s)", ylabel="angular velocity (rad/s)")
     top.legend(loc="lower right")
     steady = r.t >= gb.RAMP
     bottom.plot(
         r.t[steady],
         -r.hub_rate[steady, 1] / r.hub_rate[steady, 0],
-        color=report.BLUE,
+        color=case_report.BLUE,
         lw=0.8,
         label=f"ours: mean {results['mean_ratio']:.6f}, RMSE {results['ratio_rmse_percent']:.4f} %",
     )
     bottom.axhline(
         gb.IDEAL,
-        color=report.BLACK,
+        color=case_report.BLACK,
         ls="--",
         label=f"23/57 = {gb.IDEAL:.6f} (the paper: mean 0.4035, RMSE 0.3137 %)",
     )
@@ -108,12 +108,12 @@ def _speeds(out: Path, r: Record, results: dict[str, Any]) -> None:
         xlim=(0.2, 0.5),
     )
     bottom.legend(loc="upper left", ncol=2, fontsize=9)
-    report.save(fig, out, "gearbox_fig25")
+    case_report.save(fig, out, "gearbox_fig25")
 
 
 def _pressure_angle(out: Path, records: dict[str, Record], results: dict[str, Any]) -> None:
     """Fig. 26, for both readings of the teeth."""
-    fig, axes = report.figure(10, 7, 2, 1, sharex=True, sharey=True)
+    fig, axes = case_report.figure(10, 7, 2, 1, sharex=True, sharey=True)
     rows = (
         ("main", results, f"contact ratio {results['contact_ratio_analytic']:.2f}, the paper's"),
         ("standard", results["standard_teeth"], "standard teeth, contact ratio 1.68"),
@@ -123,13 +123,13 @@ def _pressure_angle(out: Path, records: dict[str, Record], results: dict[str, An
         on = np.hypot(*r.force.T) > 0
         resultant = np.degrees(np.arctan2(r.force[on, 0], r.force[on, 1]))
         for values, colour, name, mark in (
-            (resultant, report.ORANGE, "resultant", "_resultant"),
-            (gb.leading_pair(r.regions[on]), report.BLUE, "leading pair", ""),
+            (resultant, case_report.ORANGE, "resultant", "_resultant"),
+            (gb.leading_pair(r.regions[on]), case_report.BLUE, "leading pair", ""),
         ):
             mean, std = (row[f"pressure_angle{mark}_{k}_deg"] for k in ("mean", "std"))
             label = f"{name}: {mean:.2f} ± {std:.2f}° from 0.2 s"
             ax.plot(r.t[on], values, ".", ms=1.5, color=colour, label=label)
-        ax.axhline(20, ls="--", color=report.BLACK, label="nominal")
+        ax.axhline(20, ls="--", color=case_report.BLACK, label="nominal")
         ax.set(ylabel="pressure angle (°)", ylim=(15, 25), title=title)
         ax.legend(
             loc="lower right",
@@ -141,17 +141,19 @@ def _pressure_angle(out: Path, records: dict[str, Record], results: dict[str, An
             fontsize=9,
         )
     axes[1].set_xlabel("time (s)")
-    report.save(fig, out, "gearbox_fig26")
+    case_report.save(fig, out, "gearbox_fig26")
 
 
 def _load_sharing(out: Path) -> None:
-    fig, axes = report.figure(10, 6.6, 2, 1, sharex=True, sharey=True)
+    fig, axes = case_report.figure(10, 6.6, 2, 1, sharex=True, sharey=True)
     for ax, addendum in zip(axes, (gb.ADDENDUM, gb.STANDARD), strict=True):
         row, light = gear_statics.light_load(addendum)
         x = np.array(light["angle"]) * gb.TEETH[0] / (2 * np.pi)
-        ax.step(x, light["pairs"], where="mid", color=report.BLUE, label="pairs in contact")
-        ax.plot(x, light["share_analytic"], "-", lw=4, color=report.YELLOW, label="largest share, analytic")
-        ax.plot(x, light["share"], ".", ms=4, color=report.BLACK, label="largest share of the load")
+        ax.step(x, light["pairs"], where="mid", color=case_report.BLUE, label="pairs in contact")
+        ax.plot(
+            x, light["share_analytic"], "-", lw=4, color=case_report.YELLOW, label="largest share, analytic"
+        )
+        ax.plot(x, light["share"], ".", ms=4, color=case_report.BLACK, label="largest share of the load")
         ax.set(
             ylabel="pairs, share",
             ylim=(0, 2.6),
@@ -160,7 +162,7 @@ def _load_sharing(out: Path) -> None:
         )
         ax.legend(ncol=3, loc="upper center", fontsize=9)
     axes[1].set_xlabel("pinion angle (pitches)")
-    report.save(fig, out, "gearbox_load_sharing")
+    case_report.save(fig, out, "gearbox_load_sharing")
 
 
 def _three_pairs(sim: Simulation) -> Array:
@@ -204,7 +206,7 @@ def displacement(mesh: Mesh, loads: Array) -> Array:
 
 def _displacements(out: Path, sim: Simulation, meshes: tuple[Mesh, Mesh], regions: Array) -> None:
     """Fig. 23."""
-    fig, ax = report.figure(11, 8)
+    fig, ax = case_report.figure(11, 8)
     ax.grid(False)
     sides = (("viridis", "left"), ("plasma", "right"))
     for i, ((colours, side), mesh) in enumerate(zip(sides, meshes, strict=True)):
@@ -220,7 +222,7 @@ def _displacements(out: Path, sim: Simulation, meshes: tuple[Mesh, Mesh], region
         bar.set_label(f"displacement of the {NAMES[i]} relative to its hub (µm)")
     longest = regions[:, 0].max()
     for f, nx, ny, x, y in regions:
-        for sign, colour in ((-1, report.RED), (1, report.GREEN)):
+        for sign, colour in ((-1, case_report.RED), (1, case_report.GREEN)):
             tip = 1e3 * np.array([x, y]) + sign * 5 * f / longest * np.array([nx, ny])
             ax.annotate(
                 "",
@@ -246,16 +248,16 @@ def _displacements(out: Path, sim: Simulation, meshes: tuple[Mesh, Mesh], region
         ylabel="y (mm)",
         title=f"contact forces (red: on the pinion, green: on the wheel) and pressure angles, t = {sim.time:.3f} s",
     )
-    report.save(fig, out, "gearbox_fig23")
+    case_report.save(fig, out, "gearbox_fig23")
 
 
 def _dampers(out: Path, rows: list[dict[str, Any]]) -> None:
     """Fig. 22: the paper's two means, for both definitions of the angle."""
-    fig, axes = report.figure(10, 4.6, 1, 2, sharex=True)
+    fig, axes = case_report.figure(10, 4.6, 1, 2, sharex=True)
     for ax, mark, name in ((axes[0], "", "leading pair"), (axes[1], "_resultant", "resultant")):
         x = [d["mean_ratio"] for d in rows]
         y = [d[f"pressure_angle{mark}_mean_deg"] for d in rows]
-        ax.plot(x, y, "o-", color=report.BLUE, lw=1)
+        ax.plot(x, y, "o-", color=case_report.BLUE, lw=1)
         for d, a, b in zip(rows, x, y, strict=True):
             ax.annotate(f"{d['damper']:g}", (a, b), xytext=(6, 4), textcoords="offset points")
             if d["damper"] == gb.DAMPER:
@@ -264,11 +266,11 @@ def _dampers(out: Path, rows: list[dict[str, Any]]) -> None:
                     b,
                     "*",
                     ms=16,
-                    color=report.RED,
+                    color=case_report.RED,
                     label="the paper's choice (numbers: damper in N m s/rad)",
                 )
-        ax.axhline(20, ls="--", color=report.BLACK)
-        ax.axvline(gb.IDEAL, ls="--", color=report.BLACK)
+        ax.axhline(20, ls="--", color=case_report.BLACK)
+        ax.axvline(gb.IDEAL, ls="--", color=case_report.BLACK)
         ax.ticklabel_format(useOffset=False)
         ax.locator_params(axis="x", nbins=4)
         ax.margins(0.15)
@@ -276,51 +278,55 @@ def _dampers(out: Path, rows: list[dict[str, Any]]) -> None:
             xlabel="mean transmission ratio", ylabel="mean pressure angle (°)", title=f"angle of the {name}"
         )
     fig.legend(*axes[0].get_legend_handles_labels(), loc="outside upper center")
-    report.save(fig, out, "gearbox_fig22")
+    case_report.save(fig, out, "gearbox_fig22")
 
 
 def _meshes(out: Path, results: dict[str, Any]) -> None:
     """Fig. 27 and Table 6."""
-    fig, (ax, cost) = report.figure(12, 5.4, 1, 2, width_ratios=(3, 2))
+    fig, (ax, cost) = case_report.figure(12, 5.4, 1, 2, width_ratios=(3, 2))
     ratio = results["contact_ratio_analytic"]
     for rows, style, colour, label in (
-        (results["meshes"], "o-", report.BLUE, f"ours, contact ratio {ratio:.2f}, fine flanks on the mesh's edges"),
-        (results["meshes_node_perimeter"], "^-", report.SKY, f"ours, {ratio:.2f}, mesh nodes as perimeter"),
-        (results["standard_teeth"]["meshes"], "v-", report.ORANGE, "ours, standard teeth (1.68)"),
+        (results["meshes"], "o-", case_report.BLUE, f"ours, contact ratio {ratio:.2f}, fine flanks on edges"),
+        (results["meshes_node_perimeter"], "^-", case_report.SKY, f"ours, {ratio:.2f}, mesh nodes as perimeter"),
+        (results["standard_teeth"]["meshes"], "v-", case_report.ORANGE, "ours, standard teeth (1.68)"),
     ):  # fmt: skip
         x = [m["mesh_mm"] for m in rows]
         ax.semilogy(x, [m["ratio_rmse_percent"] for m in rows], style, color=colour, label=label)
         cost.semilogy(x, [m["run_cpu_s"] for m in rows], style, color=colour)
     ax.semilogy(
-        gb.MESHES, gb.PAPER["table_6"]["rmse_percent"], "s--", color=report.BLACK, label="the paper, Table 6"
+        gb.MESHES,
+        gb.PAPER["table_6"]["rmse_percent"],
+        "s--",
+        color=case_report.BLACK,
+        label="the paper, Table 6",
     )
-    cost.semilogy(gb.MESHES, gb.PAPER["table_6"]["wall_s"], "s--", color=report.BLACK)
-    cost.axhline(0.5, color=report.RED, ls=":")
+    cost.semilogy(gb.MESHES, gb.PAPER["table_6"]["wall_s"], "s--", color=case_report.BLACK)
+    cost.axhline(0.5, color=case_report.RED, ls=":")
     cost.annotate(
-        "real time", (1.2, 0.5), xytext=(0, 4), textcoords="offset points", color=report.RED, ha="right"
+        "real time", (1.2, 0.5), xytext=(0, 4), textcoords="offset points", color=case_report.RED, ha="right"
     )
     ax.set(xlabel="mesh size (mm)", ylabel="RMSE of the transmission ratio (%)")
     ax.set_yticks([0.2, 0.3, 0.5, 1.0, 1.5], ["0.2", "0.3", "0.5", "1", "1.5"])
     ax.minorticks_off()
     cost.set(xlabel="mesh size (mm)", ylabel="processor time of 0.5 s (s)")
     fig.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncol=2, fontsize=9)
-    report.save(fig, out, "gearbox_fig27")
+    case_report.save(fig, out, "gearbox_fig27")
 
 
 def _variants(out: Path, rows: list[dict[str, Any]]) -> None:
     """What the ripple and the pressure angle depend on: everything the paper leaves open."""
-    fig, (left, right) = report.figure(11, 5, 1, 2, sharey=True)
+    fig, (left, right) = case_report.figure(11, 5, 1, 2, sharey=True)
     y = np.arange(len(rows))[::-1]
-    left.barh(y, [v["ratio_rmse_percent"] for v in rows], color=report.BLUE)
-    left.axvline(0.2753, color=report.BLACK, ls="--", label="the paper's finest mesh")
+    left.barh(y, [v["ratio_rmse_percent"] for v in rows], color=case_report.BLUE)
+    left.axvline(0.2753, color=case_report.BLACK, ls="--", label="the paper's finest mesh")
     left.set_yticks(y, [v["variant"] for v in rows])
     left.set(xlabel="RMSE of the ratio (%)")
     left.legend(loc="lower right", frameon=True, framealpha=0.9, edgecolor="none")
     for mark, colour, shape, name in (
-        ("", report.BLUE, "o", "leading pair"),
-        ("_on_path", report.GREEN, "^", "pairs on the path of contact"),
-        ("_resultant", report.ORANGE, "s", "resultant"),
-        ("_all_pairs", report.RED, "x", "all pairs"),
+        ("", case_report.BLUE, "o", "leading pair"),
+        ("_on_path", case_report.GREEN, "^", "pairs on the path of contact"),
+        ("_resultant", case_report.ORANGE, "s", "resultant"),
+        ("_all_pairs", case_report.RED, "x", "all pairs"),
     ):
         right.plot(
             [v[f"pressure_angle{mark}_mean_deg"] for v in rows],
@@ -330,9 +336,9 @@ def _variants(out: Path, rows: list[dict[str, Any]]) -> None:
             fillstyle="none",
             label=name,
         )
-    right.axvspan(19.9, 20.1, color=report.BLACK, alpha=0.1, lw=0)
+    right.axvspan(19.9, 20.1, color=case_report.BLACK, alpha=0.1, lw=0)
     right.set(xlabel="mean pressure angle (°); grey: 20 ± 0.1", xlim=(19.5, 23.5))
     fig.legend(*right.get_legend_handles_labels(), loc="outside upper right", ncol=4, fontsize=9)
     for ax in (left, right):
         ax.grid(axis="y", visible=False)
-    report.save(fig, out, "gearbox_variants")
+    case_report.save(fig, out, "gearbox_variants")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.cases.mechanism import main_run, step_sweep
 from rigidarea.flexible.integrate import Record, Simulation
 
@@ -60,7 +60,7 @@ def run(
         "refine": REFINE,
         "pressure_angle": "of the pair that carries most, at each instant",
     }
-    case = report.Case("gearbox", settings, PAPER, duration, out)
+    case = case_report.Case("gearbox", settings, PAPER, duration, out)
 
     def make(addendum: float = ADDENDUM, damper: float = DAMPER) -> Simulation:
         return simulation(mode, mesh_mm, contact, addendum=addendum, damper=damper, cache=cache)
@@ -82,22 +82,22 @@ def run(
     r, results = one(ADDENDUM)
     case.keep(**results)
     records = {"main": r}
-    report.say("gearbox: standard teeth")
+    case_report.say("gearbox: standard teeth")
     records["standard"], standard = one(STANDARD)
     case.keep(standard_teeth=standard)
     if sweeps:
         for key, addendum, refine in (("meshes", ADDENDUM, REFINE), ("meshes_node_perimeter", ADDENDUM, 1)):
-            report.say(f"gearbox: {key}")
+            case_report.say(f"gearbox: {key}")
             rows: list[dict[str, Any]] = []
             for row in mesh_sweep(mode, contact, duration, addendum, refine, cache):
                 rows.append(row)
                 case.keep(**{key: rows})
-        report.say("gearbox: standard teeth, meshes")
+        case_report.say("gearbox: standard teeth, meshes")
         standard["meshes"] = []
         for row in mesh_sweep(mode, contact, duration, STANDARD, REFINE, cache):
             standard["meshes"].append(row)
             case.keep(standard_teeth=standard)
-        report.say("gearbox: variants, dampers, steps")
+        case_report.say("gearbox: variants, dampers, steps")
         variants: list[dict[str, Any]] = []
         for name, keys in VARIANTS:
             variants.append(variant(name, keys, contact, duration))
@@ -111,7 +111,7 @@ def run(
             steps.append(row)
             records[f"step {row['step_s']:g}"] = record
             case.keep(steps=steps)
-        report.say("gearbox: mesh stiffness by FE statics")
+        case_report.say("gearbox: mesh stiffness by FE statics")
         case.keep(mesh_stiffness=gear_statics.mesh_stiffness(cache=cache))
         standard["mesh_stiffness"] = gear_statics.mesh_stiffness(STANDARD, cache=cache)
         case.keep(standard_teeth=standard, tooth_compliance=gear_statics.tooth_compliance(cache))

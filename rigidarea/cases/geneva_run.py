@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.cases.mechanism import main_run, step_sweep
 from rigidarea.flexible.integrate import Simulation
 
-from .geneva import (
+from .geneva_case import (
     DAMPER,
     DUE,
     MESH,
@@ -56,7 +56,7 @@ def run(
         "start_angle_deg": float(np.degrees(start)),
         "refine": REFINE,
     }
-    case = report.Case("geneva", settings, PAPER, duration, out)
+    case = case_report.Case("geneva", settings, PAPER, duration, out)
     make()
     case.clock.setup()
     hook = through_hook if mode == "rigid" and contact == "area" else None
@@ -64,13 +64,13 @@ def run(
     case.keep(**measure(r, start, 6), **seconds)
     records = {}
     if sweeps:
-        report.say("geneva: other numbers of slots")
+        case_report.say("geneva: other numbers of slots")
         rows: list[dict[str, Any]] = []
         for n in (4, 5, 6, 8):
             s, a = make(n)
             rows.append(measure(s.run(4.4, STEP), a, n))
             case.keep(slot_numbers=rows)
-        report.say("geneva: stiffness, steps")
+        case_report.say("geneva: stiffness, steps")
         stiffness: list[dict[str, Any]] = []
         for k in (K / 4, K, 4 * K):
             s, a = make(k=k)

@@ -18,14 +18,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, build, workspace
+from rigidarea.flexible.boundary_regions import arcs
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape, State
-from rigidarea.flexible.region import arcs
 from rigidarea.flexible.statics import solve
 
 Array = NDArray[np.float64]
@@ -217,7 +217,7 @@ def run(
         "stiffness_predicted_pa_per_m": STIFF,
         "divisions": list(divisions),
     }
-    case = report.Case("hertz", settings, PAPER, 0.0, out)
+    case = case_report.Case("hertz", settings, PAPER, 0.0, out)
     readings: dict[str, Any] = {}
     curves: dict[Any, Any] = {}
     for name, radius in (("equations", 0.5 * RADIUS), ("printed", RADIUS)):
@@ -226,7 +226,7 @@ def run(
     at = readings["equations"]["meshes"][COUNTS.index(5000)]
     case.keep(**{key: at[key] for key in at if key != "element_m"}, readings=readings)
     case.clock.setup()
-    report.say("hertz: predicted, full FE statics")
+    case_report.say("hertz: predicted, full FE statics")
     studies = []
     for d in divisions:
         studies.append(predicted(d, cache=cache))
@@ -256,7 +256,7 @@ def _figures(
     order: float,
 ) -> None:
     """Fig. 4, both readings and the prediction; Fig. 5, and the prediction's convergence."""
-    fig, axes = report.figure(10, 4.6, 1, 2)
+    fig, axes = case_report.figure(10, 4.6, 1, 2)
     x = np.linspace(-1, 1, 400)
     titles = {
         "equations": "R* = R/2, as Eq. 27 says: p_max",
@@ -264,11 +264,11 @@ def _figures(
     }
     for ax, name in zip(axes, titles, strict=True):
         a, peak = readings[name]["half_width_theory_m"], readings[name]["p_max_theory_pa"]
-        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=report.SKY, lw=4, label=f"Hertz: {peak:.3f} Pa")
+        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=case_report.SKY, lw=4, label=f"Hertz: {peak:.3f} Pa")
         for n, marker, colour, every in (
-            (500, "o", report.RED, 1),
-            (1000, "s", report.GREEN, 1),
-            (5000, ".", report.BLACK, 3),
+            (500, "o", case_report.RED, 1),
+            (1000, "s", case_report.GREEN, 1),
+            (5000, ".", case_report.BLACK, 3),
         ):
             c = curves[name, n]
             ax.plot(
@@ -288,15 +288,15 @@ def _figures(
         best["x"],
         best["pressure"],
         "-",
-        color=report.ORANGE,
+        color=case_report.ORANGE,
         lw=1,
         label=f"predicted, FE statics: {best['p_max_pa']:.3f} Pa",
     )
     for ax in axes:
         ax.legend(loc="lower center", fontsize=9)
-    report.save(fig, out, "hertz_fig4")
-    fig, (left, right) = report.figure(11, 5.2, 1, 2, width_ratios=(3, 2))
-    for name, colour in (("equations", report.BLUE), ("printed", report.RED)):
+    case_report.save(fig, out, "hertz_fig4")
+    fig, (left, right) = case_report.figure(11, 5.2, 1, 2, width_ratios=(3, 2))
+    for name, colour in (("equations", case_report.BLUE), ("printed", case_report.RED)):
         study = readings[name]
         h = [r["element_m"] for r in study["meshes"]]
         for kind, style, text in (("_literal", "o--", "Alg. 3 literally"), ("", "s-", "balanced")):
@@ -308,12 +308,12 @@ def _figures(
                 fillstyle="none" if kind else "full",
                 label=f"{text}, a = {study['half_width_theory_m']:.3f} m, order {study['order' + kind]:.2f}",
             )
-    left.axhline(0.37, color=report.BLACK, ls=":", label="the paper, 5000 nodes: 0.37 %")
+    left.axhline(0.37, color=case_report.BLACK, ls=":", label="the paper, 5000 nodes: 0.37 %")
     left.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
     left.set_title("calibrated; orders towards each one's own limit (circles are no parabolas)", fontsize=10)
     size = half_width(0.5 * RADIUS) / np.array([s["division"] for s in studies])
     error = np.array([s["pressure_error_percent"] for s in studies])
-    right.loglog(size, error, "o-", color=report.BLUE, label=f"order {order:.2f}")
+    right.loglog(size, error, "o-", color=case_report.BLUE, label=f"order {order:.2f}")
     right.set(xlabel="element size (m)", ylabel="RMS error of the pressure profile (%)")
     right.set_title("predicted, FE statics", fontsize=10)
     right.set_xticks(size, [f"{x:.3f}" for x in size])
@@ -321,4 +321,4 @@ def _figures(
     right.minorticks_off()
     right.legend()
     fig.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=2, fontsize=9)
-    report.save(fig, out, "hertz_fig5")
+    case_report.save(fig, out, "hertz_fig5")

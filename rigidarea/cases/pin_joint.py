@@ -21,7 +21,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import report
+from rigidarea.cases import case_report
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
@@ -260,7 +260,7 @@ def run(
     duration: float = 1.2,
 ) -> dict[str, Any]:
     """Ten bounces at one level, beside the exact rigid answers; then area and STS on the paper's three meshes."""
-    clock = report.Clock()
+    clock = case_report.Clock()
     reference = exact()
     if mode == "rigid" and contact == "area":
         clock.setup()
@@ -272,7 +272,7 @@ def run(
         t, y, force = r.t, r.x[:, 0, 1], -r.force[:, 1]
         level = y + 0.5 * (r.v[:, 0, :2] ** 2).sum(1) / GRAVITY
     measured = measure(t, y, force, level)
-    report.say("pin-joint: area and STS at 0.7, 1.0, 1.3 mm")
+    case_report.say("pin-joint: area and STS at 0.7, 1.0, 1.3 mm")
     rows = [compare(m, "compliant" if mode == "rigid" else mode, cache) for m in (0.7, 1.0, 1.3)]
     middle = rows[1]
     results = {
@@ -295,19 +295,19 @@ def run(
         "young_pa": STEEL.young,
         "rim_radius_mm": 1e3 * RIM,
     }
-    return report.result("pin-joint", settings, results, PAPER, clock, duration)
+    return case_report.result("pin-joint", settings, results, PAPER, clock, duration)
 
 
 def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | None) -> None:
     level = "compliant" if mode == "rigid" else mode
-    fig, axes = report.figure(11, 9, 3, 2, sharex=True, sharey=True)
+    fig, axes = case_report.figure(11, 9, 3, 2, sharex=True, sharey=True)
     for pair, row in zip(axes, rows, strict=True):
         for ax, contact in zip(pair, ("sts", "area"), strict=True):
             r = row["curves"][contact]
             deepest = int(np.argmin(r.x[:6000, 0, 1]))
             sim = simulation(row["mesh_mm"], level, contact, cache=cache)
             sim.run((deepest + 1) * STEP, STEP)
-            for i, colour, name in ((0, report.RED, "pin"), (1, report.BLUE, "support")):
+            for i, colour, name in ((0, case_report.RED, "pin"), (1, case_report.BLUE, "support")):
                 w = sim.works[i]
                 p = w.touched[: w.touched[-1]]
                 near = np.flatnonzero(w.position_stamp >= sim._buffers.counts[1] - 1)
@@ -337,22 +337,22 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
     for ax in axes[:, 0]:
         ax.set_ylabel("y (mm)")
     fig.suptitle("Nodal forces at the deepest penetration (arrows to one scale)")
-    report.save(fig, out, "pin_joint_fig7_8")
+    case_report.save(fig, out, "pin_joint_fig7_8")
     area, sts = (rows[1]["curves"][c] for c in ("area", "sts"))
-    fig, ax = report.figure()
+    fig, ax = case_report.figure()
     first = slice(5500, 5700)
-    ax.plot(1e3 * area.t[first], -area.force[first, 1], color=report.BLUE, lw=2, label="area")
-    ax.plot(1e3 * sts.t[first], -sts.force[first, 1], "--", color=report.ORANGE, label="STS")
+    ax.plot(1e3 * area.t[first], -area.force[first, 1], color=case_report.BLUE, lw=2, label="area")
+    ax.plot(1e3 * sts.t[first], -sts.force[first, 1], "--", color=case_report.ORANGE, label="STS")
     ax.set(xlabel="time (ms)", ylabel="contact force (N)", title=f"{level}, 1.0 mm")
     ax.legend()
-    report.save(fig, out, "pin_joint_fig9")
-    fig, ax = report.figure()
-    ax.plot(area.t, 1e3 * area.x[:, 0, 1], color=report.BLUE, lw=2, label="area")
-    ax.plot(sts.t, 1e3 * sts.x[:, 0, 1], "--", color=report.ORANGE, label="STS")
+    case_report.save(fig, out, "pin_joint_fig9")
+    fig, ax = case_report.figure()
+    ax.plot(area.t, 1e3 * area.x[:, 0, 1], color=case_report.BLUE, lw=2, label="area")
+    ax.plot(sts.t, 1e3 * sts.x[:, 0, 1], "--", color=case_report.ORANGE, label="STS")
     ax.set(xlabel="time (s)", ylabel="height of the pin (mm)")
     ax.legend()
-    report.save(fig, out, "pin_joint_fig10")
-    fig, axes = report.figure(11, 4.2, 1, 3)
+    case_report.save(fig, out, "pin_joint_fig10")
+    fig, axes = case_report.figure(11, 4.2, 1, 3)
     x = np.arange(3)
     kinds = (
         ("run_s", "run_ratio", "whole run of 0.3 s (s)"),
@@ -360,7 +360,7 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
         ("eval_us", "eval_ratio", "one contact evaluation (µs)"),
     )
     for ax, (key, ratio, label) in zip(axes, kinds, strict=True):
-        for k, (name, colour) in enumerate((("sts", report.ORANGE), ("area", report.BLUE))):
+        for k, (name, colour) in enumerate((("sts", case_report.ORANGE), ("area", case_report.BLUE))):
             ax.bar(
                 x + 0.35 * (k - 0.5), [row[f"{name}_{key}"] for row in rows], 0.33, color=colour, label=name
             )
@@ -376,4 +376,4 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
         ax.set(xticks=x, xticklabels=[f"{r['mesh_mm']} mm" for r in rows], ylabel=label, xlabel="mesh")
         ax.margins(y=0.2)
     axes[1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.9))
-    report.save(fig, out, "pin_joint_table2")
+    case_report.save(fig, out, "pin_joint_table2")

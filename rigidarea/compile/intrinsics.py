@@ -1,4 +1,4 @@
-"""Memory without reference counts, as numba compiles it: see `kernel.memory`."""
+"""Memory without reference counts, as numba compiles it: see `compile.raw_memory`."""
 
 from __future__ import annotations
 

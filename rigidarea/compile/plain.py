@@ -82,7 +82,7 @@ def lock_for_fork() -> tuple[Callable[[], Any], Callable[[], Any]]:
     return (lambda: None), (lambda: None)
 
 
-# --- memory: see `kernel.memory` ---
+# --- memory: see `compile.raw_memory` ---
 
 
 def array_at(address: int, shape: tuple[int, ...], dtype: Any) -> np.ndarray:

@@ -14,11 +14,11 @@ import pymunk
 import shapely
 
 import rigidarea as ra
-from rigidarea.bring.limits import Limits
-from rigidarea.bring.rings import outlines_of_polygons
-from rigidarea.kernel.broad import ask_about, put_in_tree
-from rigidarea.kernel.tables import end_pair
-from rigidarea.overlap import covers
+from rigidarea.contact.broad import ask_about, put_in_tree
+from rigidarea.contact.tables import end_pair
+from rigidarea.io.limits import Limits
+from rigidarea.io.rings import outlines_of_polygons
+from rigidarea.overlap_queries import covers
 
 
 def _mixed_space() -> pymunk.Space:
@@ -152,7 +152,7 @@ def _flexible() -> None:
     ra.attach(space, flexible=assembly)
     for _ in range(3):
         space.step(1 / 60)
-    from rigidarea.cases import hertz, patch
+    from rigidarea.cases import hertz, patch_case
 
-    patch.press(patch.GAPS[0], patch.MESHES[0])
+    patch_case.press(patch_case.GAPS[0], patch_case.MESHES[0])
     hertz.run(divisions=(4, 6))  # a rate of convergence needs two

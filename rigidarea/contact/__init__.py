@@ -1,8 +1,7 @@
-"""Area contact of a pymunk space: record, overlap, row, solve, positions, report (docs/architecture.md)."""
+"""Kernels: pure numbers, compiled. They import neither pymunk nor pygame, validate nothing and allocate nothing.
 
-from __future__ import annotations
-
-from .attach import AreaContact, Settings, SimulationError, attach, attached
-from .report import REGIONS
-
-__all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]
+In the order in which a substep runs through them: `pool` (outlines as arrays), `broad` (who is near), `predicates` and
+`overlap` (the regions of two placed outlines, Alg. 1), `meet` (a pair's regions from substep to substep), `row` (what a
+region asks for), `solve` and `conjugate` (all of them together), `relax` (positions). "theory n" in them is section n
+of docs/theory.md; docs/contact.md has the walk.
+"""

@@ -11,7 +11,7 @@ import pymunk
 import shapely
 from numpy.typing import NDArray
 
-from ..outline import Outline, Points
+from ..geometry.outline import Outline, Points
 
 Color = tuple[int, int, int]
 

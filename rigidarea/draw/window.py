@@ -8,7 +8,7 @@ import pygame
 import pymunk
 
 from ..gallery import Run, load
-from ..overlap import covers
+from ..overlap_queries import covers
 from .picture import FINE, SIZE, Picture
 
 #: How hard the mouse may pull, in weights of the body (or, without gravity, in the scene's drawn forces).

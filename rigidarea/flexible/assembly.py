@@ -34,6 +34,7 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk._chipmunk_cffi import lib
 
+from rigidarea.contact.impact import damping_ratio
 from rigidarea.flexible.body import outline_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.inspace import advance, gather, give_back
@@ -41,9 +42,8 @@ from rigidarea.flexible.integrate import Body, Simulation
 from rigidarea.flexible.recover import State
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.tied import Tied
-from rigidarea.gate import not_negative, positive
-from rigidarea.kernel.impact import damping_ratio
-from rigidarea.outline import Outline
+from rigidarea.geometry.gate import not_negative, positive
+from rigidarea.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 

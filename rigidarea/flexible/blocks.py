@@ -19,7 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import entry
+from rigidarea.compile.jit import entry
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

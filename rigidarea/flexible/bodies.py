@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
+from rigidarea.compile.raw_memory import array_at
 from rigidarea.flexible.blocks import WIDE
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.kernel.jit import kernel
-from rigidarea.kernel.memory import array_at
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

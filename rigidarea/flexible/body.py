@@ -10,15 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.boundary import build
-from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.check import check_elastic, held_nodes
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
 from rigidarea.flexible.mesh import Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
-from rigidarea.gate import finite, listed, not_negative, numbers, positive
-from rigidarea.outline import Outline
+from rigidarea.flexible.reduction_store import arrays
+from rigidarea.geometry.gate import finite, listed, not_negative, numbers, positive
+from rigidarea.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.blocks import NODES, Pieces, fill, fill_all, no_pieces, sparse
-from rigidarea.kernel.jit import kernel
-from rigidarea.kernel.pool import LEAF, boxes_of
+from rigidarea.geometry.pool import LEAF, boxes_of
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
@@ -24,7 +24,7 @@ Ints = NDArray[np.int64]
 class Boundary(NamedTuple):
     """Constant data of one body; lengths in the body frame, origin at the centre of mass.
 
-    points (n, 2); following, ring_of (n,) int32; boxes (2 leaves, 4) the hierarchy of ``kernel.pool``, of the
+    points (n, 2); following, ring_of (n,) int32; boxes (2 leaves, 4) the hierarchy of ``geometry.pool``, of the
     points as they are here; low, high (n,) FE boundary nodes of the carrying edge and share (n,) in [0, 1), the
     weight of ``high`` (one node where it is 0); modes (2 f + 3, m): rows 2 i, 2 i + 1 of FE boundary node i, the
     last three rows the hub's (x, y, rotation); flexibility (2 f + 3, 2 f + 3), or (0, 0) if not used; nodes (f, 2)

@@ -33,10 +33,10 @@ from rigidarea.flexible.body import outline_body
 from rigidarea.flexible.check import check_settings
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
-from rigidarea.flexible.joints import Joint
+from rigidarea.flexible.mechanism_joints import Joint
 from rigidarea.flexible.recover import State, recover
-from rigidarea.gate import finite, not_negative, numbers
-from rigidarea.outline import Outline
+from rigidarea.geometry.gate import finite, not_negative, numbers
+from rigidarea.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 

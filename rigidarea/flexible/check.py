@@ -10,8 +10,8 @@ import shapely
 from numpy.typing import NDArray
 
 from rigidarea.flexible.element import Material
-from rigidarea.flexible.joints import KINDS, Joint
-from rigidarea.gate import finite, listed, not_negative, numbers, positive, whole
+from rigidarea.flexible.mechanism_joints import KINDS, Joint
+from rigidarea.geometry.gate import finite, listed, not_negative, numbers, positive, whole
 
 #: Modes of a body, contact points a mesh edge: beyond so many a body would ask for gigabytes.
 MOST = 10_000

@@ -30,14 +30,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work, make_ready
+from rigidarea.flexible.boundary_places import add_load, clear_nodes
 from rigidarea.flexible.dense import dot, factor, yielded
-from rigidarea.flexible.place import add_load, clear_nodes
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
 from rigidarea.flexible.tension import follow, pull
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.bodies import boundary_at, work_at
+from rigidarea.flexible.boundary_places import clear_loads, to_nodes
+from rigidarea.flexible.boundary_search import NEAR, holds, narrow, renew, rounding, seen
 from rigidarea.flexible.nodal import contact as area_contact
-from rigidarea.flexible.place import clear_loads, to_nodes
 from rigidarea.flexible.resist import resist
 from rigidarea.flexible.scratch import MANY, of_pair
-from rigidarea.flexible.search import NEAR, holds, narrow, renew, rounding, seen
 from rigidarea.flexible.segment import contact as segment_contact
 from rigidarea.flexible.tension import draw
-from rigidarea.kernel.jit import entry, kernel
 
 
 @kernel(forceinline=True)

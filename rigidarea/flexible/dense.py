@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import kernel, vectorized
+from rigidarea.compile.jit import kernel, vectorized
 
 Array = NDArray[np.float64]
 

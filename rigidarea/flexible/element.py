@@ -13,7 +13,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from rigidarea.flexible.mesh import Mesh
-from rigidarea.gate import finite, positive
+from rigidarea.geometry.gate import finite, positive
 
 Array = NDArray[np.float64]
 

@@ -16,7 +16,7 @@ import scipy.sparse as sp
 import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import entry
+from rigidarea.compile.jit import entry
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

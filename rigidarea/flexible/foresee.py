@@ -8,10 +8,10 @@ the motion moves by Δw change by y, (I + K C̃) y = −K Δw, and modes by what
 
 from __future__ import annotations
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.bodies import work_at
+from rigidarea.flexible.boundary_places import add_load
 from rigidarea.flexible.dense import dot, yielded
-from rigidarea.flexible.place import add_load
-from rigidarea.kernel.jit import kernel
 
 
 @kernel

@@ -15,10 +15,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.dense import dot
 from rigidarea.flexible.tension import draw
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 

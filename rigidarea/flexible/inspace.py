@@ -13,12 +13,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import entry, kernel
+from rigidarea.compile.raw_memory import array_at, caller, record
+from rigidarea.contact.space_record import OFFSETS
 from rigidarea.flexible.bodies import work_at
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.step import step
-from rigidarea.kernel.jit import entry, kernel
-from rigidarea.kernel.memory import array_at, caller, record
-from rigidarea.store import OFFSETS
 
 Ints = NDArray[np.int64]
 

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.contact.impact import damping_ratio
 from rigidarea.flexible import nodal
 from rigidarea.flexible.bodies import table
 from rigidarea.flexible.boundary import Boundary, workspace
@@ -25,15 +26,14 @@ from rigidarea.flexible.check import (
     of_pairs,
 )
 from rigidarea.flexible.contacts import replay
-from rigidarea.flexible.joints import JOINT, Joint
+from rigidarea.flexible.linear_limits import watch
+from rigidarea.flexible.mechanism_joints import JOINT, Joint
 from rigidarea.flexible.run import BODY, HALVINGS, HEAD, NOT_FINITE, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.start import moving, settle, start, weighed
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
 from rigidarea.flexible.tension import tense
-from rigidarea.flexible.watch import watch
-from rigidarea.gate import positive, whole
-from rigidarea.kernel.impact import damping_ratio
+from rigidarea.geometry.gate import positive, whole
 
 Array = NDArray[np.float64]
 

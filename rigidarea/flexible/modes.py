@@ -24,10 +24,10 @@ from numpy.typing import NDArray
 from threadpoolctl import threadpool_limits
 
 from rigidarea.flexible.blocks import WIDE, Pieces, no_pieces, spans, whole
-from rigidarea.flexible.cache import arrays
 from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
 from rigidarea.flexible.factor import factorise, forward, substitute, trace
 from rigidarea.flexible.mesh import CORNER, Mesh, turns
+from rigidarea.flexible.reduction_store import arrays
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

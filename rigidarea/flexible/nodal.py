@@ -27,19 +27,19 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.boundary_places import add_load
+from rigidarea.flexible.boundary_regions import arcs, find_regions
+from rigidarea.flexible.boundary_search import search as search
 from rigidarea.flexible.condense import couple, couple_slabs, room
-from rigidarea.flexible.literal import literal as literal
-from rigidarea.flexible.literal import literal_alpha as literal_alpha
-from rigidarea.flexible.place import add_load
+from rigidarea.flexible.paper_loads import literal as literal
+from rigidarea.flexible.paper_loads import literal_alpha as literal_alpha
 from rigidarea.flexible.quadrature import quadrature as quadrature
-from rigidarea.flexible.region import arcs, find_regions
 from rigidarea.flexible.scratch import FULL, Scratch
 from rigidarea.flexible.scratch import scratch as scratch
-from rigidarea.flexible.search import search as search
 from rigidarea.flexible.slabs import distribute as distribute_slabs
 from rigidarea.flexible.slabs import lean as lean_slabs
-from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from rigidarea.kernel.jit import kernel
+from rigidarea.compile.jit import kernel
 
 PACE = 2.0  # the first correction of a step is taken to leave this many times what it left in the step before (after E.
 # Hairer and G. Wanner, Solving Ordinary Differential Equations II, 2nd ed., section IV.8)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.boundary import Boundary
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X
-from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

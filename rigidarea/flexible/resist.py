@@ -15,8 +15,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from rigidarea.kernel.constants import TANGENT_STIFFNESS
-from rigidarea.kernel.jit import kernel
+from rigidarea.compile.jit import kernel
+from rigidarea.contact.constants import TANGENT_STIFFNESS
 
 
 @kernel

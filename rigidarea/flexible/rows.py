@@ -7,10 +7,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.hub import direction, hub_angle, prescribed
 from rigidarea.flexible.tension import between
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 

@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import make_ready
+from rigidarea.flexible.boundary_places import clear_nodes
 from rigidarea.flexible.dense import dot
 from rigidarea.flexible.hub import hub_angle
-from rigidarea.flexible.place import clear_nodes
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.step import step
 from rigidarea.flexible.tension import between
-from rigidarea.kernel.jit import entry, kernel
 
 NOT_FINITE = -11
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.kernel.jit import kernel
-from rigidarea.kernel.work import OVERFLOW, TANGLED, Work, new_work
+from rigidarea.compile.jit import kernel
+from rigidarea.geometry.work import OVERFLOW, TANGLED, Work, new_work
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

@@ -14,11 +14,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.boundary import Boundary, Work, edges_of, span, strip
+from rigidarea.flexible.boundary_places import add_load, place_leaves
 from rigidarea.flexible.condense import begin_vectors, enter_vector, gather
-from rigidarea.flexible.place import add_load, place_leaves
 from rigidarea.flexible.scratch import FULL, MANY, Scratch
-from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

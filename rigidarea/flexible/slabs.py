@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.place import add_load
+from rigidarea.flexible.boundary_places import add_load
 from rigidarea.flexible.scratch import Scratch
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

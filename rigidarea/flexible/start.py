@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.flexible.check import PIVOT
-from rigidarea.flexible.joints import ROWS, Joint
+from rigidarea.flexible.mechanism_joints import ROWS, Joint
 from rigidarea.flexible.modes import carriers, hub_rows
-from rigidarea.kernel.pool import boxes_of
+from rigidarea.geometry.pool import boxes_of
 
 Array = NDArray[np.float64]
 

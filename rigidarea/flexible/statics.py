@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, complete, workspace
-from rigidarea.flexible.region import arcs, find_regions
+from rigidarea.flexible.boundary_regions import arcs, find_regions
 
 Array = NDArray[np.float64]
 

@@ -15,20 +15,20 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import kernel
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
+from rigidarea.flexible.boundary_places import clear_loads, clear_nodes
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
+from rigidarea.flexible.floating_frame import inertia_forces
 from rigidarea.flexible.foresee import foresee, note_places
-from rigidarea.flexible.frame import inertia_forces
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
-from rigidarea.flexible.joints import correct_joints, joint_forces, joint_rows
+from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import pace, part_of_next
-from rigidarea.flexible.place import clear_loads, clear_nodes
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
 from rigidarea.flexible.tension import draw, slack, tighten
-from rigidarea.kernel.jit import kernel
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]

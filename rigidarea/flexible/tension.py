@@ -21,9 +21,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.dense import dot, eliminate
-from rigidarea.kernel.jit import entry, kernel
 
 Array = NDArray[np.float64]
 

@@ -10,11 +10,11 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi
 
-from rigidarea.chipmunk import address_of, layout
+from rigidarea.chipmunk.joint_structs import kinds_of_joints
+from rigidarea.chipmunk.structs import address_of, layout
+from rigidarea.contact.space_record import OFFSETS
 from rigidarea.flexible.inspace import LINK, MEMBER, PLACES
 from rigidarea.flexible.integrate import Body
-from rigidarea.joint_structs import kinds_of_joints
-from rigidarea.store import OFFSETS
 
 Pair = tuple[float, float]
 

@@ -8,8 +8,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import pymunk
 
-from ..contact.attach import PENETRATION
-from ..kernel.constants import SUBSTEPS
+from ..chipmunk.attach import PENETRATION
+from ..contact.constants import SUBSTEPS
 from . import costs
 from .probe import Array, Probe, Reference, Seen, Setting, reference
 

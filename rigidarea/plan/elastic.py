@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import pymunk
 import shapely
 
-from ..outline import Outline
+from ..geometry.outline import Outline
 from . import estimates as est
 
 if TYPE_CHECKING:

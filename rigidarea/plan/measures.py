@@ -8,9 +8,9 @@ from typing import Any
 
 import pymunk
 
-from ..contact import AreaContact
-from ..kernel.constants import HIT
-from ..outline import Outline
+from ..chipmunk import AreaContact
+from ..contact.constants import HIT
+from ..geometry.outline import Outline
 
 Measured = tuple[float, Any]
 """A number, and the body or shapes where it is largest."""

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
 import numpy as np
 import pymunk
 
-from ..contact import AreaContact, SimulationError, attach, attached
-from ..gate import positive, truth, whole
-from ..outline import Outline
+from ..chipmunk import AreaContact, SimulationError, attach, attached
+from ..geometry.gate import positive, truth, whole
+from ..geometry.outline import Outline
 from . import elastic
 from .choose import Found, Tried, search
 from .probe import Probe, Setting

@@ -19,8 +19,8 @@ import pymunk
 from numpy.typing import NDArray
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
-from ..contact import AreaContact, SimulationError, attach
-from ..outline import Outline
+from ..chipmunk import AreaContact, SimulationError, attach
+from ..geometry.outline import Outline
 from . import costs
 from .measures import Measured, extent_of, fastest, measure, reach_of
 

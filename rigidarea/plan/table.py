@@ -3,17 +3,13 @@
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
 
 from .probe import Setting
 from .promise import name_of
-
-if TYPE_CHECKING:
-    from .plan import Plan
-
 
 WORST = 3
 """Bodies that a table shows."""
@@ -30,7 +26,7 @@ class Line(NamedTuple):
     target: Any  # what `Plan.override` takes for it; None: the whole space
 
 
-def lines_of(plan: Plan) -> list[Line]:
+def lines_of(plan: Any) -> list[Line]:
     """The table: the space, the next cheaper and the next finer choice, the worst bodies, substeps of their own, shapes
     that are sampled anew, elastic bodies."""
     mine = plan.overrides.get(None, {})
@@ -104,7 +100,7 @@ def lines_of(plan: Plan) -> list[Line]:
     return out
 
 
-def text_of(plan: Plan) -> str:
+def text_of(plan: Any) -> str:
     """The table as text."""
     rows = [("", "choice", "decided by", "error", "ms a frame")]
     for line in plan.lines:
@@ -133,7 +129,7 @@ def text_of(plan: Plan) -> str:
     return f"plan for {plan.tolerance:g} over {plan.seconds:g} s: {told}\n{tried}\n{table}"
 
 
-def _told(plan: Plan, setting: Setting) -> str:
+def _told(plan: Any, setting: Setting) -> str:
     """A setting in words."""
     text = f"{setting.level}, {setting.steps} x {setting.sweeps} sweeps"
     if setting.level == "pymunk":

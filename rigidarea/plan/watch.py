@@ -5,16 +5,13 @@ from __future__ import annotations
 
 import math
 import warnings
-from typing import TYPE_CHECKING, NamedTuple
+from typing import Any, NamedTuple
 
 import pymunk
 
-from ..contact import attached
+from ..chipmunk import attached
 from .measures import Measured, fastest, measure
 from .promise import name_of
-
-if TYPE_CHECKING:
-    from .plan import Plan
 
 #: A measured number so many times the predicted one has outgrown the plan: below, it is what estimates are off by.
 OUTGROWN = 3.0
@@ -56,7 +53,7 @@ class Watch:
     naming pair and number. With adapt=True the plan is made anew there and then: substeps and sweeps may grow,
     stiffness and outlines stay, so that no state jumps."""
 
-    def __init__(self, plan: Plan, adapt: bool = False) -> None:
+    def __init__(self, plan: Any, adapt: bool = False) -> None:
         self.plan = plan
         self.adapt = adapt
         self.indicators: dict[str, Indicator] = {}
@@ -161,7 +158,7 @@ class Watch:
         return found
 
 
-def _weight_energy(plan: Plan) -> float:
+def _weight_energy(plan: Any) -> float:
     """What the space's bodies would get in falling by their own extent (force length)."""
     probe = plan._probe
     weights = [

@@ -11,7 +11,7 @@ import pymunk
 
 from ..draw.canvas import INK, PALETTE, PAPER, STATIC, Camera, placed, sketch, tint
 from ..draw.film import FPS, Film
-from ..outline import Outline
+from ..geometry.outline import Outline
 from .host import Host
 
 SIZE = (800, 600)

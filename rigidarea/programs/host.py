@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..contact import AreaContact, attach, attached
+from ..chipmunk import AreaContact, attach, attached
 from . import null_pyglet
 from .screen import Input, Screen
 

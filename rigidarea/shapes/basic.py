@@ -7,9 +7,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..arcs import circle_ring
-from ..outline import Outline, positive
-from ..simple import check_simple
+from ..geometry.arcs import circle_ring
+from ..geometry.outline import Outline, positive
+from ..geometry.simple import check_simple
 
 
 def circle(radius: float, *, tolerance: float | None = None) -> Outline:

@@ -6,8 +6,8 @@ from functools import partial
 
 import numpy as np
 
-from ..gate import finite, not_negative, positive
-from ..outline import Outline, circle_points
+from ..geometry.gate import finite, not_negative, positive
+from ..geometry.outline import Outline, circle_points
 
 
 def eccentric(

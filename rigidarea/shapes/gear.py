@@ -17,8 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gate import finite, not_negative, positive, size, whole
-from ..outline import Outline, circle_points
+from ..geometry.gate import finite, not_negative, positive, size, whole
+from ..geometry.outline import Outline, circle_points
 from .curve import MOST_TEETH, sample_curve
 
 STANDARD_RACK_TIP_RADIUS = 0.38

@@ -12,8 +12,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from ..gate import finite, not_negative, positive, size, whole
-from ..outline import Outline, circle_points
+from ..geometry.gate import finite, not_negative, positive, size, whole
+from ..geometry.outline import Outline, circle_points
 from .curve import MOST_TEETH, sample_curve
 
 

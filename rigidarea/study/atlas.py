@@ -122,7 +122,7 @@ def maps() -> dict[str, Map]:
         if info.name.startswith("_"):
             continue
         made: Map = importlib.import_module(f"{package.__name__}.{info.name}").atlas_map()
-        if made.name != info.name:
+        if f"{made.name}_map" != info.name:
             raise ValueError(f"map module {info.name!r} defines a map called {made.name!r}")
         found[made.name] = made
     return found

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from ..compile.chosen import LIBRARY, backend
-from ..outline import Outline
-from ..overlap import overlap
+from ..geometry.outline import Outline
+from ..overlap_queries import overlap
 from ..report import envelope
 from .crowds import CROWDS
 from .everyday_scenes import pit_of_discs
@@ -146,12 +146,12 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
     Geneva drive.
     """
     from ..shapes import box, capsule, circle, involute_gear, ring, rounded_polygon
-    from .scenes import geneva
+    from .scenes import geneva_scene
 
     coarse = [involute_gear(0.002, teeth, spacing=6e-4) for teeth in (23, 57)]
     fine = [involute_gear(0.002, teeth, tolerance=6e-7) for teeth in (23, 57)]
     mesh = (0.08, 0.0, math.pi + math.pi / 57 - 2.6e-3)  # flanks pressed 0.15 mm into each other
-    parts = geneva.drive()
+    parts = geneva_scene.drive()
     crank = 0.3
     turned: float = parts.wheel_angle(crank) + 5e-3
     rounded = rounded_polygon(box(1, 1).rings[0], 0.1)
@@ -257,8 +257,8 @@ class Query:
     """
 
     def __init__(self, a: Any, b: Any, pose: tuple[float, float, float]) -> None:
-        from ..kernel.pool import pack
-        from ..kernel.work import enlarged, fits, new_work
+        from ..geometry.pool import pack
+        from ..geometry.work import enlarged, fits, new_work
 
         self.pool, self.pose = pack([a, b]), pose
         points, rings = sum(len(r) for r in (*a.rings, *b.rings)), len(a.rings) + len(b.rings)
@@ -286,9 +286,9 @@ def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) ->
     """Compiled on first use: `count` queries, the loops found by the last."""
     global _compiled
     if _compiled is None:
-        from ..kernel.jit import entry
-        from ..kernel.overlap import overlap_kernel
-        from ..kernel.work import relative
+        from ..compile.jit import entry
+        from ..geometry.overlap import overlap_kernel
+        from ..geometry.work import relative
 
         @entry
         def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]

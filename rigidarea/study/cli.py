@@ -160,7 +160,17 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import bench, draw, draw_bench, everyday, growth, islands, jointed, many_worlds, start
+    from . import (
+        bench,
+        draw,
+        draw_bench,
+        everyday,
+        growth,
+        island_bench,
+        jointed,
+        many_worlds,
+        start_time,
+    )
 
     if arguments.what == "everyday":
         report = everyday.everyday(
@@ -189,7 +199,7 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = bench.kernels(arguments.scene)
         draw.kernel_times(report, arguments.out)
     elif arguments.what == "islands":
-        report = islands.islands()
+        report = island_bench.islands()
     elif arguments.what == "joints":
         report = jointed.joints(arguments.scene)
     elif arguments.what == "growth":
@@ -198,12 +208,12 @@ def _bench(arguments: argparse.Namespace) -> int:
         if arguments.docs:
             _keep(arguments.docs, "growth", report, {"growth.png": pictures[0]} if pictures else {})
     elif arguments.what == "step":
-        report = start.step()
+        report = start_time.step()
         pictures = draw_bench.phases(report, arguments.out)
         if arguments.docs:
             _keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
     elif arguments.what == "start":
-        report = start.start()
+        report = start_time.start()
     elif arguments.what == "worlds":
         report = many_worlds.worlds(128 if arguments.quick else 1024)
     else:

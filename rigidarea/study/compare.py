@@ -71,7 +71,7 @@ def _pin_joint() -> Comparison:
 
 
 def _geneva() -> Comparison:
-    from ..cases import geneva as case
+    from ..cases import geneva_case as case
 
     start: dict[str, float] = {}
 

@@ -27,7 +27,7 @@ from .growing_scenes import (
     Growing,
 )
 from .peers import get_peer
-from .peers.chipmunk import make_body, plain_shape, surface
+from .peers.pymunk_peer import make_body, plain_shape, surface
 from .records import Progress, Row
 from .scene import Body, Scene
 from .timing import one_core
@@ -183,9 +183,9 @@ def phases(chosen: dict[str, tuple[str, int]] | None = None) -> list[Row]:
     """Where the time of a frame goes (µs, processor time, means): what Chipmunk itself does, and our own phases.
 
     Rows: scene, frame_us, chipmunk_us (all that is not ours, pymunk's Python too), then each of
-    `rigidarea.contact.phases.PHASES`. Reading the clock takes 0.3 µs a phase and substep of it.
+    `rigidarea.chipmunk.phases.PHASES`. Reading the clock takes 0.3 µs a phase and substep of it.
     """
-    from ..contact.phases import PHASES
+    from ..chipmunk.phases import PHASES
 
     rows = []
     for title, (name, size) in (chosen or PHASED).items():

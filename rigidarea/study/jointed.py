@@ -14,7 +14,7 @@ from typing import Any
 
 import pymunk
 
-from ..contact import attach
+from ..chipmunk import attach
 from ..report import envelope
 from .records import Progress, Row
 

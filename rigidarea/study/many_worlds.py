@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 import pymunk
 
-from ..contact import attach
+from ..chipmunk import attach
 from ..report import envelope
 from ..worlds import Worlds
 from .records import Progress, Row

@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..arcs import circle_ring
-from ..outline import Outline, arc_points, circle_points
+from ..geometry.arcs import circle_ring
+from ..geometry.outline import Outline, arc_points, circle_points
 
 Array = NDArray[np.float64]
 Rings = tuple[Array, tuple[Array, ...]]
@@ -232,7 +232,8 @@ def floor(width: float = 100.0, depth: float = 1.0, name: str = "floor", **more:
 def arc(radius: float, start: float, stop: float, tolerance: float) -> Array:
     """Points (n, 2) of the arc about the origin from angle `start` to `stop` (rad), both ends included.
 
-    Sampled so that the area is kept (`rigidarea.arcs`), for all peers alike. tolerance: largest sagitta (length).
+    Sampled so that the area is kept (`rigidarea.geometry.arcs`), for all peers alike.
+    tolerance: largest sagitta (length).
     """
     return arc_points((0.0, 0.0), radius, start, stop - start, tolerance)
 
@@ -283,7 +284,7 @@ def scenes() -> dict[str, Scene]:
         if info.name.startswith("_"):
             continue
         scene = importlib.import_module(f"{package.__name__}.{info.name}").scene()
-        if scene.name != info.name:
+        if f"{scene.name}_scene" != info.name:
             raise ValueError(f"scene module {info.name!r} defines a scene called {scene.name!r}")
         found[scene.name] = scene
     return found

@@ -6,8 +6,8 @@ from functools import cache, partial
 
 import pymunk
 
-from ..outline import Outline
-from .peers.chipmunk import add_joints, make_body, plain_shape, surface
+from ..geometry.outline import Outline
+from .peers.pymunk_peer import add_joints, make_body, plain_shape, surface
 from .scene import Curve, Scene
 
 

@@ -19,10 +19,10 @@ import shapely
 
 import rigidarea as ra
 from rigidarea import bring
-from rigidarea.bring.formats import stripped
-from rigidarea.bring.svg_path import Segments
-from rigidarea.bring.svg_values import transform
-from rigidarea.kernel.thin import thinned
+from rigidarea.geometry.thin import thinned
+from rigidarea.io.formats import stripped
+from rigidarea.io.svg_path import Segments
+from rigidarea.io.svg_values import transform
 
 READERS = [bring.load_scene, bring.outlines_from_svg, bring.outlines_from_geojson, bring.outlines_from_image]
 

@@ -13,8 +13,8 @@ import pytest
 import rigidarea as ra
 from rigidarea import bring
 from rigidarea.bring import Limits
-from rigidarea.bring import scene as scene_module
-from rigidarea.bring.joints import JOINTS
+from rigidarea.io import scene_file as scene_module
+from rigidarea.io.scene_joints import JOINTS
 
 SCENE = {
     "rigidarea": 1,

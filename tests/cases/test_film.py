@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from rigidarea import cases
-from rigidarea.cases import film
+from rigidarea.cases import stress_film
 
 
 def arguments(*words, out=None):
@@ -30,16 +30,16 @@ def test_refused(tmp_path):
 
 def test_hertz_still_and_film(tmp_path):
     pytest.importorskip("imageio")
-    scene = film.hertz(None, division=4, frames=3)
-    film.still(scene, tmp_path)
-    path = film.film(scene, tmp_path)
+    scene = stress_film.hertz(None, division=4, frames=3)
+    stress_film.still(scene, tmp_path)
+    path = stress_film.film(scene, tmp_path)
     assert (tmp_path / "hertz_stress.png").stat().st_size > 20_000
     assert path.exists() and path.stat().st_size > 1000
     # the pressure drawn is that of the case: the force, over the deepest of the three
     states, loads = scene.states[-1], scene.loads[-1]
     assert loads[0][:, 2].sum() == pytest.approx(-10.0, rel=1e-3)
     assert loads[1][:, 2].sum() == pytest.approx(10.0, rel=1e-3)
-    pictures = list(film.frames(scene))
+    pictures = list(stress_film.frames(scene))
     assert len(pictures) == 3 and all(p.ndim == 3 for p in pictures)
     assert np.abs(pictures[0].astype(int) - pictures[2]).mean() > 1.0  # it moves
     assert len(states) == 2

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from rigidarea import cases
-from rigidarea.cases import geneva, pin_joint
+from rigidarea.cases import geneva_case, pin_joint
 from rigidarea.cases.mechanism import step_sweep
 
 
@@ -47,11 +47,11 @@ def test_pin_joint_sts_and_area_agree():
 
 
 def test_geneva_levels_and_hook():
-    start = geneva.first_touch(6) - geneva.SPEED * geneva.DUE
-    rows = [geneva.measure(geneva.through_hook(2.6), start, 6)]
+    start = geneva_case.first_touch(6) - geneva_case.SPEED * geneva_case.DUE
+    rows = [geneva_case.measure(geneva_case.through_hook(2.6), start, 6)]
     for mode in ("rigid", "compliant"):
-        sim, _ = geneva.simulation(mode)
-        rows.append(geneva.measure(sim.run(2.6, geneva.STEP), start, 6))
+        sim, _ = geneva_case.simulation(mode)
+        rows.append(geneva_case.measure(sim.run(2.6, geneva_case.STEP), start, 6))
     for r in rows:
         assert r["rms_percent"] < 0.3  # the paper: 1.13
         assert 0.0 <= r["contact_delay_ms"] <= 1.0  # the paper: 8.5
@@ -62,15 +62,15 @@ def test_geneva_levels_and_hook():
 
 def test_geneva_sweep_of_steps_counts_what_large_steps_cost():
     """Halved steps and the attempts before them are in the cost; coarse steps are marked, the paper's not halved."""
-    start = geneva.simulation("rigid")[1]
+    start = geneva_case.simulation("rigid")[1]
     fine, coarse = (
         row
         for row, _ in step_sweep(
-            lambda: geneva.simulation("compliant")[0],
-            lambda r: geneva.measure(r, start, 6),
+            lambda: geneva_case.simulation("compliant")[0],
+            lambda r: geneva_case.measure(r, start, 6),
             (4e-4, 0.2),
             1.0,
-            geneva.PLAY_S,
+            geneva_case.PLAY_S,
         )
     )
     assert not fine["under_resolved"]

@@ -1,11 +1,11 @@
 """Patch test: the table's targets, and the stress behind them."""
 
-from rigidarea.cases import patch
+from rigidarea.cases import patch_case
 
 
 def test_patch(tmp_path):
-    rows = patch.run(tmp_path)["results"]
-    assert [(r["gap_mm"], r["mesh"]) for r in rows] == [(g, m) for g in (2.0, 6.0) for m in patch.MESHES]
+    rows = patch_case.run(tmp_path)["results"]
+    assert [(r["gap_mm"], r["mesh"]) for r in rows] == [(g, m) for g in (2.0, 6.0) for m in patch_case.MESHES]
     for r in rows:
         assert (
             r["pressure_spread_relative"] < 1e-9

@@ -11,7 +11,7 @@ from types import SimpleNamespace
 import pytest
 
 from rigidarea.__main__ import main
-from rigidarea.programs.run import frames_told
+from rigidarea.programs.run_program import frames_told
 
 ROOT = Path(__file__).parents[2]
 

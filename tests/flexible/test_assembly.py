@@ -96,7 +96,7 @@ def test_a_geneva_drive_has_the_figures_of_the_case():
     """The case's drive as parts: the crank a kinematic body, the wheel on a pivot with a damper; one engagement."""
     from types import SimpleNamespace
 
-    from rigidarea.cases import geneva as gv
+    from rigidarea.cases import geneva_case as gv
 
     duration = 0.75
     sim, start = gv.simulation("compliant")

@@ -7,7 +7,7 @@ from shapely import affinity
 
 from rigidarea.flexible import nodal, segment
 from rigidarea.flexible.boundary import build, workspace
-from rigidarea.flexible.place import clear_loads
+from rigidarea.flexible.boundary_places import clear_loads
 
 NONE = np.zeros(0)
 

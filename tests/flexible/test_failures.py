@@ -8,7 +8,7 @@ import pytest
 
 from rigidarea.flexible import Body, Material, Simulation, elastic_body
 from rigidarea.flexible.boundary import build
-from rigidarea.flexible.watch import LinearityWarning
+from rigidarea.flexible.linear_limits import LinearityWarning
 from rigidarea.shapes import eccentric, flat_follower, internal_gear, involute_gear
 
 

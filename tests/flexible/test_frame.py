@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidarea.flexible.element import Material, lumped_mass
-from rigidarea.flexible.frame import inertia_forces, kinetic_energy
+from rigidarea.flexible.floating_frame import inertia_forces, kinetic_energy
 from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import elastic, reduce, rigid_modes
 

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 from rigidarea.flexible import Material, Mechanism
 from rigidarea.flexible.check import check_joints
-from rigidarea.flexible.joints import Joint
+from rigidarea.flexible.mechanism_joints import Joint
 from rigidarea.shapes import box
 
 G = 9.81

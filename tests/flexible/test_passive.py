@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from rigidarea.flexible import Material, Mechanism, Simulation
-from rigidarea.outline import Outline
+from rigidarea.geometry.outline import Outline
 from rigidarea.shapes import eccentric, flat_follower
 
 LENGTH, HEIGHT, HOLE = 0.09, 0.01, 0.0025

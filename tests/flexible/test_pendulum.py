@@ -17,7 +17,7 @@ import scipy.sparse.linalg as spl
 
 from rigidarea.flexible import Material, Mechanism
 from rigidarea.flexible.mesh import resample, triangulate
-from rigidarea.outline import Outline
+from rigidarea.geometry.outline import Outline
 
 SOFT = Material(2e8, 0.3, 1200.0, 0.01)
 G, PIVOT, DURATION = 9.81, -0.45, 0.8

@@ -10,9 +10,9 @@ from rigidarea.flexible.boundary import build
 from rigidarea.flexible.element import stiffness, stress, von_mises
 from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import carriers
-from rigidarea.flexible.pictures import pressure
 from rigidarea.flexible.recover import recover
 from rigidarea.flexible.statics import solve
+from rigidarea.flexible.stress_pictures import pressure
 
 
 def test_hertz_maximum_under_the_surface():

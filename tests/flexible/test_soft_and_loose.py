@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidarea.flexible import Material, Mechanism
-from rigidarea.outline import Outline
+from rigidarea.geometry.outline import Outline
 from rigidarea.shapes import box, circle
 
 RADIUS, STEP = 0.05, 2e-5
@@ -25,7 +25,7 @@ def soft_disc(m, young, level, at, speed=0.0):
     )
 
 
-@pytest.mark.filterwarnings("ignore::rigidarea.flexible.watch.LinearityWarning")
+@pytest.mark.filterwarnings("ignore::rigidarea.flexible.linear_limits.LinearityWarning")
 @pytest.mark.parametrize("level", LEVELS)
 def test_two_soft_discs_squeezed_in_a_box(level):
     """k/E = 100, a lid of four times their mass on them at 1 m/s, walls on both sides: no step gives up, the lid comes
@@ -49,7 +49,7 @@ def test_two_soft_discs_squeezed_in_a_box(level):
     assert np.abs(r.forces).max() > 10 * 0.4 * 9.81
 
 
-@pytest.mark.filterwarnings("ignore::rigidarea.flexible.watch.LinearityWarning")
+@pytest.mark.filterwarnings("ignore::rigidarea.flexible.linear_limits.LinearityWarning")
 @pytest.mark.parametrize("speed", [10.0, 20.0, 30.0])
 @pytest.mark.parametrize("level", LEVELS)
 def test_rubber_against_a_wall(level, speed):

@@ -13,7 +13,7 @@ import shapely
 
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, build, workspace
-from rigidarea.flexible.place import place
+from rigidarea.flexible.boundary_places import place
 
 sys.path.insert(0, str(Path(__file__).parents[1]))
 import tangent_drawings

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidarea.flexible import Material, Mechanism, elastic_body
-from rigidarea.outline import Outline
+from rigidarea.geometry.outline import Outline
 from rigidarea.shapes import box
 
 NYLON = Material(2e8, 0.3, 1100.0, 0.02)

@@ -28,9 +28,9 @@ import numpy as np
 import pymunk
 
 from rigidarea import AreaContact, SimulationError, attach, attached
-from rigidarea.chipmunk import address_of
-from rigidarea.contact import arrays
-from rigidarea.kernel import tables
+from rigidarea.chipmunk import arrays
+from rigidarea.chipmunk.structs import address_of
+from rigidarea.contact import tables
 
 DT = 1 / 60
 #: A program that takes longer hangs: processor time, and time, which others may take (s).

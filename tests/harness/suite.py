@@ -18,7 +18,7 @@ from typing import Any
 
 import pymunk
 
-from rigidarea.contact import attach, attached
+from rigidarea.chipmunk import attach, attached
 
 from . import environment
 

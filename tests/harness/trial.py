@@ -9,10 +9,10 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import lib
 
-from rigidarea import contact as area
+from rigidarea import chipmunk as area
 from rigidarea.plan.plan import Plan
 from rigidarea.study.peers.base import drive
-from rigidarea.study.peers.chipmunk import SpaceRun
+from rigidarea.study.peers.pymunk_peer import SpaceRun
 from rigidarea.study.records import Row
 from rigidarea.study.scene import Array, Scene
 from rigidarea.study.user_space import space_of

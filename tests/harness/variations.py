@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from rigidarea.outline import Outline
+from rigidarea.geometry.outline import Outline
 from rigidarea.study.scene import Body, Circle, Curve, Polygon, Rings, Scene, Segment, scenes
 
 LONGEST = 2.0

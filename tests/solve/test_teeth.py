@@ -10,8 +10,8 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.kernel.pool import pack
-from rigidarea.kernel.teeth import mouth_of
+from rigidarea.geometry.pool import pack
+from rigidarea.geometry.teeth import mouth_of
 
 MODULE, TEETH = 0.002, (23, 57)
 STAR = ra.Outline([(0, 9), (3, 3), (9, 0), (3, -3), (0, -9), (-3, -3), (-9, 0), (-3, 3)])

@@ -8,7 +8,7 @@ import sys
 
 import pytest
 
-from rigidarea.kernel.memory import record
+from rigidarea.compile.raw_memory import record
 
 SCENE = """
 import pymunk, rigidarea as ra

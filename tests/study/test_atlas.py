@@ -7,8 +7,8 @@ import pytest
 
 from rigidarea.study import atlas
 from rigidarea.study.atlas import PASS, Variant, engines, evaluate, get_map, judge, maps
-from rigidarea.study.maps import buckling, step_size
-from rigidarea.study.peers import literal
+from rigidarea.study.maps import buckling_map, step_size_map
+from rigidarea.study.peers import literal_peer as literal
 
 AREA = Variant("rigidarea-explicit", {})
 
@@ -32,14 +32,14 @@ def test_step_limit_is_two():
     low, high = 1.5, 2.5
     while high - low > 0.005:
         middle = (low + high) / 2
-        low, high = (middle, high) if step_size.growth(middle, 1.0, AREA) < 100 else (low, middle)
+        low, high = (middle, high) if step_size_map.growth(middle, 1.0, AREA) < 100 else (low, middle)
     assert low == pytest.approx(2.0, rel=0.03)
 
 
 def test_implicit_integration_has_no_step_limit():
     """Where the plain law grows without bound, the default stays bounded."""
     for phase in (2.1, 2.4, 5.0):
-        assert step_size.growth(phase, 1.0, Variant("rigidarea", {})) < 10
+        assert step_size_map.growth(phase, 1.0, Variant("rigidarea", {})) < 10
 
 
 @pytest.mark.parametrize("zeta", [0.0, 0.07, 0.3, 0.8])
@@ -51,7 +51,7 @@ def test_formula_of_the_step_limit(zeta):
         step = np.array([[d, -d * phase], [phase * d, 1 - d * phase**2]])
         return np.max(np.abs(np.linalg.eigvals(step)))
 
-    limit = float(step_size.limit(np.array([zeta]))[0])
+    limit = float(step_size_map.limit(np.array([zeta]))[0])
     assert radius(0.999 * limit) <= 1 + 1e-12
     assert radius(1.001 * limit) > 1.001
 
@@ -59,17 +59,17 @@ def test_formula_of_the_step_limit(zeta):
 @pytest.mark.parametrize("elasticity", [0.1, 0.5, 0.8])
 def test_damping_raises_the_step_limit(elasticity):
     """The dashpot is implicit: as `step_size.limit` derives, and higher than undamped."""
-    expected = float(step_size.limit(np.array([step_size.damping_ratio(elasticity)]))[0])
+    expected = float(step_size_map.limit(np.array([step_size_map.damping_ratio(elasticity)]))[0])
     assert expected > 2
     # 2 % either side: beyond, 3,000 steps grow by far more than a hundredfold, below they decay
-    assert step_size.growth(0.98 * expected, elasticity, AREA) < 1
-    assert step_size.growth(1.02 * expected, elasticity, AREA) > 100
+    assert step_size_map.growth(0.98 * expected, elasticity, AREA) < 1
+    assert step_size_map.growth(1.02 * expected, elasticity, AREA) > 100
 
 
 @pytest.mark.parametrize("sinking,boxes", [(1e-2, 3), (1e-3, 8), (1e-4, 18), (1e-5, 39)])
 def test_buckling_bound(sinking, boxes):
     """The eigenvalue problem gives the numbers of docs/study.md, and the round formula is within a box of them."""
-    assert buckling.tallest(sinking) == boxes
+    assert buckling_map.tallest(sinking) == boxes
     assert abs(math.floor((0.65 / sinking) ** (1 / 3)) - boxes) <= 1
 
 
@@ -79,8 +79,8 @@ def test_buckling_bound(sinking, boxes):
 def test_stacks_buckle_where_theory_says(sinking, boxes, engine):
     """The tallest stable stack stands for half a minute, one box more topples: those numbers, simulated."""
     variant = get_map("buckling").variants[engine]
-    assert buckling.lean(variant, sinking, boxes) < buckling.LIMIT
-    assert buckling.lean(variant, sinking, boxes + 1) > buckling.LIMIT
+    assert buckling_map.lean(variant, sinking, boxes) < buckling_map.LIMIT
+    assert buckling_map.lean(variant, sinking, boxes + 1) > buckling_map.LIMIT
 
 
 @pytest.mark.parametrize("name,x,y", [("corner", 30, 0.1), ("crossed", 1.5, 0.3)])

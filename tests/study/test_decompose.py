@@ -6,8 +6,8 @@ import shapely
 
 from rigidarea.study.decompose import convex_pieces, triangles
 from rigidarea.study.scene import full_circle
-from rigidarea.study.scenes.bar_on_u import u_shape
-from rigidarea.study.scenes.gears import gear
+from rigidarea.study.scenes.bar_on_u_scene import u_shape
+from rigidarea.study.scenes.gears_scene import gear
 
 RINGS = {
     "u": u_shape().rings(0.01),

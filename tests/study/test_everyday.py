@@ -10,7 +10,7 @@ import shapely
 from rigidarea.study import add_commands, everyday
 from rigidarea.study.everyday_scenes import EVERYDAY
 from rigidarea.study.peers import get_peer
-from rigidarea.study.peers.area import area_space
+from rigidarea.study.peers.area_peer import area_space
 from rigidarea.study.scene import Trace, X, Y
 
 SMALL = [name for name, scene in EVERYDAY.items() if scene.seeds > 1]

@@ -1,0 +1,8 @@
+"""Area contact of a pymunk space: record, overlap, row, solve, positions, report (docs/architecture.md)."""
+
+from __future__ import annotations
+
+from .attach import AreaContact, Settings, SimulationError, attach, attached
+from .contact_report import REGIONS
+
+__all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]

@@ -1,0 +1,284 @@
+"""Which bodies and shapes a space has, and whose callbacks: as its tables know them.
+
+pymunk tells of what comes and goes one by one (`space`), and machine code enters it when the next frame begins, or
+before; what does not move at once. Should Chipmunk know of others, the whole space is looked through.
+"""
+
+from __future__ import annotations
+
+import copy
+from collections.abc import Iterable, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import ffi, lib
+
+from ..geometry.outline import Outline
+from .arrays import Store
+from .structs import address_of
+
+if TYPE_CHECKING:
+    from .hook import Hook
+
+_STATIC = pymunk.Body.STATIC
+
+
+class Register:
+    """The shapes of one attached space that are in its tables. It keeps no space alive: that is handed over."""
+
+    def __init__(self, store: Store, hook: Hook) -> None:
+        from . import entering
+
+        self._store = store
+        self._state = store.state[0]
+        self._pending = store.state[
+            "pending"
+        ]  # a view: reading a field of a record takes twenty times as long
+        self._hook = hook
+        self._shapes_come = ffi.cast(
+            "long long(*)(uintptr_t, void *, int *, long long)", entering.shapes_come.address
+        )
+        self._shape_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.shape_goes.address)
+        self._bodies_come = ffi.cast(
+            "long long(*)(uintptr_t, void *, long long, long long)", entering.bodies_come.address
+        )
+        self._body_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.body_goes.address)
+        self._placed_anew = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.placed_anew.address)
+        self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
+        self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
+        self._new: dict[pymunk.Shape, None] = {}  # not entered yet
+        self._gone: list[int] = []  # ids of shapes that are entered still
+        self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
+        self._left: list[int] = []  # bodies that are entered still
+
+    def _pend(self) -> None:
+        """There is something to enter, or to forget, before the next frame."""
+        if self._pending[0] == 0:
+            self._pending[0] = 1
+
+    # --- what pymunk tells ---
+
+    def shape_came(self, shape: pymunk.Shape) -> None:
+        """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
+        self._pend()
+        self._new[shape] = None
+        if shape.body is not None and shape.body.body_type == _STATIC:
+            try:
+                read = self._outlines([shape])
+                self.forget()
+                self._enter([shape], *read)
+            # said when the space is stepped: pymunk is in the midst of adding
+            except (ValueError, MemoryError):
+                return
+            del self._new[shape]
+
+    def shape_goes(self, shape: pymunk.Shape) -> None:
+        """A shape is about to be removed."""
+        if shape in self._new:
+            del self._new[shape]
+        else:
+            self._gone.append(shape._hashid)
+        self._pend()
+
+    def body_came(self, body: pymunk.Body) -> None:
+        """A body has been added."""
+        self._bodies[body] = None
+        self._pend()
+
+    def body_goes(self, body: pymunk.Body) -> None:
+        """A body is about to be removed."""
+        if body in self._bodies:
+            del self._bodies[body]
+        else:
+            self._left.append(address_of(body._body))
+            self._hook.release(body)
+        self._pend()
+
+    def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
+        """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
+        is now.
+        """
+        known = [shape for shape in shapes if self.shapes.get(shape._hashid) is shape]
+        rows, slots = self._store.known_shapes, self._store.slots
+        for shape in known:
+            if self._outlines([shape])[1][0] != rows["outline"][slots[shape._hashid]]:
+                self.refresh(shape)
+                rows = self._store.known_shapes
+        bodies = {shape.body: None for shape in known if shape.body is not None}
+        self._placed_anew(self._store.at, _pointers(body._body for body in bodies), len(bodies))
+
+    def refresh(self, shape: pymunk.Shape) -> None:
+        """Read a shape's geometry again: `AreaContact.refresh`.
+
+        Raises ValueError for a shape that is not entered, or that has no area now.
+        """
+        if not isinstance(shape, pymunk.Shape) or self.shapes.get(shape._hashid) is not shape:
+            raise ValueError(f"shape must be one that the space has stepped with, got {shape!r:.80}")
+        read = self._outlines([shape])  # says what is wrong with it while nothing has changed
+        self._shape_goes(self._store.at, shape._hashid)
+        self._enter([shape], *read)
+
+    # --- entering ---
+
+    def update(self, space: pymunk.Space) -> None:
+        """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
+        state = self._state
+        pending = int(self._pending[0])
+        count = len(self.shapes) + len(self._new) - len(self._gone)
+        if count != len(space._shapes) or pending == 2:
+            self._look_through(space)
+        new = list(self._new)
+        read = self._outlines(new)  # says what is wrong with one while nothing has changed
+        self._pending[0] = 2  # until all is done: whoever is interrupted looks through the space
+        self.forget()
+        if self._bodies:
+            # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
+            held = state["shape_count"] < 0 and not state["explicit"]
+            self._hook.hold(self._bodies)
+            self._enter_bodies((body._body for body in self._bodies), held)
+            self._bodies.clear()
+        if (
+            pending >= 2
+        ):  # bodies that joints hold and that are not among the space's: its static one, the user's
+            self._enter_bodies(_held(space), False)
+        self._enter(new, *read)
+        self._new.clear()
+        if pending != 1:  # what begins a frame has noticed something else, of callbacks perhaps
+            for name, value in self._hear(space).items():
+                state[name] = value
+        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
+        state["shape_count"] = len(self.shapes)
+        self._pending[0] = 0
+
+    def forget(self) -> None:
+        """What has gone is not in the tables any more: nothing of it is read or written from now on."""
+        for ident in self._gone:
+            if ident in self.proxies:
+                self._store.known_shapes["proxy"][self._store.slots[ident]] = 0
+                self.proxies.discard(ident)
+            self._shape_goes(self._store.at, ident)
+            self.shapes.pop(ident, None)
+        if self._gone:
+            self._gone.clear()
+            try:
+                self._store.tidy()
+            except MemoryError:  # another time: pymunk is in the midst of removing
+                pass
+        for address in self._left:
+            self._body_goes(self._store.at, address)
+        self._left.clear()
+
+    def _look_through(self, space: pymunk.Space) -> None:
+        """What there is that pymunk has not told of, and what is no more."""
+        present = {shape._hashid: shape for shape in space._shapes}
+        rows = self._store.known_shapes
+        known = set(rows["ident"][rows["outline"] >= 0].tolist())
+        self.shapes = {ident: shape for ident, shape in present.items() if ident in known}
+        self._gone = [ident for ident in known if ident not in present]
+        self._new = {shape: None for ident, shape in present.items() if ident not in known}
+        bodies = {address_of(body._body): body for body in space._bodies}
+        held = {address_of(body) for body in _held(space)}
+        found = self._store.tables.bodies
+        entered = set(found["address"][found["entered"] == 1].tolist())
+        self._left = [address for address in entered if address not in bodies and address not in held]
+        self._bodies = {body: None for address, body in bodies.items() if address not in entered}
+
+    def _enter_bodies(self, bodies: Iterable[Any], hold: bool) -> None:
+        """Enter bodies (cffi pointers) that are not entered yet."""
+        addresses = _pointers(bodies)
+        done, n = 0, len(addresses)
+        while (
+            done < n
+            and (done := done + self._bodies_come(self._store.at, addresses + done, n - done, hold)) < n
+        ):
+            self._store.grow()
+
+    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any]:
+        """Chipmunk's addresses of shapes, and the numbers in the pool of their outlines, in which they are then.
+
+        ValueError if one has no area.
+        """
+        addresses = _pointers(shape._shape for shape in shapes)
+        heads = ffi.new("int[]", [self._given(shape) for shape in shapes])
+        bad = self._store.read(address_of(addresses), address_of(heads), len(shapes))
+        if bad >= 0:
+            Outline.from_pymunk(shapes[bad])  # says what is wrong
+            raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
+        return addresses, heads
+
+    def _given(self, shape: pymunk.Shape) -> int:
+        """The number in the pool of the outline that somebody has put on a shape; -1: nobody has."""
+        if not isinstance(getattr(shape, "outline", None), Outline):
+            return -1
+        outline = Outline.from_pymunk(shape)
+        head = self._store.outline(outline, outline.smallest_extent)
+        if outline.mirror is not None:
+            self._store.forms.mirror[head] = self._store.outline(outline.mirror, outline.smallest_extent)
+        return head
+
+    def _enter(self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any) -> None:
+        """Enter shapes into the tables (`_outlines`)."""
+        done, n = 0, len(shapes)
+        while done < n:
+            done += self._shapes_come(self._store.at, addresses + done, heads + done, n - done)
+            if done < n:
+                self._store.grow()
+        self.shapes.update((shape._hashid, shape) for shape in shapes)
+        proxies = [
+            shape._hashid
+            for shape in shapes
+            if isinstance(getattr(shape, "outline", None), Outline) and Outline.from_pymunk(shape).proxied
+        ]
+        if proxies:
+            self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
+            self.proxies.update(proxies)
+
+    def largest(self) -> float:
+        """The largest side (length) of the bounding boxes of the shapes that move; 1 if there are none."""
+        tables = self._store.tables
+        shapes = self._store.known_shapes
+        moves = (
+            (shapes["outline"] >= 0)
+            & (tables.bodies["mobile"][shapes["body"]] == 1)
+            & (shapes["sensor"] == 0)
+        )
+        sides = [
+            shapes[high][moves] - shapes[low][moves] for low, high in (("left", "right"), ("bottom", "top"))
+        ]
+        return float(max((side.max() for side in sides if len(side)), default=1.0))
+
+    def _hear(self, space: pymunk.Space) -> dict[str, int]:
+        """Take down which collision types have callbacks of the user's, that may say no.
+
+        Returns facts by which it is known whether there are others.
+        """
+        everywhere = space._handlers.get((None, None))
+        to_all = everywhere is not None and any(
+            getattr(everywhere, phase) is not None
+            for phase in ("begin", "pre_solve", "post_solve", "separate")
+        )
+        keys = [key for key in space._handlers if key != (None, None)]
+        alone = _words({a for a, b in keys if b is None})
+        pairs = _words({kind for a, b in keys if b is not None for kind in (a, b)})
+        store, state = self._store, self._state
+        before = bool(state["heard_all"]), store.heard_alone.tolist(), store.heard_pairs.tolist()
+        if before != (to_all, alone.tolist(), pairs.tolist()):
+            new = copy.copy(store)
+            new.heard_alone, new.heard_pairs = alone, pairs
+            store.publish(new, heard_all=to_all, heard_epoch=int(state["heard_epoch"]) + 1)
+        entries = ffi.cast("unsigned int **", address_of(space._space) + int(state["space_handlers"]))
+        return {"handler_count": int(entries[0][0]), **self._hook.callbacks()}
+
+
+def _held(space: pymunk.Space) -> set[Any]:
+    """Chipmunk's bodies that joints hold."""
+    return {body._body for joint in space._constraints for body in (joint.a, joint.b)}
+
+
+def _pointers(cdata: Iterable[Any]) -> Any:
+    return ffi.new("void *[]", list(cdata))
+
+
+def _words(values: Iterable[Any]) -> np.ndarray:
+    return np.array(list(values), np.uint64)

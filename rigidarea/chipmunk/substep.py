@@ -1,0 +1,195 @@
+"""The substeps of a frame: drift, kick, overlap, rows, sweeps, relaxing, drift; contacts and joints together."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..compile.jit import kernel
+from ..contact.blows import blows, bound_bounces
+from ..contact.conjugate import search_joints, search_together
+from ..contact.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
+from ..contact.islands import note, share_kicks
+from ..contact.join import gather, has_room, join, nobody_comes_near, somebody_touches
+from ..contact.joint import free_turning, geometric_stiffness
+from ..contact.order import arrange, find_near, sieve
+from ..contact.relax import begin_to_relax, end_relaxing
+from ..contact.solve import (
+    common,
+    drift,
+    finish,
+    fly,
+    held_back,
+    kick,
+    kinetic,
+    lessen,
+    pace,
+    sweep,
+    warm_start,
+)
+from ..contact.space_record import load_law, load_pool, load_tables, load_work
+from ..contact.tables import BOUNCES, ROWS, SUBSTEP, UNSORTED, Tables
+from .joints import ask_springs, own_joints
+from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
+from .record import floats, look_at_partners
+
+
+@kernel
+def near_pairs(s: Any, space: int, h: float, time: float, ordered: bool = True) -> bool:
+    """Find the pairs that are near, and order them unless `number` is about to. Whether there was room for them."""
+    tables = load_tables(s)
+    if not find_near(load_pool(s), tables, s.frame, h, time):
+        return False
+    if tables.counters[UNSORTED]:
+        look_at_partners(s, tables)
+        sieve(tables)
+        if ordered:
+            g = floats(space + s.space_gravity, 2)
+            arrange(tables, g[0], g[1])
+    lap(s, PAIRS)
+    return bool(s.begun or has_room(tables, time))
+
+
+@kernel
+def find_contacts(s: Any, space: int, h: float, time: float, jointed: bool) -> bool:
+    """Find the pairs that are near, their regions and rows, and the joints'. Whether there was room for them."""
+    if not near_pairs(s, space, h, time):
+        return False
+    tables = load_tables(s)
+    s.begun = 1
+    tables.counters[SUBSTEP] += 1
+    tables.counters[ROWS] = 0
+    tables.counters[BOUNCES] = 0
+    found = gather(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, jointed)
+    lap(s, OVERLAPS)
+    return bool(found)
+
+
+@kernel
+def _join(s: Any, tables: Tables, h: float, first: bool) -> int:
+    """Rows that come up while the others are solved: how many; -1: there was no room for them."""
+    lap(s, POSITIONS if first else ITERATIONS)
+    joined = int(join(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, first))
+    lap(s, SPECULATIVE)
+    return joined
+
+
+@kernel
+def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
+    """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was room for it.
+
+    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
+    """
+    # before the warm start: what that adds is no speed at which anybody comes
+    if _join(s, tables, h, True) < 0:
+        return False
+    if tables.counters[ROWS] == 0:
+        return True  # nothing that could change a velocity
+    mass, x, y = common(tables)
+    energy = kinetic(tables, x, y)
+    came = kinetic(tables, 0.0, 0.0) if tables.counters[BOUNCES] > 0 else 0.0
+    small = pace(load_law(s), mass, energy, h)
+    warm_start(tables)
+    if jointed:
+        lessen(tables, h)
+    enough = mass * (SETTLED * small) ** 2
+    searches = whole // SEARCH_SWEEPS
+    sweeps = max(1, whole - 2 * searches - _relaxing(whole))
+    for more in range(1 + MORE_SWEEPS):
+        look = 1 if more == 0 else 0
+        wait = 1
+        moved = 0.0
+        known = True  # which rows bear: those that have joined since the search are not among them
+        for k in range(sweeps):
+            if k == look:  # less and less often, as long as nobody joins
+                joined = _join(s, tables, h, False)
+                if joined < 0:
+                    return False
+                wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
+                look += wait
+                known = joined == 0
+            moved = sweep(tables, k % 2 == 0)
+            if k > 0 and moved <= SETTLED * small:
+                break
+            if k == 0:
+                if jointed:
+                    search_joints(tables, SEARCH_STEPS, enough)
+                else:
+                    search_together(tables, min(1, searches), False)
+                if moved > small and blows(tables, load_law(s), h):
+                    search_together(tables, searches, False)
+                known = True
+            elif k == 1 and not jointed:
+                search_together(tables, searches - 1, known)
+        if moved <= SETTLED * small:
+            break
+        gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
+        if not gained and moved <= small:
+            break
+    if tables.counters[BOUNCES] > 0 and not jointed:
+        bound_bounces(tables, came + held_back(tables, h))
+    return True
+
+
+@kernel(forceinline=True)
+def _relaxing(sweeps: int) -> int:
+    """How many sweeps of a substep come after positions are settled."""
+    return (sweeps + RELAX_SWEEPS - 1) // RELAX_SWEEPS
+
+
+@kernel
+def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
+    """Bodies are moved by what takes overlaps apart, and go on without that speed."""
+    if not begin_to_relax(tables):
+        return
+    mass, x, y = common(tables)
+    small = pace(load_law(s), mass, kinetic(tables, x, y), h)
+    for k in range(whole):
+        moved = sweep(tables, k % 2 == 0)
+        if moved <= small and (k + 1 >= _relaxing(whole) or moved <= SETTLED * small):
+            break
+    end_relaxing(tables, h)
+
+
+@kernel
+def substeps(s: Any, space: int, dt: float, n: int) -> bool:
+    """A frame in n substeps of the bodies that are live. Whether there was room for it."""
+    h = dt / n
+    tables = load_tables(s)
+    joints = own_joints(s, tables)
+    sweeps = s.sweeps
+    if s.steps_given == 0 and joints == 0:  # a calm frame has those of both substeps
+        sweeps *= max(1, s.substeps // n)
+    for i in range(n):
+        drift(tables, s.frame, 0.5 * h if i == 0 else h)
+        lap(s, POSITIONS)
+        if i == 0 and joints == 0 and not somebody_touches(tables):
+            # as far as the last substep would look, half of it beyond the frame
+            if not near_pairs(s, space, dt, dt):
+                return False
+            if nobody_comes_near(tables, dt):
+                tables.counters[SUBSTEP] += 1
+                tables.counters[ROWS] = 0
+                # under constant forces one kick in the middle is exact
+                fly(tables, s.frame, 0.5 * (dt - h), 0.5 * dt, n)
+                lap(s, POSITIONS)
+                return True
+        if i == 0:
+            share_kicks(tables, n)
+        kick(tables, s.frame)
+        if joints > 0:
+            ask_springs(s, tables)
+            geometric_stiffness(tables, h, s.followed)
+        if not find_contacts(s, space, h, dt - i * h, joints > 0):
+            return False
+        if not _solve(s, tables, h, sweeps, joints > 0):
+            return False
+        lap(s, ITERATIONS)
+        _relax(s, tables, h, sweeps)
+        if joints > 0:
+            free_turning(tables)
+        finish(tables, load_law(s), s.frame, h, i == n - 1)
+    drift(tables, s.frame, 0.5 * h)
+    note(tables, n)
+    s.contacts += tables.counters[ROWS]
+    lap(s, POSITIONS)
+    return True

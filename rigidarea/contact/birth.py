@@ -1,0 +1,354 @@
+"""What a region that is new is: rest, an impact that steps follow, a bounce shorter than the step, or yet to come."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..compile.jit import kernel
+from ..geometry.place import Pose, overlap_of_outlines
+from ..geometry.pool import Pool
+from ..geometry.work import Work
+from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
+from .exposed import exposed_patch
+from .motion import centre_of, earlier, since_of, unseen_for
+from .region import closing, fill, inverse_mass, region_stiffness, turn_to
+from .stiffness import depth_for, stiffness_of
+from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
+
+
+@kernel
+def _nearest(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    n: int,
+    ia: int,
+    ib: int,
+    pose: Pose,
+    facing: float,
+) -> int:
+    """Which of the work's n loops is nearest to a region, of those turned to its direction by more than `facing`.
+
+    -1: none.
+    """
+    least = np.inf
+    best = -1
+    for k in range(n):
+        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
+        far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
+        if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > facing and far < least:
+            least = far
+            best = k
+    return best
+
+
+@kernel
+def touch(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
+    unseen: float,
+) -> bool:
+    """Put a new region where the two have touched first; False: it has not come there by moving.
+
+    Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
+    it was u0 at touch, u0^2 = u^2 - 2 g d, tau = 2 d / (u + u0) earlier still. A thousandth of the depth is left, so
+    that there is a region to see its direction by. Leaves in `region.back` how long ago the bodies were where its arms
+    are: what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
+    well (`back` negative).
+    """
+    come = back > 0.0
+    region.back = back
+    for _ in range(3):
+        d = region.depth
+        u = closing(region, a, b, 0.5)
+        gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+        u -= gain * back
+        root = u * u - 2.0 * gain * d
+        if u <= 0.0 or root < 0.0:
+            return come
+        tau = 2.0 * d / (u + math.sqrt(root))
+        if tau + back > min(MOST_ARRIVED * unseen, since_of(a, b)):
+            return come
+        come = True
+        best = -1
+        then = back
+        for share in (0.999, 0.9, 0.5):
+            then = back + share * tau
+            pose = earlier(a, then)
+            other = earlier(b, then)
+            n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
+            best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, 0.0)
+            if best >= 0:
+                break
+        if best < 0:
+            return come
+        patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
+        ax, ay = centre_of(a, pose)
+        bx, by = centre_of(b, other)
+        fill(region, patch, ax, ay, bx, by)
+        region.back = then
+        back = then
+        if patch.depth < 0.01 * d:
+            return come
+    return come
+
+
+@kernel(forceinline=True)
+def _slow(law: Law, gain: float, rate2: float, h: float) -> float:
+    """First touch slower than this is rest (length/time): what pushes gives that much in a few steps."""
+    if law.rest_speed >= 0.0:
+        return law.rest_speed
+    return REST_KICKS * abs(gain) * max(h, 1.0 / math.sqrt(rate2))
+
+
+@kernel(forceinline=True)
+def _pushed(law: Law, gain: float, h: float) -> float:
+    """What pushes two that have met before together (length/time^2): in a pile both fall alike, gravity counts."""
+    return max(law.gravity, abs(gain) / h)
+
+
+@kernel(forceinline=True)
+def size_of(body: Any) -> float:
+    """The smallest extent of a body that moves (length)."""
+    return body.extent if body.mobile else np.inf
+
+
+@kernel
+def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether two who bounce part, overlapping still: sent back they bounce anew, a substep later.
+
+    They have bounced, or come to overlap while they part already, and bear nothing.
+    """
+    if r.mode != REST or pair.elasticity == 0.0 or law.followed == math.inf or r.l1 + r.l2 > 0.0:
+        return False
+    if r.first_speed == 0.0:
+        return False
+    u = closing(r, a, b, 0.0)
+    rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
+    return bool(-u > _slow(law, _pushed(law, u - closing(r, a, b, 1.0), h), rate2, h))
+
+
+@kernel
+def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what a bounce has left overlapping closes so fast that it bounces anew, here and now.
+
+    What has bounced is at rest when it closes too slowly for that (`first_speed` is 0 from then on).
+    """
+    if r.first_speed == 0.0 or pair.elasticity == 0.0 or law.followed == math.inf:
+        return False
+    u = closing(r, a, b, 0.5)
+    rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
+    if u <= 0.0 or rate2 * h * h <= law.followed:
+        return False
+    gain = _pushed(law, 2.0 * (u - closing(r, a, b, 1.0)), h)
+    r.first_speed = u if pair.elasticity * u > _slow(law, gain, rate2, h) else 0.0
+    r.back = 0.0
+    return bool(r.first_speed > 0.0)
+
+
+@kernel(forceinline=True)
+def arrives(r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""
+    return bool(closing(r, a, b, 1.0) * h > 2.0 * max(r.depth, r.rest_depth))
+
+
+@kernel
+def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool:
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far.
+
+    By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
+    """
+    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
+    inside = r.depth - before - MOST_ARRIVED * h * speed
+    least = min(size_of(a), size_of(b))
+    if inside <= PUT_FOLLOWED * least:
+        return False
+    phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
+    return bool(phase2 <= law.followed or inside > PUT * least)
+
+
+@kernel(forceinline=True)
+def drives(body: Any) -> bool:
+    """Whether a body moves as it is told, whatever is in its way."""
+    return bool(body.kind != FIXED and not body.mobile)
+
+
+@kernel(forceinline=True)
+def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
+    """Whether a kinematic body has pressed another so deep that no bed is stiff enough: it has put it there."""
+    return bool(
+        (drives(a) or drives(b)) and law.stiffness == 0.0 and depth > PUT * min(size_of(a), size_of(b))
+    )
+
+
+@kernel(forceinline=True)
+def _lying(law: Law, pair: Any, inverse: float) -> float:
+    """How deep one lies on the other under its own weight (length)."""
+    return law.gravity / (inverse * pair.rate)
+
+
+@kernel
+def goes_over(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    height: float,
+    h: float,
+) -> bool:
+    """Whether a new region is an edge no higher than what bodies sink by: what is met there goes over it.
+
+    So the next of butted tiles shows a body that lies on the last one its side, as high as the body has sunk. The
+    chord of the sliver that they share says "across" until it is longer than high, a substep or a few later: that
+    direction is taken at once, and the region is no blow.
+    """
+    if region.chord > height or law.followed == math.inf:
+        return False
+    u = closing(region, a, b, 0.0)
+    if u <= 0.0:
+        return False
+    ahead = max(h, 2.0 * height / u)
+    if 0.5 * law.gravity * ahead * ahead > height:
+        return False  # too slow to be seen there: what gravity adds on the way, and somebody carries, would be more
+    pose = earlier(a, -ahead)
+    n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
+    best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, -np.inf)
+    if best < 0:
+        return False
+    patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
+    if patch.nx * region.nx + patch.ny * region.ny > TURNS:
+        return False
+    turn_to(region, patch.nx, patch.ny)
+    return True
+
+
+@kernel
+def enter(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    back: float,
+    h: float,
+) -> None:
+    """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
+    inverse = inverse_mass(region, a, b)
+    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
+    phase2 = stiffness * inverse * h * h
+    height = STEP * _lying(law, pair, inverse)
+    if back == 0.0 and goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, height, h):
+        region.mode = REST
+        region.placed = 0
+        region.opened = 0
+        region.first_speed = 0.0
+        region.rest_depth = region.depth
+        region.l1 = 0.0  # what it bore, it bore in another direction
+        region.l2 = 0.0
+        region.lt = 0.0
+        region.spring = 0.0
+        return
+    push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
+    region.rest_depth = depth_for(law, pair, region, push)
+    unseen = unseen_for(pair, h)
+    placed = law.followed != math.inf and back == 0.0 and jumped_in(law, region, 0.0, a, b, unseen)
+    if phase2 <= law.followed and back == 0.0:
+        region.mode = REST if placed else IMPACT
+    else:
+        touched = touch(pool, tables, work, law, pair, region, ia, ib, a, b, back, h, unseen)
+        region.mode = STRUCK if touched else REST
+    region.placed = PLACED if placed and region.mode == REST else 0
+    u = closing(region, a, b, 0.5)
+    gain = 2.0 * (u - closing(region, a, b, 1.0)) / h
+    u -= gain * region.back
+    slow = _slow(law, gain, stiffness * inverse, h)
+    if region.mode == REST and not placed and phase2 > law.followed and pair.elasticity * u > slow:
+        region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
+    region.first_speed = max(u, 0.0)
+    region.opened = 0
+    if u <= slow:
+        # what parts so fast has met others meanwhile: sent back it bounces
+        parts = pair.elasticity > 0.0 and phase2 > law.followed and region.placed == 0
+        parts = parts and -u > _slow(law, _pushed(law, gain * h, h), stiffness * inverse, h)
+        region.first_speed = -u if parts else 0.0
+        if region.mode == IMPACT:
+            region.mode = REST
+    elif region.mode == STRUCK and pair.elasticity == 0.0:
+        region.first_speed = 0.0
+
+
+@kernel
+def expect(
+    pool: Pool,
+    tables: Tables,
+    work: Work,
+    law: Law,
+    pair: Any,
+    region: Any,
+    ia: int,
+    ib: int,
+    a: Any,
+    b: Any,
+    ahead: float,
+    h: float,
+    first: bool,
+) -> bool:
+    """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither.
+
+    A bounce only at the first look (`meet_ahead`).
+    """
+    inverse = inverse_mass(region, a, b)
+    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
+    if stiffness * inverse * h * h <= law.followed:
+        return False  # the steps follow it
+    lying = _lying(law, pair, inverse)
+    if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying, h):
+        return False  # it will be there, and say so itself
+    u = closing(region, a, b, 0.0)
+    gain = max(0.0, u - closing(region, a, b, 1.0)) / h
+    if pair.elasticity * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
+        region.mode = STRUCK
+        region.rest_depth = 0.0
+        region.first_speed = u
+        # positions are those of the middle of the substep: the drift yet to come is the half of it
+        return (
+            first
+            and touch(pool, tables, work, law, pair, region, ia, ib, a, b, -ahead, h, h)
+            and region.back >= -0.5 * h
+        )
+    region.mode = NEARING
+    region.first_speed = 0.0
+    # in a stack both fall alike, and it will carry something all the same
+    rest = max(lying, depth_for(law, pair, region, gain / inverse))
+    region.rest_depth = min(region.depth, rest)
+    region.back = ahead
+    return True

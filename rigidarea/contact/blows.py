@@ -1,0 +1,119 @@
+"""What a blow does within a substep that no row knew of when it was made: it goes on, and it takes.
+
+Through what lies at rest it goes on as through something rigid, a bed being as stiff as its load asks and a blow
+shorter than the step. And it adds no energy, which Newton's restitution can where friction turns the slip round.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from .birth import drives
+from .constants import REST_KICKS
+from .region import closing
+from .row import harden, push
+from .solve import kinetic
+from .tables import FIXED, NEARING, REST, ROWS, Law, Tables
+
+
+@kernel(forceinline=True)
+def _struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> bool:
+    """Whether what lies there is pressed in as by a blow, faster than rest, deeper than it lies: then it is rigid.
+
+    A bed is as stiff as its load asks; a blow that goes on through it is shorter than the step.
+    """
+    if r.mode != REST or row.theta == 0.0 or row.alpha == 0.0:
+        return False
+    turn = a.w - b.w
+    u = closing(r, a, b, 0.0) + max(-turn * row.e1, -turn * row.e2)
+    pushed = max(law.gravity, abs(closing(r, a, b, 0.0) - closing(r, a, b, 1.0)) / h)
+    if u <= REST_KICKS * pushed * h or u * h <= r.depth:
+        return False
+    harden(row, row.alpha)
+    return True
+
+
+@kernel
+def blows(tables: Tables, law: Law, h: float) -> bool:
+    """Whether a blow goes on through what lies at rest: there it is no bed any more.
+
+    Not of what hangs in a joint, or a kinematic body hits: those press on, and something has to give way.
+    """
+    rows = tables.rows
+    for i in range(tables.counters[ROWS]):
+        a = tables.bodies[rows[i].a]
+        b = tables.bodies[rows[i].b]
+        a.free = a.calm >= 0
+        b.free = b.calm >= 0
+    for i in range(tables.counters[ROWS]):
+        a = tables.bodies[rows[i].a]
+        b = tables.bodies[rows[i].b]
+        if drives(a) or drives(b):
+            a.free = 0
+            b.free = 0
+    struck = False
+    for i in range(tables.counters[ROWS]):
+        a = tables.bodies[rows[i].a]
+        b = tables.bodies[rows[i].b]
+        if rows[i].ends > 0 and (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
+            struck |= _struck_at_rest(rows[i], tables.regions[rows[i].region], law, a, b, h)
+    return struck
+
+
+@kernel(forceinline=True)
+def _bounces(row: Any, region: Any) -> bool:
+    """Whether a row is of two who bounce, or part from a bounce."""
+    return bool(row.alpha == 0.0 and region.first_speed > 0.0 and region.mode != NEARING)
+
+
+@kernel
+def _push_bounces(tables: Tables, part: float) -> float:
+    """Give so much more of their impulses to what bounces; the largest restitution, infinite off what drives."""
+    most = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0:
+            region = tables.regions[row.region]
+            if _bounces(row, region):
+                most = max(most, tables.pairs[region.pair].elasticity)
+                a = tables.bodies[row.a]
+                b = tables.bodies[row.b]
+                if drives(a) or drives(b):
+                    most = math.inf
+                push(row, a, b, part * row.l1, part * row.l2, part * row.lt)
+    return most
+
+
+@kernel
+def bound_bounces(tables: Tables, most: float) -> None:
+    """Bounces leave no more kinetic energy than `most`: all of them give the same part less where they do.
+
+    Friction that turns the slip round has work to give of which Newton's restitution does not know (T. R. Kane, "A
+    dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), and so has a solve that has not converged. Of
+    the impulses' part s energy is a square, known by three of its values.
+    """
+    whole = kinetic(tables, 0.0, 0.0)
+    if whole <= most or _push_bounces(tables, -1.0) > 1.0:
+        if whole > most:
+            _push_bounces(tables, 1.0)
+        return
+    none = kinetic(tables, 0.0, 0.0)
+    _push_bounces(tables, 0.5)
+    half = kinetic(tables, 0.0, 0.0)
+    square = 2.0 * (whole + none) - 4.0 * half
+    slope = whole - none - square
+    s = 1.0
+    if square > 0.0:
+        root = slope * slope - 4.0 * square * (none - most)
+        s = min(1.0, max(0.0, (math.sqrt(max(0.0, root)) - slope) / (2.0 * square)))
+    _push_bounces(tables, s - 0.5)
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0:
+            region = tables.regions[row.region]
+            if _bounces(row, region):
+                row.l1 *= s
+                row.l2 *= s
+                row.lt *= s

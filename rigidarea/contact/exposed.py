@@ -1,0 +1,183 @@
+"""Of the boundary of what nothing moves only that counts which can be reached: the rest lies within its neighbours.
+
+The foot of a ramp lies on a floor, the side of a tile at the next tile's. A body that has sunk into the floor by what
+carries it has that edge of the ramp within it as well, and the chord, from the ramp's slope to its underside, would
+stand across. What is exposed says where the body can go: the direction is the mean normal of the exposed part of the
+boundary, which for a boundary that is exposed as a whole is the chord's (the integral of normals round a region is 0).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..geometry.locate import inside_outline
+from ..geometry.place import Pose
+from ..geometry.pool import Pool
+from ..geometry.work import A_EDGE, Relative, Work
+from .patch import Patch, patch_of, reach_along
+from .tables import CHORD, FIXED, Law, Tables
+from .tree import STILL, next_met
+
+#: A neighbour's boundary is looked for this far beyond an edge, of the moving body's smallest extent: what lies flush.
+FLUSH = 2e-4
+#: A direction that turns by less than the angle with this cosine leaves a straight face what it is.
+SAME_FACE = 0.9
+
+
+@kernel
+def _behind_line(pool: Pool, shape: Any, wall: Any, x: float, y: float, far_x: float, far_y: float) -> bool:
+    """Whether a point lies behind a segment without thickness, or on it, seen from (far_x, far_y).
+
+    As far past its ends as it lies behind: between two segments of a chain nothing is exposed.
+    """
+    head = pool.heads[shape.outline]
+    p = head.point
+    ax = pool.points[p, 0] + head.x
+    ay = pool.points[p, 1] + head.y
+    ux = pool.points[p + 1, 0] + head.x - ax
+    uy = pool.points[p + 1, 1] + head.y - ay
+    dx = wall.c * (x - wall.ox) + wall.s * (y - wall.oy) - ax
+    dy = wall.c * (y - wall.oy) - wall.s * (x - wall.ox) - ay
+    along = dx * ux + dy * uy
+    behind = abs(dx * uy - dy * ux)
+    if not -behind <= along <= ux * ux + uy * uy + behind:
+        return False
+    ex = wall.c * (far_x - wall.ox) + wall.s * (far_y - wall.oy) - ax
+    ey = wall.c * (far_y - wall.oy) - wall.s * (far_x - wall.ox) - ay
+    return bool((dy * ux - dx * uy) * (ey * ux - ex * uy) <= 0.0)
+
+
+@kernel
+def _hidden(
+    pool: Pool, tables: Tables, work: Work, own: int, mover: Any, x: float, y: float, deep: float
+) -> bool:
+    """Whether a point, so `deep` in shape `own`, lies within another shape that nothing moves."""
+    room = deep + 2.0 * FLUSH * mover.extent
+    at = -1
+    while True:
+        at = next_met(tables.nodes, tables.roots[STILL], at, x - room, y - room, x + room, y + room)
+        if at < 0:
+            return False
+        t = tables.nodes[at].owner
+        shape = tables.shapes[t]
+        wall = tables.bodies[shape.body]
+        if t == own or wall.kind != FIXED or shape.sensor:
+            continue
+        if shape.mirror >= 0:
+            if _behind_line(pool, shape, wall, x, y, mover.x, mover.y):
+                return True
+            continue
+        head = pool.heads[shape.outline]
+        lx = wall.c * (x - wall.ox) + wall.s * (y - wall.oy) - head.x
+        ly = wall.c * (y - wall.oy) - wall.s * (x - wall.ox) - head.y
+        if inside_outline(pool, shape.outline, Relative(1.0, 0.0, 0.0, 0.0), lx, ly, True, work):
+            return True
+
+
+@kernel
+def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float, reach: float) -> Patch:
+    """A patch along another direction: what turns far has lost its face."""
+    face = nx * patch.nx + ny * patch.ny > SAME_FACE
+    return Patch(
+        area,
+        x,
+        y,
+        nx,
+        ny,
+        patch.chord,
+        patch.middle if face else 0.0,
+        patch.straight if face else 0.0,
+        0.0,
+        0.0,
+        patch.depth if face else reach,
+        reach,
+        area == 0.0,
+        patch.radial,
+    )
+
+
+@kernel
+def exposed_patch(
+    pool: Pool, tables: Tables, pair: Any, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose
+) -> Patch:
+    """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges.
+
+    It is blind and of no area where a disc is only within a round end of which nothing is exposed.
+    """
+    patch = patch_of(pool, work, law, k, ia, ib, pose)
+    a = tables.bodies[tables.shapes[pair.a].body]
+    b = tables.bodies[tables.shapes[pair.b].body]
+    if patch.blind or law.direction != CHORD or (a.kind == FIXED) == (b.kind == FIXED):
+        return patch
+    own, mover, side = (pair.a, b, A_EDGE) if a.kind == FIXED else (pair.b, a, 1 - A_EDGE)
+    loop = work.loops[k]
+    if loop.arcs > 0 and patch.radial == 0:
+        return patch
+    edges = 0
+    caps = 0
+    for i in range(loop.start, loop.stop):
+        if work.label[i] == side:
+            edges += 1
+            caps += loop.arcs > 0 and work.bows[i, 2] != 0.0
+    if edges < 2 and caps == 0:
+        return patch
+    head = pool.heads[ia]
+    nx = 0.0
+    ny = 0.0
+    hidden = False
+    for i in range(loop.start, loop.stop):
+        j = i + 1 if i + 1 < loop.stop else loop.start
+        dx = work.polygon[j, 0] - work.polygon[i, 0]
+        dy = work.polygon[j, 1] - work.polygon[i, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        if work.label[i] != side or length == 0.0:
+            continue
+        flush = FLUSH * mover.extent / length
+        mx = 0.5 * (work.polygon[j, 0] + work.polygon[i, 0])
+        my = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1])
+        if loop.arcs > 0 and work.bows[i, 2] != 0.0:  # the arc's middle, which is less than half a turn
+            ux = mx - work.bows[i, 0]
+            uy = my - work.bows[i, 1]
+            out = abs(work.bows[i, 2]) / math.sqrt(ux * ux + uy * uy)
+            mx = work.bows[i, 0] + out * ux
+            my = work.bows[i, 1] + out * uy
+            flush = 0.0  # it leaves the neighbour's side along a tangent: what lies flush is within it
+        lx = mx + flush * dy + head.x
+        ly = my - flush * dx + head.y
+        x = pose.x + pose.c * lx - pose.s * ly
+        y = pose.y + pose.s * lx + pose.c * ly
+        if _hidden(pool, tables, work, own, mover, x, y, patch.reach):
+            hidden = True
+        else:
+            nx += dy
+            ny -= dx
+    length = math.sqrt(nx * nx + ny * ny)
+    if (
+        length == 0.0 and hidden and caps > 0
+    ):  # all of it within a neighbour, which says where the disc can go
+        return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach)
+    if not hidden or length == 0.0:
+        return patch
+    if side != A_EDGE:  # from A to B is into B
+        length = -length
+    nx /= length
+    ny /= length
+    wx = pose.c * nx - pose.s * ny
+    wy = pose.s * nx + pose.c * ny
+    reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
+    px = patch.x
+    py = patch.y
+    if patch.radial:  # a disc's force goes through its centre
+        for i in range(loop.start, loop.stop):
+            if work.label[i] != side and work.bows[i, 2] != 0.0:
+                lx = work.bows[i, 0] + head.x
+                ly = work.bows[i, 1] + head.y
+                cx = pose.x + pose.c * lx - pose.s * ly
+                cy = pose.y + pose.s * lx + pose.c * ly
+                along = (px - cx) * wx + (py - cy) * wy
+                px = cx + along * wx
+                py = cy + along * wy
+                break
+    return _turned(patch, patch.area, px, py, wx, wy, reach)

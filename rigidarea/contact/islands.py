@@ -1,0 +1,259 @@
+"""Which bodies go through a frame together, and in how many substeps.
+
+An island is what is near one another, or jointed, directly or through others that move; what does not move parts
+islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast or
+delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
+(`tables.live`) and pairs (from counters[FIRST] to counters[LAST] of `tables.near`) alone.
+
+Near is what a search has found for the whole frame. A blow within it may carry a body further: then two turns meet
+(counters[MET]), and the frame is run again as one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..geometry.clearance import clearance
+from ..geometry.place import seen_from
+from ..geometry.pool import Pool
+from ..geometry.work import Work
+from .constants import CALM, FEATURE, MOST_SUBSTEPS
+from .motion import earlier, pose_of
+from .order import arrange, bound, enlist, turn_of
+from .sides import shown_sides
+from .tables import (
+    AWAKE,
+    FIRST,
+    FIXED,
+    LAST,
+    LIVE,
+    MET,
+    NEAR,
+    TOOTHED,
+    TURN,
+    TURNED,
+    UNSORTED,
+    Law,
+    Tables,
+)
+
+#: More substeps than any turn has.
+FINEST = 1 << 30
+
+
+@kernel
+def _past_teeth(pool: Pool, tables: Tables, work: Work, pair: Any, dt: float) -> int:
+    """Substeps of a frame of dt in each of which two outlines pass each other by a FEATURE of a slot's width at most.
+
+    1 where they come no nearer than that within the frame.
+    """
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    mouth = min(pool.heads[sa.outline].mouth, pool.heads[sb.outline].mouth)
+    left = max(sa.left, sb.left)
+    right = min(sa.right, sb.right)
+    bottom = max(sa.bottom, sb.bottom)
+    top = min(sa.top, sb.top)
+    if mouth == math.inf or left > right or bottom > top:
+        return 1
+    a = tables.bodies[sa.body]
+    b = tables.bodies[sb.body]
+    # At (x, y) one goes past the other at (dx - w y, dy + w x): fastest at a corner of what the two boxes share.
+    w = b.w - a.w
+    dx = b.vx - a.vx + b.w * b.y - a.w * a.y
+    dy = b.vy - a.vy - b.w * b.x + a.w * a.x
+    way = dt * math.hypot(
+        max(abs(dx - w * bottom), abs(dx - w * top)), max(abs(dy + w * left), abs(dy + w * right))
+    )
+    room = FEATURE * mouth
+    n = int(min(way / room, float(MOST_SUBSTEPS - 1))) + 1
+    if n == 1 or pair.head >= 0:
+        return n
+    ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
+    part_gone = 0.0
+    for _ in range(n):  # conservative advancement (Mirtich 1996): on by what nothing can have covered
+        rel = seen_from(
+            pool.heads[ia], earlier(a, -part_gone * dt), pool.heads[ib], earlier(b, -part_gone * dt)
+        )
+        gap = clearance(pool, ia, pool, ib, rel, room + way, work)
+        if gap <= room:
+            return n
+        part_gone += (gap - room) / way
+        if part_gone >= 1.0:
+            return 1
+    return n
+
+
+@kernel
+def demand(
+    pool: Pool, tables: Tables, work: Work, law: Law, dt: float, n: int, free: bool
+) -> tuple[int, int]:
+    """How many substeps each body wants in a frame of dt; the most and the least that any does.
+
+    n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
+    and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
+    (`meet`); teeth, slots and hooks move under a contact that is there already.
+    """
+    most = 1 if free else n
+    least = FINEST
+    slow = CALM * law.gravity * dt
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        before = body.was_calm == 1
+        body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
+            3.0 * slow if before else slow
+        )
+        body.wants = max(1 if free and before and body.calm else n, body.asked)
+        most = max(most, body.wants)
+        least = min(least, body.wants)
+    if not free or tables.counters[TOOTHED] == 0:
+        return most, min(most, least)
+    for i in range(tables.counters[NEAR]):
+        pair = tables.pairs[tables.near[i].pair]
+        wants = _past_teeth(pool, tables, work, pair, dt)
+        if wants > 1:
+            for one in (tables.near[i].a, tables.near[i].b):
+                body = tables.bodies[one]
+                body.wants = max(body.wants, wants)
+            most = max(most, wants)
+    return most, min(most, least)
+
+
+@kernel
+def everybody(tables: Tables) -> None:
+    """All bodies and pairs in one turn."""
+    counters = tables.counters
+    counters[TURN] = 0
+    if counters[TURNED]:
+        counters[TURNED] = 0
+        counters[UNSORTED] = 1
+    enlist(tables)
+    counters[FIRST] = 0
+    counters[LAST] = counters[NEAR]
+
+
+@kernel
+def company(tables: Tables) -> None:
+    """Note in `steps` who is near somebody."""
+    for k in range(tables.counters[AWAKE]):
+        tables.bodies[tables.awake[k]].steps = 0
+    for k in range(tables.counters[NEAR]):
+        tables.bodies[tables.near[k].a].steps = 1
+        tables.bodies[tables.near[k].b].steps = 1
+
+
+@kernel
+def spare(tables: Tables, i: int, n: int) -> None:
+    """After `company`: a jointed body (-1: none) with nobody near wants one substep, not n, unless asked for more."""
+    if i >= 0:
+        body = tables.bodies[i]
+        if body.kind != FIXED and body.steps == 0 and body.wants <= n:
+            body.wants = max(1, body.asked)
+
+
+@kernel
+def _root(tables: Tables, i: int) -> int:
+    """The body that stands for the island of body i (union-find with halving: Tarjan & van Leeuwen 1984)."""
+    bodies = tables.bodies
+    while bodies[i].island != i:
+        bodies[i].island = bodies[bodies[i].island].island
+        i = bodies[i].island
+    return i
+
+
+@kernel
+def connect(tables: Tables, i: int, j: int) -> None:
+    """The islands of bodies i and j are one; nothing where one of the two does not move (or is none: -1)."""
+    if i < 0 or j < 0 or tables.bodies[i].kind == FIXED or tables.bodies[j].kind == FIXED:
+        return
+    i = _root(tables, i)
+    j = _root(tables, j)
+    if i != j:
+        tables.bodies[max(i, j)].island = min(i, j)
+
+
+@kernel
+def part(tables: Tables) -> None:
+    """Every body for itself, then what is near is one."""
+    for k in range(tables.counters[AWAKE]):
+        tables.bodies[tables.awake[k]].island = tables.awake[k]
+    for k in range(tables.counters[NEAR]):
+        connect(tables, tables.near[k].a, tables.near[k].b)
+
+
+@kernel
+def number(tables: Tables, gx: float, gy: float) -> int:
+    """Each island takes as many substeps as the body of it that wants most; how many numbers: 0, 1, or 2 for more.
+
+    After `part` and `connect`. Where there are two or more, leaves the near pairs turn by turn.
+    """
+    counters = tables.counters
+    bodies = tables.bodies
+    awake = tables.awake
+    for k in range(counters[AWAKE]):
+        bodies[awake[k]].steps = bodies[awake[k]].wants
+    for k in range(counters[AWAKE]):
+        root = _root(tables, awake[k])
+        bodies[root].steps = max(bodies[root].steps, bodies[awake[k]].steps)
+    first = 0
+    numbers = 0
+    for k in range(counters[AWAKE]):
+        body = bodies[awake[k]]
+        body.steps = bodies[_root(tables, awake[k])].steps
+        if numbers == 0:
+            first = body.steps
+            numbers = 1
+        elif body.steps != first:
+            numbers = 2
+    moved = counters[TURNED] == 0 or counters[UNSORTED] == 1
+    for k in range(counters[NEAR]):
+        if moved:
+            break
+        near = tables.near[k]
+        moved = near.turn != turn_of(tables.bodies[near.a], tables.bodies[near.b])
+    if numbers < 2:
+        return numbers
+    counters[TURNED] = 1
+    if moved:
+        arrange(tables, gx, gy)
+    counters[MET] = 0
+    return numbers
+
+
+@kernel
+def next_turn(tables: Tables, last: int) -> int:
+    """The largest number of substeps below `last` that an island takes; 0: there is none.
+
+    Its bodies and pairs are live then. What does not move belongs to every turn.
+    """
+    counters = tables.counters
+    turn = 0
+    for k in range(counters[AWAKE]):
+        steps = tables.bodies[tables.awake[k]].steps
+        if steps < last:
+            turn = max(turn, steps)
+    counters[TURN] = turn
+    enlist(tables)
+    bound(tables)
+    return turn
+
+
+@kernel
+def share_kicks(tables: Tables, n: int) -> None:
+    """Of what a frame adds to the velocities of those that are live, a substep's share."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.kick_x = body.gain_x / n
+        body.kick_y = body.gain_y / n
+        body.kick_w = body.gain_w / n
+
+
+@kernel
+def note(tables: Tables, n: int) -> None:
+    """Those that are live have taken n substeps."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.kind != FIXED:
+            body.taken = n

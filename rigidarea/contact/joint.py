@@ -1,0 +1,397 @@
+"""Joints as rows of the solve: every constraint of pymunk's, one row each, beside the contacts'.
+
+A joint is a row of two unknowns at one point, l along n and lt along t = (-n_y, n_x), each within bounds, and the two
+together within a disc of radius `most` (max_force). What Chipmunk's own functions ask for is what the row asks for:
+
+| joint | n | l | lt |
+|---|---|---|---|
+| pivot | (1, 0) | free | free |
+| groove | the groove's normal | free | one sign, at the groove's ends |
+| pin | A's anchor to B's | free | |
+| slide | the same | one sign, at either end of its range | |
+| damped spring | the same | F0 + C (v' - vt) | |
+| rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
+
+`vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
+max_bias. Joints that cannot all be held share what is asked of them (`JOINT_GIVE`). A limit that is not reached yet is
+a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone,
+exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the step's end where the step is too long to follow
+it, as a contact's (`row`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..compile.raw_memory import record
+from .constants import JOINT_GIVE
+from .tables import JOINTS, LIVE, Tables
+
+PIN, SLIDE, PIVOT, GROOVE, SPRING, ROTARY_SPRING, LIMIT, RATCHET, GEAR, MOTOR = range(10)
+#: Kinds of joints.
+KINDS = 10
+#: Parameters of a joint: what its struct has after the part that all constraints share, in its order.
+PARAMETERS = 8
+
+#: A joint of the space while a frame has it.
+JOINT = record(
+    [
+        ("address", "u8"),  # of Chipmunk's constraint
+        ("own_class", "u8"),  # its class, a struct of Chipmunk's of four functions
+        ("pre_solve", "u8"),  # the user's callback; 0: none
+        ("kind", "i4"),  # PIN to MOTOR; -1: unknown
+        ("taken", "i4"),  # 1: since that, until the report, we run it
+        ("a", "i4"),  # rows of its bodies; -1: not ours
+        ("b", "i4"),
+        ("order", "i4"),  # which joint comes here in a sweep
+        ("mine", "i4"),  # 1: of the turn that is being solved
+        ("ordered", "i4"),  # 1: its place in that is known
+        ("max_force", "f8"),
+        ("error_bias", "f8"),  # share of an error that is left after a unit of time
+        ("max_bias", "f8"),  # (length/time)
+        ("p", "f8", (PARAMETERS,)),
+        ("force", "f8"),  # of a spring, what the user's function says in this frame
+        ("asked", "i4"),  # 1: there is such a function; 2: it has been asked in this frame
+        ("jx", "f8"),  # impulse that it did last, as Chipmunk keeps it
+        ("jy", "f8"),
+        ("step", "f8"),  # in this time; 0: never
+        ("x", "f8"),  # and summed over the frame
+        ("y", "f8"),
+    ]
+)
+
+
+@kernel(forceinline=True)
+def _anchor(body: Any, x: float, y: float) -> tuple[float, float]:
+    """A point of the body's frame, from its centre of gravity, world axes (length)."""
+    x -= body.cog_x
+    y -= body.cog_y
+    return body.c * x - body.s * y, body.s * x + body.c * y
+
+
+@kernel(forceinline=True)
+def _bias(joint: Any, error: float, h: float) -> float:
+    """The speed at which so much of an error goes (cpConstraint's bias_coef and maxBias)."""
+    speed = (1.0 - joint.error_bias**h) * error / h
+    return min(joint.max_bias, max(-joint.max_bias, speed))
+
+
+@kernel(forceinline=True)
+def _place(
+    row: Any, a: Any, b: Any, nx: float, ny: float, ax: float, ay: float, bx: float, by: float
+) -> None:
+    """The row's direction, and its arms: it acts at (ax, ay) from A's centre, (bx, by) from B's."""
+    row.nx = nx
+    row.ny = ny
+    row.arm_a = ax * ny - ay * nx
+    row.arm_b = bx * ny - by * nx
+    row.lean_a = ax * nx + ay * ny
+    row.lean_b = bx * nx + by * ny
+
+
+@kernel
+def spring_reach(joint: Any, a: Any, b: Any) -> float:
+    """What a spring's force function is asked with: its length, or the angle from B to A."""
+    if joint.kind == ROTARY_SPRING:
+        return float(a.angle - b.angle)
+    ax, ay = _anchor(a, joint.p[0], joint.p[1])
+    bx, by = _anchor(b, joint.p[2], joint.p[3])
+    return math.hypot(b.x + bx - a.x - ax, b.y + by - a.y - ay)
+
+
+@kernel
+def _stretch(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
+    """Pin, slide joint or spring: along the line from anchor to anchor."""
+    ax, ay = _anchor(a, joint.p[0], joint.p[1])
+    bx, by = _anchor(b, joint.p[2], joint.p[3])
+    nx = b.x + bx - a.x - ax
+    ny = b.y + by - a.y - ay
+    distance = math.hypot(nx, ny)
+    if distance > 0.0:
+        nx /= distance
+        ny /= distance
+    if joint.kind == PIN:
+        row.t1 = _bias(joint, distance - joint.p[4], h)
+    elif joint.kind == SLIDE:
+        over = distance - joint.p[5]
+        under = joint.p[4] - distance
+        if over > under:  # B is to be pulled: the direction is from B to A
+            nx = -nx
+            ny = -ny
+        _limit(row, joint, -max(over, under), h)
+    _place(row, a, b, nx, ny, ax, ay, bx, by)
+
+
+@kernel(forceinline=True)
+def _limit(row: Any, joint: Any, left: float, h: float) -> None:
+    """A limit with so much `left` until it is reached (less than nothing: it has been passed)."""
+    row.low = 0.0
+    row.t1 = left / h if left >= 0.0 else _bias(joint, left, h)
+
+
+@kernel
+def _groove(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
+    """B's anchor on a groove of A's: across it, and at its ends along it too."""
+    nx = a.c * joint.p[0] - a.s * joint.p[1]
+    ny = a.s * joint.p[0] + a.c * joint.p[1]
+    sx, sy = _anchor(a, joint.p[2], joint.p[3])  # from its start
+    ex, ey = _anchor(a, joint.p[4], joint.p[5])
+    bx, by = _anchor(b, joint.p[6], joint.p[7])
+    x = b.x + bx - a.x
+    y = b.y + by - a.y
+    # along t = (-n_y, n_x); the groove's end is before its start, for n is its direction turned by +90 degrees
+    along = -x * ny + y * nx
+    start = -sx * ny + sy * nx
+    end = -ex * ny + ey * nx
+    at = min(start, max(end, along))
+    across = sx * nx + sy * ny
+    ax = across * nx - at * ny
+    ay = across * ny + at * nx
+    _place(row, a, b, nx, ny, ax, ay, bx, by)
+    _bias_vector(row, joint, (x - ax) * nx + (y - ay) * ny, -(x - ax) * ny + (y - ay) * nx, h)
+    if start - along < along - end:  # its start is nearer: it pushes along -t
+        row.low_t = -math.inf
+        if along < start:
+            row.tt = (along - start) / h
+    else:
+        row.high_t = math.inf
+        if along > end:
+            row.tt = (along - end) / h
+
+
+@kernel(forceinline=True)
+def _bias_vector(row: Any, joint: Any, x: float, y: float, h: float) -> None:
+    """Of an error (x, y) along n and t, the speed at which it goes: no faster than max_bias."""
+    part = (1.0 - joint.error_bias**h) / h
+    speed = part * math.hypot(x, y)
+    if speed > joint.max_bias:
+        part *= joint.max_bias / speed
+    row.t1 = part * x
+    row.tt = part * y
+
+
+@kernel
+def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> bool:
+    """The row of a joint where its bodies are; False: it can do nothing. `a`, `b`: its bodies, the kick already given.
+
+    Row.region, a, b are set by the caller. followed: (w h)^2 up to which a step follows a spring.
+    """
+    kind = joint.kind
+    row.ends = 0
+    row.friction = 0.0
+    row.e1 = 0.0
+    row.e2 = 0.0
+    row.t1 = 0.0
+    row.tt = 0.0
+    row.t2 = 0.0
+    row.theta = 0.0
+    row.slid = 0.0
+    row.shift = 0.0
+    row.jammed = 0
+    row.l1 = 0.0
+    row.lt = 0.0
+    row.low = -math.inf
+    row.high = math.inf
+    row.low_t = 0.0
+    row.high_t = 0.0
+    row.most = joint.max_force * h
+    if kind == PIVOT:
+        ax, ay = _anchor(a, joint.p[0], joint.p[1])
+        bx, by = _anchor(b, joint.p[2], joint.p[3])
+        _place(row, a, b, 1.0, 0.0, ax, ay, bx, by)
+        _bias_vector(row, joint, b.x + bx - a.x - ax, b.y + by - a.y - ay, h)
+        row.low_t = -math.inf
+        row.high_t = math.inf
+    elif kind == GROOVE:
+        _groove(row, joint, a, b, h)
+    elif kind == PIN or kind == SLIDE or kind == SPRING:
+        _stretch(row, joint, a, b, h)
+    else:
+        row.nx = 0.0
+        row.ny = 0.0
+        row.arm_a = 1.0
+        row.arm_b = 1.0
+        row.lean_a = 0.0
+        row.lean_b = 0.0
+        turned = b.angle - a.angle
+        if kind == LIMIT:
+            over = turned - joint.p[1]
+            under = joint.p[0] - turned
+            if over > under:
+                row.arm_a = -1.0
+                row.arm_b = -1.0
+            _limit(row, joint, -max(over, under), h)
+        elif kind == RATCHET:
+            ahead = joint.p[0] - turned
+            if ahead * joint.p[2] <= 0.0:
+                joint.p[0] = math.floor((turned - joint.p[1]) / joint.p[2]) * joint.p[2] + joint.p[1]
+                ahead = joint.p[0] - turned
+            side = 1.0 if joint.p[2] > 0.0 else -1.0
+            row.arm_a = side
+            row.arm_b = side
+            _limit(row, joint, -side * ahead, h)
+        elif kind == GEAR:
+            row.arm_b = joint.p[1]
+            row.most /= abs(joint.p[1])
+            row.t1 = _bias(joint, b.angle * joint.p[1] - a.angle - joint.p[0], h)
+        elif kind == MOTOR:
+            row.t1 = joint.p[0]
+    ia = a.inverse_moment
+    ib = b.inverse_moment
+    masses = (a.inverse_mass + b.inverse_mass) * (row.nx * row.nx + row.ny * row.ny)
+    row.w11 = masses + row.arm_a * row.arm_a * ia + row.arm_b * row.arm_b * ib
+    row.w22 = masses + row.lean_a * row.lean_a * ia + row.lean_b * row.lean_b * ib
+    row.w12 = row.arm_a * row.lean_a * ia + row.arm_b * row.lean_b * ib
+    if row.w11 <= 0.0:
+        return False
+    row.weight = row.w11
+    row.f1 = 0.0
+    row.f2 = 0.0
+    row.ft = 0.0
+    row.alpha = JOINT_GIVE / (1.0 + JOINT_GIVE)
+    row.gamma = row.alpha / (JOINT_GIVE * row.w11)
+    row.own = 1.0
+    row.other = 0.0
+    row.alpha_t = 0.0
+    row.gamma_t = 1.0
+    row.grips = row.low_t < row.high_t and row.w22 > 0.0
+    if row.grips:
+        row.alpha_t = row.alpha
+        row.gamma_t = row.alpha / (JOINT_GIVE * row.w22)
+        row.w11 *= 1.0 + JOINT_GIVE
+        row.w22 *= 1.0 + JOINT_GIVE
+        row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
+    if kind == SPRING or kind == ROTARY_SPRING:
+        _load_spring(row, joint, a, b, h, followed)
+    elif joint.step > 0.0:
+        scale = h / joint.step
+        row.l1, row.lt = clamp_joint(row, scale * _along(row, joint), scale * _across(row, joint))
+    row.l2 = 0.0
+    return True
+
+
+@kernel(forceinline=True)
+def _along(row: Any, joint: Any) -> float:
+    """Of the impulse that a joint did last, as Chipmunk keeps it, the row's l."""
+    if joint.kind == PIVOT or joint.kind == GROOVE:
+        return float(joint.jx * row.nx + joint.jy * row.ny)
+    if joint.kind == SLIDE:
+        return -float(joint.jx)
+    return float(joint.jx / row.arm_b) if joint.kind >= LIMIT else float(joint.jx)
+
+
+@kernel(forceinline=True)
+def _across(row: Any, joint: Any) -> float:
+    """And its lt."""
+    if joint.kind == PIVOT or joint.kind == GROOVE:
+        return float(joint.jy * row.nx - joint.jx * row.ny)
+    return 0.0
+
+
+@kernel
+def settle_joint(joint: Any, row: Any, h: float) -> None:
+    """After the sweeps: what the joint remembers, as Chipmunk keeps it."""
+    if joint.kind == PIVOT or joint.kind == GROOVE:
+        joint.jx = row.l1 * row.nx - row.lt * row.ny
+        joint.jy = row.l1 * row.ny + row.lt * row.nx
+    elif joint.kind == SLIDE:
+        joint.jx = -row.l1
+    else:
+        joint.jx = row.l1 * row.arm_b if joint.kind >= LIMIT else row.l1
+    joint.step = h
+    joint.x += joint.jx
+    joint.y += joint.jy
+
+
+@kernel(forceinline=True)
+def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> None:
+    """A spring's force where it is now, its damping, and its stiffness as far as the step does not follow it."""
+    if joint.kind == SPRING:
+        stiffness = joint.p[5]
+        damping = joint.p[6]
+        force = (joint.p[4] - spring_reach(joint, a, b)) * stiffness
+    else:
+        stiffness = joint.p[1]
+        damping = joint.p[2]
+        force = (spring_reach(joint, a, b) - joint.p[0]) * stiffness
+    if joint.asked:
+        force = joint.force
+        stiffness = 0.0
+    force = min(joint.max_force, max(-joint.max_force, force))
+    w = row.weight
+    phase2 = stiffness * w * h * h
+    theta = 0.0 if phase2 <= followed else 1.0 - (followed / phase2) ** 2
+    q = math.expm1(min(700.0, damping * h * w)) + theta * phase2
+    row.alpha = 1.0 / (1.0 + q)
+    row.gamma = q / w * row.alpha
+    row.f1 = h * force
+    row.l1 = row.f1
+
+
+@kernel(forceinline=True)
+def clamp_joint(row: Any, l1: float, lt: float) -> tuple[float, float]:
+    """The impulses of a joint within its bounds."""
+    l1 = min(row.high, max(row.low, l1))
+    lt = min(row.high_t, max(row.low_t, lt)) if row.grips else 0.0
+    size = math.sqrt(l1 * l1 + lt * lt)
+    if size > row.most:
+        l1 *= row.most / size
+        lt *= row.most / size
+    return l1, lt
+
+
+@kernel(forceinline=True)
+def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
+    """Changes of l and lt that a joint asks for at the closing speed v and the slip: both together, within bounds."""
+    r1 = row.alpha * (row.f1 - row.l1) + row.gamma * (v - row.t1)
+    if not row.grips:  # alpha + gamma W = 1
+        l1, _ = clamp_joint(row, row.l1 + r1, 0.0)
+        return l1 - row.l1, 0.0
+    r1 = v - row.t1 - row.alpha / row.gamma * row.l1
+    rt = slip - row.tt - row.alpha_t / row.gamma_t * row.lt
+    lt = row.lt + (row.w11 * rt - row.w12 * r1) * row.det
+    within = min(row.high_t, max(row.low_t, lt))
+    l1 = row.l1 + (row.w22 * r1 - row.w12 * rt) * row.det
+    if within != lt:  # an end of a groove that does not bear: the other alone
+        l1 = row.l1 + (r1 - row.w12 * (within - row.lt)) / row.w11
+    l1, lt = clamp_joint(row, l1, within)
+    return l1 - row.l1, lt - row.lt
+
+
+@kernel
+def geometric_stiffness(tables: Tables, h: float, followed: float) -> None:
+    """Bodies that their joints pull at turn more slowly: a taut chain sways no faster than the step can follow.
+
+    A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
+    joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
+    doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
+    damping. Only as far as the step is too long to follow it, as of a contact (`row`).
+    """
+    for k in range(tables.counters[LIVE]):
+        tables.bodies[tables.live[k]].tension = 0.0
+    for k in range(tables.counters[JOINTS]):
+        joint = tables.joints[k]
+        if joint.mine and joint.step > 0.0 and joint.kind == PIVOT:
+            a = tables.bodies[joint.a]
+            b = tables.bodies[joint.b]
+            ax, ay = _anchor(a, joint.p[0], joint.p[1])
+            bx, by = _anchor(b, joint.p[2], joint.p[3])
+            a.tension -= (ax * joint.jx + ay * joint.jy) / joint.step
+            b.tension += (bx * joint.jx + by * joint.jy) / joint.step
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.own_inverse_moment = body.inverse_moment
+        if body.calm < 0 and body.inverse_moment > 0.0:
+            phase2 = h * h * body.tension * body.inverse_moment
+            if phase2 > followed:
+                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (followed / phase2) ** 2)
+
+
+@kernel
+def free_turning(tables: Tables) -> None:
+    """After the substep's solve: every body turns as it does."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.inverse_moment = body.own_inverse_moment

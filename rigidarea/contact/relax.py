@@ -1,0 +1,86 @@
+"""After the sweeps: what takes an overlap apart moves bodies, and is no speed that they keep.
+
+A contact that the step is too long to follow is overdamped: pressed too deep it opens again within RELEASE_STEPS. That
+speed is of the step's making, not of the bodies'; added up along a pile, and only half solved, it would throw the pile
+up (Baumgarte's stabilization does). So bodies are moved by it, as far as it takes them in the substep, and then the
+same rows are solved again, rigid, for the velocities that bodies go on with. (Chipmunk's pseudo-velocities and the
+relaxing sweeps of Box2D v3 are for the same; E. Catto, "Solver2D", box2d.org, 2024.)
+
+At rest, F = k A, nothing opens, and this changes nothing.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..compile.jit import kernel
+from ..geometry.place import place
+from .constants import HIT
+from .row import stiffen
+from .tables import DRIFTS, LIVE, ROWS, Tables
+
+
+@kernel
+def begin_to_relax(tables: Tables) -> bool:
+    """Make rows rigid, and take down what velocities are with them as they were; whether any of them bears."""
+    bears = False
+    for i in range(tables.counters[ROWS]):
+        bears |= stiffen(tables.rows[i])
+    if bears:
+        for k in range(tables.counters[LIVE]):
+            i = tables.live[k]
+            body = tables.bodies[i]
+            before = tables.mobility[i]
+            before.vx = body.vx
+            before.vy = body.vy
+            before.vw = body.w
+    return bears
+
+
+@kernel
+def end_relaxing(tables: Tables, h: float) -> None:
+    """Move bodies by what has been taken from their velocities, over a substep of h.
+
+    By as much as contacts take apart: more than HIT of a body is a blow that the sweeps had not solved yet, and the
+    velocity that it has now is the better one.
+    """
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
+        body = tables.bodies[i]
+        taken = tables.mobility[i]
+        taken.vx -= body.vx
+        taken.vy -= body.vy
+        taken.vw -= body.w
+        way = h * (abs(taken.vx) + abs(taken.vy) + abs(taken.vw) * body.extent)
+        taken.moved = 0.0 < way <= HIT * body.extent and body.kind == DRIFTS
+        if taken.moved:
+            body.x += h * taken.vx
+            body.y += h * taken.vy
+            body.angle += h * taken.vw
+            place(body)
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        of_a = tables.mobility[row.a]
+        of_b = tables.mobility[row.b]
+        if of_a.moved:
+            row.slid += row.nx * of_a.vy - row.ny * of_a.vx + row.lean_a * of_a.vw
+        if of_b.moved:
+            row.slid -= row.nx * of_b.vy - row.ny * of_b.vx + row.lean_b * of_b.vw
+        if of_a.moved and of_b.moved:
+            _turn_back(row, tables.bodies[row.a], tables.bodies[row.b], h)
+
+
+@kernel(forceinline=True)
+def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
+    """Parted while they slip, two bodies have other arms: spin makes good what the rows' change gains by that."""
+    ia = a.inverse_moment if row.friction > 0.0 or row.arm_a != 0.0 else 0.0  # nothing turns a smooth disc
+    ib = b.inverse_moment if row.friction > 0.0 or row.arm_b != 0.0 else 0.0
+    if ia + ib > 0.0:
+        normal = row.was1 - row.l1 + row.was2 - row.l2
+        along = row.was_t - row.lt
+        jx = normal * row.nx - along * row.ny
+        jy = normal * row.ny + along * row.nx
+        spin = h * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx))
+        turn = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
+        a.w += turn if ia > 0.0 else 0.0
+        b.w += turn if ib > 0.0 else 0.0

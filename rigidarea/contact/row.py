@@ -1,0 +1,638 @@
+"""One contact region as rows of the solve: a normal force at each end of its face, and friction (theory 4).
+
+    l = h (F0 + C (v' - vt)),   F0 = k A,   C = c + theta (1 + S) h k L,   l >= 0
+
+l an impulse, v' the closing speed after the solve, h the substep. At rest l = h k A, whatever the step: nothing is
+softened. theta = 0 where the step follows the contact, which is the explicit law; theta -> 1 where it does not: the
+spring is then taken at the end of the step, and opens again in S steps. C -> infinity with a target speed vt is an
+impact shorter than the step. All of them share one form with alpha = 1/(1 + h C W), gamma = h C alpha, W the inverse
+effective mass: a visit adds
+
+    dl = [alpha (h F0 - l) + gamma (v - vt)] / (alpha + gamma W)
+
+so that alpha = 1, gamma = 0 is a given force, and alpha = 0 a given speed.
+
+A straight face is two such rows, at the ends e1, e2 of its straight stretch s, solved as one block with
+C [[a, b], [b, a]], a + b = 1/2, a - b = s / 6L: that is a bed's stiffness k L and, against turning, k s^3/12; F0 is
+shared so that k A acts at the centroid; and with both l >= 0 the resultant stays within the face. What gives way is
+their compliance, so that a face on one end is the slope of an energy as well. Friction is a third row along the
+tangent, bounded by mu (l1 + l2).
+
+n from A to B, t = (-n_y, n_x); an impulse l pushes A along -n and B along +n.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..compile.raw_memory import record
+from ..geometry.turning import turning_speed
+from .birth import drives, flies_off
+from .constants import (
+    HIT,
+    LOOK,
+    OVERTAKE,
+    PLACED_LOADS,
+    RELEASE_SPEED,
+    RELEASE_STEPS,
+    REST_KICKS,
+    SMOOTH,
+    TANGENT_STIFFNESS,
+)
+from .impact import begin_impact, damping_ratio, follow_impact, impact_force
+from .joint import solve_joint
+from .region import beyond, closing, growth, inverse_mass, region_stiffness
+from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
+
+ROW = record(
+    [
+        ("region", "i4"),  # of a joint: its number
+        ("a", "i4"),  # rows of the bodies
+        ("b", "i4"),
+        ("ends", "i4"),  # 1 or 2; 0: of a joint
+        ("nx", "f8"),
+        ("ny", "f8"),
+        ("arm_a", "f8"),
+        ("arm_b", "f8"),
+        ("lean_a", "f8"),
+        ("lean_b", "f8"),
+        ("alpha", "f8"),
+        ("gamma", "f8"),
+        ("f1", "f8"),  # h F0 of the ends
+        ("t1", "f8"),  # vt
+        ("det", "f8"),  # of a joint: one over its determinant
+        ("friction", "f8"),
+        ("alpha_t", "f8"),
+        ("gamma_t", "f8"),
+        ("ft", "f8"),
+        ("tt", "f8"),
+        ("mt", "f8"),  # 1 / (alpha_t + gamma_t W_t)
+        ("slip1", "f8"),  # what an impulse at either end takes from the slip
+        ("l1", "f8"),
+        ("lt", "f8"),
+        ("weight", "f8"),  # 1/m_eff
+        ("began", "f8"),  # normal impulse with which it began
+        # of two ends:
+        ("e1", "f8"),
+        ("e2", "f8"),
+        ("own", "f8"),  # their compliance [[own, other], [other, own]] / C
+        ("other", "f8"),
+        ("f2", "f8"),
+        ("t2", "f8"),
+        ("w11", "f8"),  # mobility of the ends (1/mass)
+        ("w12", "f8"),
+        ("w22", "f8"),
+        ("slip2", "f8"),
+        ("l2", "f8"),
+        # of a joint (`joint`), which has w11, w12, w22 of both its unknowns:
+        ("low", "f8"),  # bounds of l1 and lt, and of their size
+        ("high", "f8"),
+        ("low_t", "f8"),
+        ("high_t", "f8"),
+        ("most", "f8"),
+        ("grips", "i4"),  # 1: lt is an unknown
+        # not of the sweeps:
+        ("was1", "f8"),  # the impulses before contacts are relaxed
+        ("was2", "f8"),
+        ("was_t", "f8"),
+        ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
+        ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
+        (
+            "jammed",
+            "i4",
+        ),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
+        ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
+    ]
+)
+
+
+@kernel(forceinline=True)
+def slipping(r: Any, a: Any, b: Any, full: float) -> float:
+    """Tangential speed of A relative to B at the region, `full` of the substep's kick taken off (length/time)."""
+    return (
+        -(a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.ny
+        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.nx
+        + (a.w - full * a.kick_w) * r.lean_a
+        - (b.w - full * b.kick_w) * r.lean_b
+    )
+
+
+@kernel
+def _ends(row: Any, r: Any) -> None:
+    """The face's two ends from the point of application, and how F0 and C are shared."""
+    straight = r.straight
+    if straight < 0.5 * r.chord:  # a corner, an arc, one of many facets: those roll
+        row.ends = 1
+        row.e1 = 0.0
+        row.e2 = 0.0
+        return
+    half = 0.5 * straight
+    middle = min(0.999 * half, max(-0.999 * half, r.middle))  # the point of application lies between them
+    row.ends = 2
+    row.e1 = middle - half
+    row.e2 = middle + half
+
+
+@kernel(forceinline=True)
+def least_extent(a: Any, b: Any) -> float:
+    """The smaller one's smallest extent, of those that can move (length)."""
+    if a.inverse_mass == 0.0:
+        return float(b.extent)
+    if b.inverse_mass == 0.0:
+        return float(a.extent)
+    return float(min(a.extent, b.extent))
+
+
+@kernel(forceinline=True)
+def may_close(opening: float, a: Any, b: Any, h: float) -> float:
+    """How fast what opens so fast, and is sent back, may close: as fast, but no further than from one look to the next.
+
+    Stopped sooner it would be pushed while it opens, and gain energy (l (v + v') / 2: J. J. Moreau, "Unilateral contact
+    and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
+    """
+    return float(min(opening, LOOK * least_extent(a, b) / h))
+
+
+@kernel
+def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
+    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
+
+    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
+    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
+    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
+    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
+    at rest.
+    """
+    u_x = a.vx - a.kick_x - b.vx + b.kick_x
+    u_y = a.vy - a.kick_y - b.vy + b.kick_y
+    square = u_x * u_x + u_y * u_y
+    closes = u_x * r.nx + u_y * r.ny
+    disc = a if b.inverse_mass == 0.0 else b
+    other = b if b.inverse_mass == 0.0 else a
+    round_one = 1 if b.inverse_mass == 0.0 else 2
+    if (
+        r.radial & round_one == 0
+        or other.inverse_mass > 0.0
+        or other.w != 0.0
+        or disc.pushed == 0
+        or closes <= left
+        or closes * closes > SMOOTH * square
+        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
+    ):
+        return left
+    along = u_y * r.nx - u_x * r.ny
+    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
+    # (along - then) / (closes - left): of either little but rounding may be left
+    turn = -(closes + left) / (along + then)
+    size = math.sqrt(1.0 + turn * turn)
+    nx = (r.nx - turn * r.ny) / size
+    ny = (r.ny + turn * r.nx) / size
+    r.nx = nx
+    r.ny = ny
+    return (left + then * turn) / size
+
+
+@kernel
+def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
+    """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
+
+    It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
+    and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
+    so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
+    """
+    back = r.back
+    row.alpha = 0.0
+    full = closing(r, a, b, 0.0)
+    gain = (full - closing(r, a, b, 1.0)) / h
+    time = back + 0.5 * h
+    touch = full - gain * time
+    turn = a.w - b.w
+    turn_gain = (a.kick_w - b.kick_w) / h
+    e = elasticity if r.first_speed > 0.0 else 0.0
+    row.t1 = 0.0
+    row.t2 = 0.0
+    for end in range(row.ends):
+        at = row.e1 if end == 0 else row.e2
+        since = (gain - turn_gain * at) * time
+        u0 = touch - (turn - turn_gain * time) * at
+        target = since - e * max(0.0, u0)
+        if u0 > 0.0 or e == 0.0:
+            target = min(0.0, target)
+        else:
+            target += may_close(-u0, a, b, h)
+        if end == 0:
+            row.t1 = target
+        else:
+            row.t2 = target
+    if e == 0.0 and row.ends == 1:
+        row.t1 = _turn_along(r, a, b, max(0.0, row.t1))
+    row.alpha_t = 0.0
+    row.tt = surface
+    if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
+        row.shift = back
+    if row.shift == 0.0:
+        _one_point(r, a, b, row.friction)
+
+
+@kernel(forceinline=True)
+def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
+    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
+
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. Of a smooth
+    disc a radius stays one: nothing turns it.
+    """
+    share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
+    smooth = r.radial if friction == 0.0 else 0
+    if smooth == 1 or smooth == 2:
+        share = 0.0 if smooth == 1 else 1.0
+    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
+    lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
+    if smooth != 3:
+        r.arm_a -= share * arm
+        r.arm_b += (1.0 - share) * arm
+    r.lean_a -= share * lean
+    r.lean_b += (1.0 - share) * lean
+
+
+@kernel
+def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
+    """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
+
+    Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
+    point of application. A corner is thicker between them: the thicker end then has all of the depth. No end is asked
+    to open: they do not overlap yet, whatever is seen of the overlap to come when they come from aside.
+    """
+    row.alpha = 0.0
+    row.alpha_t = 0.0
+    row.tt = surface
+    speed = closing(r, a, b, 0.0)
+    turn = a.w - b.w
+    _one_point(r, a, b, row.friction)
+    if row.ends == 1:
+        row.t1 = _turn_along(r, a, b, max(0.0, (speed * r.back - r.depth + r.rest_depth) / h))
+        return
+    length = row.e2 - row.e1
+    mean = r.area / r.chord
+    lean = min(1.0, max(-1.0, 3.0 * (row.e1 + row.e2) / length))
+    left = r.rest_depth - r.depth + mean * abs(lean)
+    row.t1 = max(0.0, ((speed - turn * row.e1) * r.back - mean * lean + left) / h)
+    row.t2 = max(0.0, ((speed - turn * row.e2) * r.back + mean * lean + left) / h)
+
+
+@kernel
+def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) -> None:
+    """Everything of region r that stays the same during the sweeps. `a`, `b`: its bodies, the kick already given.
+
+    Row.region, a, b are set by the caller.
+    """
+    row.shift = 0.0
+    row.theta = 0.0
+    row.slid = 0.0
+    row.jammed = 0
+    row.friction = pair.friction
+    surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
+    _ends(row, r)
+    if r.mode == STRUCK:
+        _struck(row, r, a, b, pair.elasticity, surface, h)
+    elif r.mode == NEARING:
+        _nearing(row, r, a, b, surface, h)
+    else:
+        row.t1 = 0.0
+        row.t2 = 0.0
+    row.nx = r.nx
+    row.ny = r.ny
+    row.arm_a = r.arm_a
+    row.arm_b = r.arm_b
+    row.lean_a = r.lean_a
+    row.lean_b = r.lean_b
+    ia = a.inverse_moment
+    ib = b.inverse_moment
+    masses = a.inverse_mass + b.inverse_mass
+    inverse = inverse_mass(r, a, b)
+    inverse_t = masses + r.lean_a * r.lean_a * ia + r.lean_b * r.lean_b * ib
+    row.weight = inverse
+    k = r.stiffness
+    stiffness = region_stiffness(law, k, r.chord)
+    elastic = k * r.area if law.law == LAW_AREA else k * r.area * r.chord / law.length
+    middle_speed = closing(r, a, b, 0.5)
+    if r.mode == IMPACT:
+        if r.born:
+            begin_impact(r, pair.elasticity, r.first_speed, h)
+        else:
+            follow_impact(r, pair.elasticity, middle_speed, inverse, h)
+    r.speed = middle_speed
+    r.slip = slipping(r, a, b, 0.5) - surface
+    gamma = 0.0
+    if r.mode >= STRUCK:
+        gamma = 1.0 / inverse
+        force = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        r.spring = 0.0
+        scale = h / r.step if r.mode == NEARING else 0.0  # a bounce says nothing of a load
+        row.l1 = r.l1 * scale
+        row.l2 = 0.0
+        row.lt = r.lt * scale
+        if row.ends == 2:
+            row.l1 *= 0.5
+            row.l2 = row.l1
+    elif flies_off(law, pair, r, a, b, h):
+        gamma = 1.0 / inverse
+        force = 0.0
+        row.t1 = may_close(-closing(r, a, b, 0.0), a, b, h)
+        row.t2 = row.t1
+        row.alpha = 0.0
+        row.alpha_t = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        row.tt = surface
+        r.spring = 0.0
+        row.l1 = 0.0
+        row.l2 = 0.0
+        row.lt = 0.0
+    elif r.mode == IMPACT:
+        row.ends = 1
+        row.e1 = 0.0
+        row.e2 = 0.0
+        row.alpha = 1.0
+        force = h * impact_force(r, pair.elasticity, elastic, middle_speed, inverse, h)
+        row.alpha_t = 0.0
+        row.gamma_t = 1.0 / inverse_t
+        row.ft = 0.0
+        row.tt = surface
+        r.spring = 0.0
+        row.l1 = force
+        row.l2 = 0.0
+        row.lt = r.lt * (h / r.step)
+    else:
+        stiffness = max(stiffness, pair.firm)
+        least = least_extent(a, b)
+        if r.placed == PLACED and law.stiffness == 0.0:
+            pressed = pair.least if drives(a) or drives(b) else max(pair.least, pair.load)
+            most = PLACED_LOADS * pressed
+            if elastic > most:
+                stiffness *= most / elastic
+                elastic = most
+        phase2 = stiffness * inverse * h * h
+        theta = beyond(law, phase2)
+        c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
+        c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
+        slowest = elastic / (RELEASE_SPEED * least)
+        if r.placed == SPENT and law.followed < math.inf:
+            c = max(c, stiffness / RELEASE_SPEED)
+        elif theta > 0.0 or r.placed == PLACED:
+            c = max(c, slowest)
+        q = h * c * inverse
+        row.alpha = 1.0 / (1.0 + q)
+        row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
+        row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
+        # a step longer than an edge's own time opens it all by itself: no trace of speed is left; what is round rolls
+        if phase2 >= 1.0:
+            row.theta = 1.0 if row.ends == 2 else max(row.theta, 2.0 * growth(r) - 3.0)
+        gamma = h * c * row.alpha
+        force = h * elastic
+        kt = TANGENT_STIFFNESS * stiffness
+        # the spring remembers a force; where the region shrinks the force shrinks with it: no energy comes free
+        if kt < r.tangent_stiffness:
+            r.spring *= kt / r.tangent_stiffness
+        r.tangent_stiffness = kt
+        ct = 2.0 * math.sqrt(kt / inverse_t) + kt * theta * h
+        qt = h * ct * inverse_t
+        row.alpha_t = 1.0 / (1.0 + qt)
+        row.gamma_t = h * ct * row.alpha_t
+        row.ft = h * r.spring
+        row.tt = surface
+        scale = h / r.step
+        row.l1 = r.l1 * scale
+        row.l2 = r.l2 * scale
+        row.lt = r.lt * scale
+        if row.ends == 1:
+            row.l1 += row.l2
+            row.l2 = 0.0
+            most = HIT * least / h
+            row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
+            if theta > 0.0:
+                row.t1 += _turn_along(r, a, b, 0.0)
+                row.nx = r.nx
+                row.ny = r.ny
+    row.began = row.l1 + row.l2
+    row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
+    lean_a = row.lean_a * ia
+    lean_b = row.lean_b * ib
+    if row.ends == 2 and ia + ib <= 1e-12 * masses / (r.chord * r.chord):  # nothing turns: both ends are one
+        row.ends = 1
+        row.l1 += row.l2
+        row.l2 = 0.0
+        row.t1 = 0.5 * (row.t1 + row.t2)
+    row.gamma = gamma
+    row.w11 = inverse
+    row.w12 = 0.0
+    row.w22 = 0.0
+    row.own = 1.0
+    row.other = 0.0
+    row.f1 = force
+    row.f2 = 0.0
+    row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
+    row.slip2 = 0.0
+    if row.ends == 1:
+        return
+    turning = (row.e2 - row.e1) / (6.0 * r.chord)
+    row.own = 0.5 / turning + 1.0
+    row.other = 1.0 - 0.5 / turning
+    row.f1 = force * row.e2 / (row.e2 - row.e1)
+    row.f2 = force - row.f1
+    a1 = r.arm_a - row.e1
+    a2 = r.arm_a - row.e2
+    b1 = r.arm_b - row.e1
+    b2 = r.arm_b - row.e2
+    row.slip1 = a1 * lean_a + b1 * lean_b
+    row.slip2 = a2 * lean_a + b2 * lean_b
+    row.w11 = masses + a1 * a1 * ia + b1 * b1 * ib
+    row.w12 = masses + a1 * a2 * ia + b1 * b2 * ib
+    row.w22 = masses + a2 * a2 * ia + b2 * b2 * ib
+
+
+@kernel(forceinline=True)
+def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
+    """Give the two bodies impulses d1, d2 at the ends and dt along the tangent."""
+    normal = d1 + d2
+    turn = 0.0 if row.ends < 2 else d1 * row.e1 + d2 * row.e2
+    fx = normal * row.nx - dt * row.ny
+    fy = normal * row.ny + dt * row.nx
+    a.vx -= fx * a.inverse_mass
+    a.vy -= fy * a.inverse_mass
+    a.w -= (normal * row.arm_a - turn + dt * row.lean_a) * a.inverse_moment
+    b.vx += fx * b.inverse_mass
+    b.vy += fy * b.inverse_mass
+    b.w += (normal * row.arm_b - turn + dt * row.lean_b) * b.inverse_moment
+
+
+@kernel(forceinline=True)
+def _press(
+    l1: float, l2: float, r1: float, r2: float, m11: float, m12: float, m21: float, m22: float
+) -> tuple[float, float]:
+    """What both ends of a face add, of what is left to solve; an end that would pull is open."""
+    det = 1.0 / (m11 * m22 - m12 * m21)
+    d1 = (r1 * m22 - m12 * r2) * det
+    d2 = (m11 * r2 - m21 * r1) * det
+    if l1 + d1 < 0.0 or l2 + d2 < 0.0:
+        if l1 + d1 < l2 + d2:
+            d1 = -l1
+            d2 = max(-l2, (r2 - m21 * d1) / m22)
+        else:
+            d2 = -l2
+            d1 = max(-l1, (r1 - m12 * d2) / m11)
+    return d1, d2
+
+
+@kernel(forceinline=True)
+def visit(row: Any, a: Any, b: Any) -> float:
+    """Solve one row for the bodies' present velocities: its ends and the friction under them, all at once.
+
+    Returns by how much that has changed the speed at which the row's bodies close or slip (length/time).
+
+    Friction that grips is eliminated; where that is more than its bound it slides, as much as the ends then bear: the
+    local problem of non-smooth contact dynamics, solved exactly (M. Jean, "The non-smooth contact dynamics method",
+    1999, doi:10.1016/S0045-7825(98)00383-1). Normal force and friction by turns diverge where a body turns easily.
+    """
+    ux = a.vx - b.vx
+    uy = a.vy - b.vy
+    v = ux * row.nx + uy * row.ny + (a.w * row.arm_a - b.w * row.arm_b)
+    slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
+    if row.ends == 0:
+        d1, dt = solve_joint(row, v, slip)
+        row.l1 += d1
+        row.lt += dt
+        push(row, a, b, d1, 0.0, dt)
+        return max(abs(d1), abs(dt)) * row.weight
+    gamma = row.gamma
+    c1 = gamma * row.slip1
+    grips = row.mt * (row.alpha_t * (row.ft - row.lt) + row.gamma_t * (slip - row.tt))
+    k1 = row.mt * row.gamma_t * row.slip1
+    if row.ends == 1:
+        r1 = row.alpha * (row.f1 - row.l1) + gamma * (v - row.t1)
+        m11 = row.alpha + gamma * row.w11
+        d2 = 0.0
+        d1 = max(-row.l1, (r1 - c1 * grips) / (m11 - c1 * k1))
+        dt = grips - k1 * d1
+        if abs(row.lt + dt) > row.friction * (row.l1 + d1):
+            side = math.copysign(row.friction, row.lt + dt)
+            if m11 + c1 * side > 0.0:
+                d1 = max(-row.l1, (r1 - c1 * (side * row.l1 - row.lt)) / (m11 + c1 * side))
+            dt = side * (row.l1 + d1) - row.lt
+    else:
+        turn = a.w - b.w
+        left1 = row.alpha * (row.f1 - row.l1)
+        left2 = row.alpha * (row.f2 - row.l2)
+        r1 = row.own * left1 + row.other * left2 + gamma * (v - (turn * row.e1 + row.t1))
+        r2 = row.other * left1 + row.own * left2 + gamma * (v - (turn * row.e2 + row.t2))
+        m11 = row.alpha * row.own + gamma * row.w11
+        m12 = row.alpha * row.other + gamma * row.w12
+        m22 = row.alpha * row.own + gamma * row.w22
+        c2 = gamma * row.slip2
+        k2 = row.mt * row.gamma_t * row.slip2
+        d1, d2 = _press(
+            row.l1, row.l2, r1 - c1 * grips, r2 - c2 * grips,
+            m11 - c1 * k1, m12 - c1 * k2, m12 - c2 * k1, m22 - c2 * k2,
+        )  # fmt: skip
+        dt = grips - k1 * d1 - k2 * d2
+        both = row.l1 + row.l2
+        if abs(row.lt + dt) > row.friction * (both + d1 + d2):
+            side = math.copysign(row.friction, row.lt + dt)
+            q1 = c1 * side
+            q2 = c2 * side
+            if m11 + q1 > 0.0 and m22 + q2 > 0.0 and (m11 + q1) * (m22 + q2) > (m12 + q1) * (m12 + q2):
+                slides = side * both - row.lt
+                d1, d2 = _press(
+                    row.l1, row.l2, r1 - c1 * slides, r2 - c2 * slides,
+                    m11 + q1, m12 + q1, m12 + q2, m22 + q2,
+                )  # fmt: skip
+            dt = side * (both + d1 + d2) - row.lt
+        row.l2 += d2
+    row.l1 += d1
+    row.lt += dt
+    push(row, a, b, d1, d2, dt)
+    return max(abs(d1 + d2), abs(dt)) * row.weight
+
+
+@kernel(forceinline=True)
+def stiffen(row: Any) -> bool:
+    """The row as of a rigid contact, as far as the step is too long for its spring; whether it bears as such."""
+    row.was1 = row.l1
+    row.was2 = row.l2
+    row.was_t = row.lt
+    if row.ends == 0:
+        return False
+    if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
+        row.f1 = 0.0
+        row.f2 = 0.0
+        return bool(row.l1 + row.l2 > 0.0)
+    if row.theta == 0.0:
+        return False
+    harden(row, row.theta * row.alpha)
+    return bool(row.l1 + row.l2 > 0.0)
+
+
+@kernel(forceinline=True)
+def harden(row: Any, rigid: float) -> None:
+    """Take so much of a row's give."""
+    row.alpha -= rigid
+
+
+@kernel(forceinline=True)
+def shift_as_held(body: Any, time: float) -> None:
+    """What hangs in a joint is moved by what a blow, some time ago, and the joint have left of it together."""
+    body.shift_x = time * (body.vx - body.came_vx)
+    body.shift_y = time * (body.vy - body.came_vy)
+    body.shift_a = time * (body.w - body.came_w)
+
+
+@kernel
+def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last: bool) -> None:
+    """After the sweeps: what the region remembers. Friction's spring takes the slip that came out."""
+    normal = row.l1 + row.l2
+    if r.mode == NEARING:
+        r.spring = row.lt / h  # what grips will go on gripping
+    elif r.mode == REST and row.friction > 0.0:
+        slip = slipping(r, a, b, 0.0) - row.tt + row.slid
+        most = row.friction * normal / h
+        r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
+    # sent back while it flies off: that is not borne
+    flying = r.mode == REST and row.alpha == 0.0 and row.theta == 0.0
+    ahead = (
+        0.0 if flying or normal <= 0.0 else max(0.0, 1.0 - OVERTAKE * max(0.0, row.began - normal) / normal)
+    )
+    r.l1 = ahead * row.l1
+    r.l2 = ahead * row.l2
+    r.lt = ahead * row.lt
+    r.step = h
+    r.force = normal / h
+    r.friction = row.lt / h
+    if law.stiffness == 0.0:
+        pair.carrying += normal
+        # a blow is no load, nor is what joints or kinematic bodies hold overlapped, which presses as far as it is stiff
+        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0 or drives(a) or drives(b))
+        if r.mode == IMPACT or held:
+            pair.lies = BLOW
+        elif last and r.mode != NEARING and pair.lies != BLOW:
+            pair.lies = FOLLOWS if row.theta > 0.0 and law.law == LAW_AREA else LIES
+    pair.jx += normal * row.nx - row.lt * row.ny
+    pair.jy += normal * row.ny + row.lt * row.nx
+    if row.shift != 0.0:
+        turn = row.l1 * row.e1 + row.l2 * row.e2
+        fx = (normal * row.nx - row.lt * row.ny) * row.shift
+        fy = (normal * row.ny + row.lt * row.nx) * row.shift
+        if a.calm < 0:
+            shift_as_held(a, row.shift)
+        else:
+            a.shift_x -= fx * a.inverse_mass
+            a.shift_y -= fy * a.inverse_mass
+            a.shift_a -= (normal * row.arm_a - turn + row.lt * row.lean_a) * row.shift * a.inverse_moment
+        if b.calm < 0:
+            shift_as_held(b, row.shift)
+        else:
+            b.shift_x += fx * b.inverse_mass
+            b.shift_y += fy * b.inverse_mass
+            b.shift_a += (normal * row.arm_b - turn + row.lt * row.lean_b) * row.shift * b.inverse_moment

@@ -1,0 +1,254 @@
+"""A substep of all bodies and contacts: drift, kick, sweeps, settle.
+
+Positions and velocities leapfrog: contacts are met where the bodies are in the middle of the substep, which is where
+the first half of the substep's drift has taken them; second order in time (Hairer, Lubich, Wanner, Acta Numerica 12
+(2003), doi:10.1017/S0962492902000144). Two half drifts between two substeps are one whole drift.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..geometry.arc import distance2
+from ..geometry.place import place, shift
+from .constants import HIT, LEFT, MOVED, ROUNDING
+from .joint import settle_joint
+from .row import push, settle, visit
+from .tables import AWAKE, DRIFTS, FIXED, LIVE, ROWS, Law, Tables
+
+
+@kernel
+def drift(tables: Tables, frame: int, time: float) -> None:
+    """Move every body that we move, at its present velocity."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.stamp == frame and body.kind == DRIFTS:
+            body.x += time * body.vx
+            body.y += time * body.vy
+            body.since += time
+            if body.w == 0.0:
+                shift(body)
+            else:
+                body.angle += time * body.w
+                place(body)
+
+
+@kernel
+def fly(tables: Tables, frame: int, before: float, after: float, n: int) -> None:
+    """`drift`, the whole frame's `kick`, another drift, and n substeps noted: of who meets nobody, in one go."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.pushed = 0
+        if body.kind != FIXED:
+            body.taken = n
+        if body.stamp != frame:
+            continue
+        x = before * body.vx
+        y = before * body.vy
+        angle = before * body.w
+        _kick(body, body.gain_x, body.gain_y, body.gain_w)
+        if body.kind == DRIFTS:
+            body.x += x + after * body.vx
+            body.y += y + after * body.vy
+            body.since += before + after
+            angle += after * body.w
+            if angle == 0.0:
+                shift(body)
+            else:
+                body.angle += angle
+                place(body)
+
+
+@kernel(forceinline=True)
+def _kick(body: Any, x: float, y: float, w: float) -> None:
+    body.kick_x = x
+    body.kick_y = y
+    body.kick_w = w
+    body.vx += x
+    body.vy += y
+    body.w += w
+    body.came_vx = body.vx
+    body.came_vy = body.vy
+    body.came_w = body.w
+
+
+@kernel
+def kick(tables: Tables, frame: int) -> None:
+    """What everything but contacts and joints adds in a substep."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.stamp == frame:
+            _kick(body, body.kick_x, body.kick_y, body.kick_w)
+
+
+@kernel
+def warm_start(tables: Tables) -> None:
+    """Begin with the impulses of the substep before."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        push(row, tables.bodies[row.a], tables.bodies[row.b], row.l1, row.l2, row.lt)
+
+
+@kernel(forceinline=True)
+def usable(body: Any, h: float) -> float:
+    """Which part of what a body begins a substep with moves it by no more than HIT of itself, the kick counted in.
+
+    What balances kicks, and itself, is usable; what has borne against something that has come off since would shoot
+    the body.
+    """
+    way = abs(body.vx - body.came_vx + body.kick_x) + abs(body.vy - body.came_vy + body.kick_y)
+    way += abs(body.w - body.came_w + body.kick_w) * body.extent
+    most = HIT * body.extent
+    return float(most / (h * way)) if body.mobile and h * way > most > 0.0 else 1.0
+
+
+@kernel
+def lessen(tables: Tables, h: float) -> None:
+    """Of what rows begin with where bodies hang in joints, which hold what they press, only what is usable."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        if a.calm >= 0 and b.calm >= 0:
+            continue
+        part = min(usable(a, h), usable(b, h))
+        if part < 1.0:
+            d1, d2, dt = (part - 1.0) * row.l1, (part - 1.0) * row.l2, (part - 1.0) * row.lt
+            row.l1 += d1
+            row.l2 += d2
+            row.lt += dt
+            push(row, a, b, d1, d2, dt)
+
+
+@kernel
+def sweep(tables: Tables, up: bool) -> float:
+    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps).
+
+    Returns the largest change of a contact's speed (length/time).
+    """
+    n = tables.counters[ROWS]
+    most = 0.0
+    for i in range(n):
+        row = tables.rows[i if up else n - 1 - i]
+        most = max(most, visit(row, tables.bodies[row.a], tables.bodies[row.b]))
+    return most
+
+
+@kernel
+def common(tables: Tables) -> tuple[float, float, float]:
+    """Mass of all that contacts may move, and its centre's velocity: what is the same for all is nobody's speed."""
+    mass = 0.0
+    x = 0.0
+    y = 0.0
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.inverse_mass > 0.0:
+            own = 1.0 / body.inverse_mass
+            mass += own
+            x += own * body.vx
+            y += own * body.vy
+    return (mass, x / mass, y / mass) if mass > 0.0 else (0.0, 0.0, 0.0)
+
+
+@kernel
+def kinetic(tables: Tables, x: float, y: float) -> float:
+    """Kinetic energy of all that contacts may move, for one who goes at (x, y)."""
+    total = 0.0
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        if body.inverse_mass > 0.0:
+            total += 0.5 * distance2(body.vx, body.vy, x, y) / body.inverse_mass
+        if body.inverse_moment > 0.0:
+            total += 0.5 * body.w * body.w / body.inverse_moment
+    return total
+
+
+@kernel
+def pace(law: Law, mass: float, energy: float, h: float) -> float:
+    """The change of speed in a sweep that is small beside what pushes gives in a substep, and the bodies' speed."""
+    return LEFT * law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
+
+
+@kernel
+def held_back(tables: Tables, h: float) -> float:
+    """At least what the rows' springs hold, and could give back (energy)."""
+    total = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0:
+            total += (row.f1 + row.f2) / h * tables.regions[row.region].depth
+    return total
+
+
+@kernel
+def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
+    """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends == 0:
+            settle_joint(tables.joints[row.region], row, h)
+            continue
+        region = tables.regions[row.region]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        settle(row, region, law, tables.pairs[region.pair], a, b, h, last)
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.pushed = 0
+        if body.stamp != frame:
+            continue
+        least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
+        if abs(body.vx) < least:
+            body.vx = 0.0
+        if abs(body.vy) < least:
+            body.vy = 0.0
+        if body.shift_x != 0.0 or body.shift_y != 0.0 or body.shift_a != 0.0:
+            if body.kind == DRIFTS:
+                body.x += body.shift_x
+                body.y += body.shift_y
+                body.angle += body.shift_a
+                # What has been shifted by one impulse meets the next with another arm. (Not a disc without friction:
+                # there the direction goes with the arm, and spin would be energy from nowhere.)
+                vx = body.vx - body.came_vx
+                vy = body.vy - body.came_vy
+                turned = abs(body.w - body.came_w) * body.extent
+                if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
+                    turn = body.shift_x * vy - body.shift_y * vx
+                    most = (abs(vx) + abs(vy)) / body.extent  # blow upon blow: no place for second orders
+                    body.w -= min(most, max(-most, turn * body.inverse_moment / body.inverse_mass))
+                place(body)
+            body.shift_x = 0.0
+            body.shift_y = 0.0
+            body.shift_a = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0 and row.l1 + row.l2 > 0.0:
+            tables.bodies[row.a].pushed = 1
+            tables.bodies[row.b].pushed = 1
+
+
+@kernel
+def respond_explicitly(tables: Tables) -> None:
+    """The explicit law: every row answers to the same velocities, none to what another has done."""
+    counters = tables.counters
+    for i in range(counters[ROWS]):
+        row = tables.rows[i]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        keep = (a.vx, a.vy, a.w, b.vx, b.vy, b.w)
+        push(row, a, b, row.l1, row.l2, row.lt)
+        visit(row, a, b)
+        a.vx, a.vy, a.w, b.vx, b.vy, b.w = keep
+    warm_start(tables)
+
+
+@kernel
+def finite(tables: Tables) -> int:
+    """The first body whose state is not finite; -1: all are."""
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if not math.isfinite(body.x + body.y + body.angle + body.vx + body.vy + body.w):
+            return int(tables.awake[k])
+    return -1

@@ -1,0 +1,1 @@
+"""Drawings, pictures and scene files, read and written: what `rigidarea.bring` offers."""

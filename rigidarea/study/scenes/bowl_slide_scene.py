@@ -1,0 +1,77 @@
+"""A smooth disc slides to and fro in a circular bowl: an exact pendulum of length R − r."""
+
+import math
+
+import numpy as np
+
+from ...geometry.outline import Outline
+from ..scene import Body, Curve, G, Rings, Scene, Trace, arc, disc
+
+BOWL, RADIUS, START = 2.0, 0.2, math.radians(60)
+RHO = BOWL - RADIUS
+
+
+def period(length: float, amplitude: float) -> float:
+    """Exact period 4 sqrt(l/g) K(sin²(θ₀/2)) of a pendulum of `length` (DLMF 22.19)."""
+    from scipy.special import ellipk
+
+    return float(4 * math.sqrt(length / G) * ellipk(math.sin(amplitude / 2) ** 2))
+
+
+def swing(t: np.ndarray, length: float, amplitude: float) -> np.ndarray:
+    """Angle (radians) at times t of a pendulum of that length, released at rest at `amplitude`.
+
+    sin(θ/2) = k cd(ω t, k), k = sin(θ₀/2) (DLMF 22.19.2).
+    """
+    from scipy.special import ellipj
+
+    k = math.sin(amplitude / 2)
+    _, cn, dn, _ = ellipj(math.sqrt(G / length) * np.asarray(t), k * k)
+    return 2 * np.arcsin(k * cn / dn)
+
+
+def bowl_rings(radius: float) -> Curve:
+    """A half-round trough of `radius` about the origin in a solid block."""
+
+    def rings(tolerance: float) -> Rings:
+        wall, depth = 1.25 * radius, 1.25 * radius
+        inner = arc(
+            radius, 0.0, -math.pi, tolerance
+        )  # clockwise seen from the solid below: right rim to left rim
+        outer = np.array([(-wall, 0.0), (-wall, -depth), (wall, -depth), (wall, 0.0)])
+        return np.vstack((outer, inner)), ()
+
+    def exact() -> Outline:
+        outer, _ = rings(radius)
+        corners = [(*point, 0.0) for point in outer[:4]]
+        return Outline.from_bulges([*corners, (radius, 0.0, -1.0), (-radius, 0.0, 0.0)])
+
+    return Curve(rings, exact=exact)
+
+
+def bowl(radius: float) -> Body:
+    """The static bowl, centre of curvature at the origin."""
+    return Body("bowl", (bowl_rings(radius),), kind="static")
+
+
+def path_error(trace: Trace, name: str, rho: float, angle: np.ndarray) -> float:
+    """Largest distance from the exact place rho (sin θ, −cos θ), relative to the arc rho θ₀."""
+    exact = rho * np.column_stack((np.sin(angle), -np.cos(angle)))
+    return float(np.max(np.linalg.norm(trace[name][:, :2] - exact, axis=1)) / (rho * abs(angle[0])))
+
+
+def scene() -> Scene:
+    """R = 2 m, r = 0.2 m, released at 60 degrees, two periods, no friction."""
+    start = (RHO * math.sin(START), -RHO * math.cos(START))
+    return Scene(
+        name="bowl_slide",
+        title="smooth disc in a bowl",
+        bodies=(bowl(BOWL), disc("disc", RADIUS, start)),
+        duration=2 * period(RHO, START),
+        error_name="position over two periods / arc",
+        error=lambda trace: path_error(trace, "disc", RHO, swing(trace.times, RHO, START)),
+        source="pendulum of length ρ = R − r: T = 4 sqrt(ρ/g) K(sin²(θ₀/2))",
+        size=2 * RADIUS,
+        pressure=G / (2 * RADIUS) ** 2,
+        tags=frozenset({"curved", "concave"}),
+    )

@@ -1,0 +1,74 @@
+"""Two involute gears turn at a constant ratio."""
+
+import math
+from functools import cache
+
+import numpy as np
+
+from ...geometry.outline import Outline
+from ...shapes import involute_gear
+from ..scene import OMEGA, Body, Curve, Elastic, Pivot, Rings, Scene, Trace
+
+TEETH, MODULE, BACKLASH = (20, 30), 0.05, 0.02
+"""Backlash in modules, half of it cut from each gear."""
+SPEED, BRAKE, MASS = 2.0, 5.0, 5.0
+"""Driver's speed (rad/s), the driven gear's brake (N m) and mass (kg)."""
+STEEL = Elastic(207e9, 0.29, 0.01, 0.3 * MODULE)
+RADII = tuple(MODULE * teeth / 2 for teeth in TEETH)
+
+
+@cache
+def gear(teeth: int, tolerance: float | None = None) -> Outline:
+    """A gear of the pair. tolerance: largest sagitta of its flanks' chords (length)."""
+    return involute_gear(MODULE, teeth, backlash=BACKLASH * MODULE / 2, tolerance=tolerance)
+
+
+def _curve(teeth: int) -> Curve:
+    def rings(tolerance: float) -> Rings:
+        outer, *holes = gear(teeth, tolerance).rings
+        return np.asarray(outer), tuple(np.asarray(hole) for hole in holes)
+
+    return Curve(rings)
+
+
+def error(trace: Trace) -> float:
+    """Root mean square of the driven speed's error after a quarter of the run, relative to its exact
+    value.
+    """
+    exact = -SPEED * TEETH[0] / TEETH[1]
+    late = trace.times > trace.times[-1] / 4
+    return float(np.sqrt(np.mean((trace["driven"][late, OMEGA] / exact - 1) ** 2)))
+
+
+def scene() -> Scene:
+    """20 and 30 teeth, module 50 mm, 2 rad/s; starts with working flanks touching and speeds exact."""
+    # Centred in mesh, then turned against its own motion until the working flanks touch: half the backlash.
+    centred = math.pi + math.pi / TEETH[1]
+    touching = centred + BACKLASH * MODULE / 2 / RADII[1]
+    driver = Body(
+        "driver", (_curve(TEETH[0]),), angular_velocity=SPEED, mass=MASS, kind="kinematic", elastic=STEEL
+    )
+    driven = Body(
+        "driven",
+        (_curve(TEETH[1]),),
+        (RADII[0] + RADII[1], 0.0),
+        touching,
+        angular_velocity=-SPEED * TEETH[0] / TEETH[1],
+        mass=MASS,
+        moment=gear(TEETH[1]).moment(MASS),
+        elastic=STEEL,
+    )
+    return Scene(
+        name="gears",
+        title="involute gears, 20 : 30",
+        bodies=(driver, driven),
+        gravity=(0.0, 0.0),
+        pivots=(Pivot("driven", BRAKE, turns=-1),),
+        duration=2.0,
+        error_name="rms error of ratio, relative",
+        error=error,
+        source="involutes: constant ratio z₁/z₂",
+        size=MODULE,
+        pressure=BRAKE / RADII[1] / MODULE**2,
+        tags=frozenset({"curved", "conforming", "concave", "gears"}),
+    )

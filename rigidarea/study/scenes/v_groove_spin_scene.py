@@ -1,0 +1,61 @@
+"""A disc spinning in a rough V-groove slows at a rate that weighs both normal forces."""
+
+import math
+
+import numpy as np
+
+from ...geometry.outline import Outline
+from ..scene import OMEGA, Body, Curve, G, Rings, Scene, Trace, disc
+
+RADIUS, MU, SPIN, PHI = 0.5, 0.2, 20.0, math.radians(45)
+"""PHI: each wall's normal is that far from the vertical."""
+
+
+def normal_forces() -> tuple[float, float]:
+    """N₁ (left wall) and N₂ (right wall) of a disc of unit mass that spins counter-clockwise and stays in
+    place.
+
+    Friction μ N acts along each wall, clockwise about the disc. With normals (±sin φ, cos φ):
+    (N₁ − N₂) sin φ = μ (N₁ + N₂) cos φ and (N₁ + N₂) cos φ + μ (N₁ − N₂) sin φ = m g.
+    """
+    total = G / (math.cos(PHI) * (1 + MU**2))
+    difference = MU * total / math.tan(PHI)
+    return (total + difference) / 2, (total - difference) / 2
+
+
+def deceleration() -> float:
+    """α = μ (N₁ + N₂) r/I with I = m r²/2."""
+    return MU * sum(normal_forces()) * 2 / RADIUS
+
+
+def error(trace: Trace) -> float:
+    """Largest error of the spin, relative to its first value."""
+    exact = SPIN - deceleration() * trace.times
+    return float(np.max(np.abs(trace["disc"][:, OMEGA] - exact)) / SPIN)
+
+
+def groove(half: float, depth: float) -> Curve:
+    """A block with a V-shaped notch whose bottom is the origin; walls along the normals (±sin φ, cos φ)."""
+    rise = half * math.tan(PHI)
+    points = np.array([(0.0, 0.0), (-half, rise), (-half, -depth), (half, -depth), (half, rise)])
+
+    def rings(tolerance: float) -> Rings:
+        return points, ()
+
+    return Curve(rings, exact=lambda: Outline(points))
+
+
+def scene() -> Scene:
+    """90-degree groove, μ = 0.2, from 20 rad/s; ends before the disc stops."""
+    body = Body("groove", (groove(2.0, 1.0),), kind="static")
+    return Scene(
+        name="v_groove_spin",
+        title="disc spinning in a V-groove",
+        bodies=(body, disc("disc", RADIUS, (0.0, RADIUS / math.cos(PHI)), angular_velocity=SPIN)),
+        friction=MU,
+        duration=1.5,
+        error_name="spin, relative",
+        error=error,
+        source="statics of a sliding disc in a groove; μ = 0 gives N = m g/(2 cos φ)",
+        tags=frozenset({"friction", "concave"}),
+    )
