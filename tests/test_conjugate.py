@@ -101,7 +101,7 @@ def test_a_tower_takes_one_step(seed):
     """Bodies one upon the other, eliminated from the ground up: exact but for what is added to keep blocks regular."""
     s = system([(i, i + 1) for i in range(20)], 21, seed)
     start = dense(s)
-    conjugate.search_together(tables_of(s), 1, False)
+    conjugate.conjugate_gradients(tables_of(s), 1, False)
     assert lacking(s, start) < 1e-6
 
 
@@ -111,7 +111,7 @@ def test_branches_upon_branches(seed):
     pairs = [(0 if i % 5 == 1 else i - 1, i) for i in range(1, 26)]
     s = system(pairs, 26, seed)
     start = dense(s)
-    conjugate.search_together(tables_of(s), 1, False)
+    conjugate.conjugate_gradients(tables_of(s), 1, False)
     assert lacking(s, start) < 1e-6
 
 
@@ -130,11 +130,11 @@ def test_where_supports_are_shared_it_converges_as_conjugate_gradients_do(seed):
     found = tables_of(s)
     for steps in (1, 2, 4, 8):
         fresh = system(pairs, 1 + width * height, seed)
-        conjugate.search_together(tables_of(fresh), steps, False)
+        conjugate.conjugate_gradients(tables_of(fresh), steps, False)
         now = lacking(fresh, start)
         assert now <= before * (1 + 1e-12)
         before = now
-    conjugate.search_together(found, 3 * len(pairs), False)
+    conjugate.conjugate_gradients(found, 3 * len(pairs), False)
     assert lacking(s, start) < 1e-8
 
 
@@ -146,7 +146,7 @@ def test_no_end_pulls_and_no_friction_is_beyond_its_bound(seed):
     s.rows["l1"], s.rows["l2"] = rng.uniform(0, 1, (2, len(s.rows)))
     s.rows["lt"] = rng.uniform(-0.4, 0.4, len(s.rows)) * (s.rows["l1"] + s.rows["l2"])
     start = dense(s)
-    conjugate.search_together(tables_of(s), 4, False)
+    conjugate.conjugate_gradients(tables_of(s), 4, False)
     assert (s.rows["l1"] >= 0).all() and (s.rows["l2"] >= 0).all()
     most = s.rows["friction"] * (s.rows["l1"] + s.rows["l2"])
     assert (np.abs(s.rows["lt"]) <= most * (1 + 1e-12)).all()

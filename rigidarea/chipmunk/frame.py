@@ -20,10 +20,10 @@ from ..compile.raw_memory import array_at
 from ..contact.constants import MOST_SUBSTEPS
 from ..contact.islands import (
     FINEST,
-    company,
+    all_in_one_group,
     connect,
     demand,
-    everybody,
+    mark_bodies_with_neighbours,
     next_turn,
     number,
     part,
@@ -32,7 +32,7 @@ from ..contact.islands import (
 )
 from ..contact.motion import start_looks
 from ..contact.order import order_joints
-from ..contact.passed import return_what_passed, somebody_flew_off, went_far
+from ..contact.passed import any_body_left_its_margin, left_its_margin, recover_from_tunnelling
 from ..contact.solve import finish, finite, respond_explicitly
 from ..contact.space_record import (
     EXTREME,
@@ -211,7 +211,7 @@ def _explicit_frame(s: Any, space: int, dt: float) -> bool:
         return False
     if not _keep_if_fragile(s, space, dt):
         return False
-    everybody(load_tables(s))
+    all_in_one_group(load_tables(s))
     share_kicks(load_tables(s), 1)
     if not find_contacts(s, space, dt, dt, False):
         return False
@@ -284,7 +284,7 @@ def _turns(s: Any, space: int, dt: float) -> int:
         return 0
     # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
     if s.steps_given == 0 and s.joint_count > 0:
-        company(tables)
+        mark_bodies_with_neighbours(tables)
         for joint in joints_of(s):
             if joint.taken:
                 spare(tables, joint.a, s.substeps)
@@ -294,7 +294,7 @@ def _turns(s: Any, space: int, dt: float) -> int:
         if joint.taken:
             connect(tables, joint.a, joint.b)
     if number(tables, g[0], g[1]) < 2:
-        everybody(load_tables(s))
+        all_in_one_group(load_tables(s))
         taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
         return int(taken) if substeps(s, space, dt, taken) else 0
     turn = next_turn(tables, FINEST)
@@ -311,7 +311,7 @@ def _turns(s: Any, space: int, dt: float) -> int:
     if tables.counters[MET]:
         _again(s)
         s.contacts = 0
-        everybody(load_tables(s))
+        all_in_one_group(load_tables(s))
         if not substeps(s, space, dt, most):
             return 0
         taken = most
@@ -322,7 +322,7 @@ def _turns(s: Any, space: int, dt: float) -> int:
 def _whom_it_met(s: Any, space: int, dt: float) -> bool:
     """Near is also whom a blow has sent somebody past since the last search. Whether there was room for that."""
     tables = load_tables(s)
-    if not somebody_flew_off(load_pool(s), tables):
+    if not any_body_left_its_margin(load_pool(s), tables):
         return True
     tables.counters[TURN] = 0
     return bool(near_pairs(s, space, dt, dt))
@@ -357,7 +357,7 @@ def _frame(s: Any, space: int, dt: float) -> bool:
             if joint.taken and i >= 0 and tables.bodies[i].mobile:
                 tables.bodies[i].calm = -1
     if s.tolerance > 0.0:
-        everybody(load_tables(s))
+        all_in_one_group(load_tables(s))
         if not keep_tables(s) or not substeps(s, space, dt, n):
             return False
         while 2 * n <= MOST_SUBSTEPS:
@@ -372,18 +372,18 @@ def _frame(s: Any, space: int, dt: float) -> bool:
     elif n > least or n > s.substeps or (n > 1 and s.joint_count > 0 and s.steps_given == 0):
         n = _turns(s, space, dt)
     else:
-        everybody(load_tables(s))
+        all_in_one_group(load_tables(s))
         if not substeps(s, space, dt, n):
             return False
     if n == 0:
         return False
-    far, lines = went_far(tables)
+    far, lines = left_its_margin(tables)
     if far and not _whom_it_met(s, space, dt):
         return False
     if listened(s) and not wait_for_verdicts(load_pool(s), tables, load_work(s), s.frame, dt):
         return False
     if far or lines:
-        return_what_passed(load_pool(s), tables, s.frame, far)
+        recover_from_tunnelling(load_pool(s), tables, s.frame, far)
     if s.stiffness_given == 0:
         adapt_stiffness(tables, load_law(s), dt)
     s.taken = n

@@ -6,14 +6,15 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.blows import blows, bound_bounces
-from ..contact.conjugate import search_joints, search_together
+from ..contact.conjugate import conjugate_gradients, conjugate_gradients_of_joints
 from ..contact.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.islands import note, share_kicks
-from ..contact.join import gather, has_room, join, nobody_comes_near, somebody_touches
+from ..contact.join import any_pair_touches, gather, has_room, join, no_pair_comes_near
 from ..contact.joint import free_turning, geometric_stiffness
 from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
 from ..contact.solve import (
+    clamp_warm_start,
     common,
     drift,
     finish,
@@ -21,7 +22,6 @@ from ..contact.solve import (
     held_back,
     kick,
     kinetic,
-    lessen,
     pace,
     sweep,
     warm_start,
@@ -90,7 +90,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     small = pace(load_law(s), mass, energy, h)
     warm_start(tables)
     if jointed:
-        lessen(tables, h)
+        clamp_warm_start(tables, h)
     enough = mass * (SETTLED * small) ** 2
     searches = whole // SEARCH_SWEEPS
     sweeps = max(1, whole - 2 * searches - _relaxing(whole))
@@ -112,14 +112,14 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                 break
             if k == 0:
                 if jointed:
-                    search_joints(tables, SEARCH_STEPS, enough)
+                    conjugate_gradients_of_joints(tables, SEARCH_STEPS, enough)
                 else:
-                    search_together(tables, min(1, searches), False)
+                    conjugate_gradients(tables, min(1, searches), False)
                 if moved > small and blows(tables, load_law(s), h):
-                    search_together(tables, searches, False)
+                    conjugate_gradients(tables, searches, False)
                 known = True
             elif k == 1 and not jointed:
-                search_together(tables, searches - 1, known)
+                conjugate_gradients(tables, searches - 1, known)
         if moved <= SETTLED * small:
             break
         gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
@@ -162,11 +162,11 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
     for i in range(n):
         drift(tables, s.frame, 0.5 * h if i == 0 else h)
         lap(s, POSITIONS)
-        if i == 0 and joints == 0 and not somebody_touches(tables):
+        if i == 0 and joints == 0 and not any_pair_touches(tables):
             # as far as the last substep would look, half of it beyond the frame
             if not near_pairs(s, space, dt, dt):
                 return False
-            if nobody_comes_near(tables, dt):
+            if no_pair_comes_near(tables, dt):
                 tables.counters[SUBSTEP] += 1
                 tables.counters[ROWS] = 0
                 # under constant forces one kick in the middle is exact

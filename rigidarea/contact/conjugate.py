@@ -479,7 +479,7 @@ def _go(tables: Tables, part: float) -> None:
 
 
 @kernel
-def search_together(tables: Tables, steps: int, known: bool) -> None:
+def conjugate_gradients(tables: Tables, steps: int, known: bool) -> None:
     """So many steps for all rows that bear; `known`: those that did in the search before."""
     if tables.counters[ROWS] == 0:
         return
@@ -492,7 +492,7 @@ def search_together(tables: Tables, steps: int, known: bool) -> None:
 
 
 @kernel
-def search_joints(tables: Tables, steps: int, enough: float) -> None:
+def conjugate_gradients_of_joints(tables: Tables, steps: int, enough: float) -> None:
     """As many steps for all rows that bear, joints among them, until no more than `enough` is left to solve.
 
     A step that is cut short ends it: other rows bear from there on. enough: mass times the square of a speed.

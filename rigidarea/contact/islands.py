@@ -122,7 +122,7 @@ def demand(
 
 
 @kernel
-def everybody(tables: Tables) -> None:
+def all_in_one_group(tables: Tables) -> None:
     """All bodies and pairs in one turn."""
     counters = tables.counters
     counters[TURN] = 0
@@ -135,7 +135,7 @@ def everybody(tables: Tables) -> None:
 
 
 @kernel
-def company(tables: Tables) -> None:
+def mark_bodies_with_neighbours(tables: Tables) -> None:
     """Note in `steps` who is near somebody."""
     for k in range(tables.counters[AWAKE]):
         tables.bodies[tables.awake[k]].steps = 0
@@ -146,7 +146,10 @@ def company(tables: Tables) -> None:
 
 @kernel
 def spare(tables: Tables, i: int, n: int) -> None:
-    """After `company`: a jointed body (-1: none) with nobody near wants one substep, not n, unless asked for more."""
+    """A jointed body (-1: none) that has no neighbours takes one substep, not n, unless it is asked for more.
+
+    After `mark_bodies_with_neighbours`.
+    """
     if i >= 0:
         body = tables.bodies[i]
         if body.kind != FIXED and body.steps == 0 and body.wants <= n:

@@ -75,7 +75,7 @@ def may_touch(tables: Tables, pair: Any, h: float) -> bool:
 
 
 @kernel
-def somebody_touches(tables: Tables) -> bool:
+def any_pair_touches(tables: Tables) -> bool:
     """Whether a pair of the turn overlapped when it was last looked at."""
     for i in range(tables.counters[FIRST], tables.counters[LAST]):
         if tables.pairs[tables.near[i].pair].head >= 0:
@@ -84,7 +84,7 @@ def somebody_touches(tables: Tables) -> bool:
 
 
 @kernel
-def nobody_comes_near(tables: Tables, time: float) -> bool:
+def no_pair_comes_near(tables: Tables, time: float) -> bool:
     """Whether no two boxes of the turn's near pairs meet, so long before now or after it."""
     for i in range(tables.counters[FIRST], tables.counters[LAST]):
         pair = tables.pairs[tables.near[i].pair]

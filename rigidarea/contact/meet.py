@@ -28,9 +28,9 @@ from .motion import (
     jumped,
     little,
     meets_within,
-    overlap_ahead,
     overlap_before,
     pose_of,
+    time_of_impact,
     unseen_for,
 )
 from .patch import centred, faceless
@@ -321,7 +321,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
                 return True
             r = regions[r].next
     ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
-    n, ahead = overlap_ahead(pool, work, ia, ib, a, b, h, afford(counters, looks), deepest)
+    n, ahead = time_of_impact(pool, work, ia, ib, a, b, h, afford(counters, looks), deepest)
     if n == 0:
         return True
     if n == OVERFLOW:

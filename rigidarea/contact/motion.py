@@ -165,7 +165,7 @@ def overlap_before(
 
 
 @kernel
-def overlap_ahead(
+def time_of_impact(
     pool: Pool, work: Work, ia: int, ib: int, a: Any, b: Any, h: float, looks: int, deepest: float
 ) -> tuple[int, float]:
     """(regions, or OVERFLOW; how far ahead) at the first of `looks` places on the way of the next h, at the present
@@ -188,5 +188,5 @@ def meets_within(pool: Pool, tables: Tables, work: Work, pair: Any, h: float) ->
     b = tables.bodies[tables.shapes[pair.b].body]
     ia, ib = shown_sides(pool, tables, pair, pose_of(a), pose_of(b))
     looks = afford(tables.counters, jumped(tables, pair, a, b, h))
-    n, _ = overlap_ahead(pool, work, ia, ib, a, b, h, looks, 0.0)
+    n, _ = time_of_impact(pool, work, ia, ib, a, b, h, looks, 0.0)
     return n

@@ -241,7 +241,7 @@ def _line(
 
 
 @kernel
-def went_far(tables: Tables) -> tuple[bool, bool]:
+def left_its_margin(tables: Tables) -> tuple[bool, bool]:
     """Whether two may have gone farther in the frame than is seen (not `seen_whole`), and whether somebody is near a
     segment without thickness, whose side is kept.
     """
@@ -266,7 +266,7 @@ def went_far(tables: Tables) -> tuple[bool, bool]:
 
 
 @kernel
-def somebody_flew_off(pool: Pool, tables: Tables) -> bool:
+def any_body_left_its_margin(pool: Pool, tables: Tables) -> bool:
     """Whether a blow has sent a shape out of its box, farther than it is seen: there it may have passed anybody."""
     for k in range(tables.counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
@@ -314,7 +314,7 @@ def _look(pool: Pool, tables: Tables, frame: int, far: bool) -> bool:
 
 
 @kernel
-def return_what_passed(pool: Pool, tables: Tables, frame: int, far: bool) -> None:
+def recover_from_tunnelling(pool: Pool, tables: Tables, frame: int, far: bool) -> None:
     """After a frame: what has passed what it collides with and nothing moves is where it was before, and goes back."""
     back = _look(pool, tables, frame, far)
     if back:  # what one wall has put back has not passed another

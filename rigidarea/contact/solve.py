@@ -105,7 +105,7 @@ def usable(body: Any, h: float) -> float:
 
 
 @kernel
-def lessen(tables: Tables, h: float) -> None:
+def clamp_warm_start(tables: Tables, h: float) -> None:
     """Of what rows begin with where bodies hang in joints, which hold what they press, only what is usable."""
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
