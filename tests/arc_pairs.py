@@ -11,6 +11,7 @@ import numpy as np
 
 import rigidarea as ra
 from rigidarea import shapes
+from rigidarea.geometry import arcs as ring_arcs
 
 TAU = 2 * math.pi
 
@@ -150,6 +151,6 @@ def conforming(rng: np.random.Generator, a: ra.Outline, gap: float) -> tuple[ra.
     """(outline that fits a but for a gap, a's size over the gap-less one's, angle): grown, shrunk or turned by it."""
     if len(a.rings) > 1 and rng.random() < 0.5:  # fill its hole
         ring, arc = a.rings[1], a.arcs[1] if a.arcs else np.zeros((len(a.rings[1]), 3))
-        ring, arc = ra.arcs.reversed_ring(ring, arc)
+        ring, arc = ring_arcs.reversed_ring(ring, arc)
         return ra.Outline.from_curve([ring], arcs=[arc]), 1.0 + gap * rng.choice([-1, 0, 1]), 0.0
     return a, 1.0 + gap * rng.choice([-1, 0, 1]), gap * float(rng.choice([-1, 0, 1]))

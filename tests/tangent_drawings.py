@@ -11,6 +11,7 @@ import numpy as np
 
 import rigidarea as ra
 from rigidarea import shapes
+from rigidarea.geometry import arcs as ring_arcs
 from tangent_pairs import NONE, Pair, Pieces, chord, line, pieces_of, plate
 
 Point = tuple[float, float]
@@ -177,7 +178,7 @@ def wedges(rng: np.random.Generator, size: float) -> Pair:
 
     def grown(lengths: np.ndarray, angles: tuple[float, float]) -> ra.Outline:
         points = np.array([(0.0, 0.0), at(lengths[0], angles[0]), at(lengths[1], angles[1])])
-        ring, bows = ra.arcs.grown(points, r)
+        ring, bows = ring_arcs.grown(points, r)
         return ra.Outline.from_curve([ring], arcs=[bows])
 
     # as far as all of a smaller triangle with these sides is in the larger

@@ -10,6 +10,7 @@ import numpy as np
 
 import rigidarea as ra
 from rigidarea import shapes
+from rigidarea.geometry import arcs as ring_arcs
 from tangent_pairs import (
     NONE,
     Pair,
@@ -53,7 +54,7 @@ def capsule_over_bore(rng: np.random.Generator, size: float) -> Pair:
     r, length = size * rng.uniform(0.05, 1), size * rng.uniform(0.1, 1)
     w = 3 * (length + r)
     square = np.array([(-w, -w), (w, -w), (w, w), (-w, w)])
-    hole = ra.arcs.circle_ring((0.0, 0.0), r)
+    hole = ring_arcs.circle_ring((0.0, 0.0), r)
     bored = ra.Outline.from_curve([square, hole[0]], arcs=[np.zeros((4, 3)), hole[1]])
     return Pair(
         "capsule over bore",
@@ -308,7 +309,7 @@ def _symmetric_gear(rng: np.random.Generator, n: int, tip: float) -> tuple[ra.Ou
             (root, low + step, 0.0),
         ):
             ring.append((r * math.cos(angle), r * math.sin(angle), bulge))
-    points, arcs = ra.arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
+    points, arcs = ring_arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
     return ra.Outline.from_curve([points], arcs=[arcs]), tip
 
 

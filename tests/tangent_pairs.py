@@ -16,6 +16,7 @@ import numpy as np
 
 import rigidarea as ra
 from rigidarea import shapes
+from rigidarea.geometry import arcs as ring_arcs
 
 Pieces = tuple[
     np.ndarray, np.ndarray, np.ndarray
@@ -121,10 +122,10 @@ def gear(rng: np.random.Generator, size: float, bore: bool) -> tuple[ra.Outline,
             (root, t + step, 0.0),
         ):
             ring.append((r * math.cos(angle), r * math.sin(angle), bulge))
-    points, arcs = ra.arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
+    points, arcs = ring_arcs.bulging(np.array(ring)[:, :2], np.array(ring)[:, 2])
     rings, bows = [points], [arcs]
     if bore:
-        hole = ra.arcs.circle_ring((0.0, 0.0), 0.5 * root)
+        hole = ring_arcs.circle_ring((0.0, 0.0), 0.5 * root)
         rings.append(hole[0])
         bows.append(hole[1])
     return ra.Outline.from_curve(rings, arcs=bows), tip, root
@@ -181,7 +182,7 @@ def poses(rng: np.random.Generator, pair: Pair, size: float, count: int) -> Pose
     )
     s_real = (real - np.array(pair.place, wide)).astype(float)
     turn = np.stack([c, s], 1)
-    if len(pair.b.rings) == 1 and pair.b.arcs and ra.arcs.is_circle(pair.b.arcs[0]):  # round: turned anyhow
+    if len(pair.b.rings) == 1 and pair.b.arcs and ring_arcs.is_circle(pair.b.arcs[0]):  # round: turned anyhow
         more = angle + rng.uniform(-7, 7, count) * (rng.random(count) < 0.5)
         return Posed(
             np.hstack([home, turn]), np.hstack([there, np.stack([np.cos(more), np.sin(more)], 1)]), s_real

@@ -15,6 +15,7 @@ import tangent_families
 import tangent_pairs
 from conftest import PURE_PYTHON, kernel_module
 from rigidarea import shapes
+from rigidarea.geometry import arcs as ring_arcs
 
 TOUCHING = [
     family
@@ -79,7 +80,7 @@ def in_ring(r: float, g: float, rng: np.random.Generator) -> Parallel:
 def in_corner(r: float, g: float, rng: np.random.Generator) -> Parallel:
     """One polygon, grown by r and by r - g."""
     corners = r * rng.uniform(0.5, 3, (3, 2)) * ((-1, -1), (1, -1), (0, 1))
-    one, other = (ra.arcs.grown(corners, width) for width in (r, r - g))
+    one, other = (ring_arcs.grown(corners, width) for width in (r, r - g))
     outer, inner = (ra.Outline.from_curve([ring], arcs=[bows]) for ring, bows in (one, other))
     return outer, inner, (0.0, 0.0)
 
