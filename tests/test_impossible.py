@@ -60,7 +60,7 @@ PLANTED = """
 import math
 import rigidarea as ra
 from rigidarea import shapes
-from rigidarea.contact import loops, overlap, place, pool, sequence
+from rigidarea.geometry import loops, overlap, place, pool, sequence
 
 ring = shapes.ring(0.5, 1.0)
 moon = ra.Outline.from_bulges([(0, -0.8, 1.0), (0, 0.8, -0.5)])

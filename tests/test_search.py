@@ -9,7 +9,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.chipmunk.arrays import Store
-from rigidarea.contact import broad, order, tables, tree
+from rigidarea.contact import broad, dtypes, order, tables, tree
 from rigidarea.geometry.place import place
 
 SQUARE = ra.Outline([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
@@ -152,7 +152,7 @@ def test_the_hash_table_is_a_dictionary() -> None:
     """Random pairs come and go; the table is asked for all of them and for others, and grows on the way."""
     rng = np.random.default_rng(3)
     store = Store()
-    store.tables = store.tables._replace(shapes=np.zeros(200, tables.SHAPE), bodies=np.zeros(1, tables.BODY))
+    store.tables = store.tables._replace(shapes=np.zeros(200, dtypes.SHAPE), bodies=np.zeros(1, dtypes.BODY))
     size = len(store.tables.pairs)
     known: dict[tuple[int, int], int] = {}
     for _ in range(3000):

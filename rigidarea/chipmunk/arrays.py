@@ -16,13 +16,12 @@ from typing import Any
 import numpy as np
 from pymunk._chipmunk_cffi import ffi
 
-from ..contact.conjugate import FACTOR, MOBILITY
+from ..contact.dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
 from ..contact.joint import JOINT
-from ..contact.row import ROW
+from ..contact.preconditioner import FACTOR, MOBILITY
 from ..contact.space_record import _ARRAYS as ARRAYS
 from ..contact.space_record import LASTING, OFFSETS, STATE, enter_bodies
 from ..contact.tables import (
-    BODY,
     COUNTERS,
     FREE_BODY,
     FREE_PAIR,
@@ -36,10 +35,6 @@ from ..contact.tables import (
     MORE_SHAPES,
     MORE_SLOTS,
     MORE_WORK,
-    NEIGHBOURS,
-    PAIR,
-    REGION,
-    SHAPE,
     SHAPES,
     Tables,
     append_free,
