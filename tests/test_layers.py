@@ -185,8 +185,6 @@ LONGER: set[str] = {
     "rigidarea.chipmunk.attach",
     "rigidarea.chipmunk.frame",
     "rigidarea.chipmunk.record",
-    "rigidarea.flexible.condense",
-    "rigidarea.geometry.disc",
     "rigidarea.geometry.outline",
 }
 
