@@ -9,6 +9,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.chipmunk.arrays import Store
+from rigidarea.chipmunk.outline_pool import enter_outline
 from rigidarea.contact import broad, dtypes, order, tables, tree
 from rigidarea.geometry.place import place
 
@@ -19,7 +20,7 @@ BLADE = ra.Outline([(-1.5, -0.1), (1.5, -0.1), (1.5, 0.1), (-1.5, 0.1)])
 def scattered(rng: np.random.Generator, n: int, room: float) -> Store:
     """n bodies of one shape each, every tenth static, anywhere in a square."""
     store = Store()
-    heads = [store.outline(outline, outline.smallest_extent) for outline in (SQUARE, BLADE)]
+    heads = [enter_outline(store, outline, outline.smallest_extent) for outline in (SQUARE, BLADE)]
     store.grow_shapes(n + 16)
     store.grow_bodies(n + 16)
     store.sync()
