@@ -305,12 +305,12 @@ class AreaContact:
 
     def _run(self, dt: float, frames: int) -> int:
         """Frames on end, in machine code."""
-        from . import frame
+        from . import hidden_constraint
 
         space = self.space
         space._locked = self._stepping = True
         try:
-            advance = ffi.cast("long long(*)(void *, double, long long)", frame.advance.address)
+            advance = ffi.cast("long long(*)(void *, double, long long)", hidden_constraint.advance.address)
             taken = int(advance(space._space, dt, frames))
         finally:
             space._locked = self._stepping = False
