@@ -43,7 +43,7 @@ for b in space.bodies:
 
 
 def test_interpreted_and_compiled_are_the_same_to_the_bit():
-    """Rest, sleep, impacts, friction, a joint, a user's forces, a disc, a concave outline, mass ratios of 100: six bodies, 24 frames."""
+    """Rest, sleep, impacts, friction, a joint, forces, a disc, a concave outline, mass ratios of 100."""
     seen = []
     for off in ("0", "1"):
         run = subprocess.run(
