@@ -16,11 +16,12 @@ from .contact.space_record import overlap_by_address, state_of_arrays
 from .geometry.arcs import sampled
 from .geometry.direction import chord_direction
 from .geometry.gate import numbers
-from .geometry.outline import DEFAULT_TOLERANCE, Outline
+from .geometry.outline import Outline
 from .geometry.overlap import Relative, Work, enlarged, fits, new_work
 from .geometry.pick import is_inside
 from .geometry.place import Pose, overlaps_of_outlines, push_out
 from .geometry.pool import Pool, pack
+from .geometry.solid import DEFAULT_TOLERANCE
 
 OVERLAP = np.dtype(
     [

@@ -23,8 +23,7 @@ from .chipmunk.many import Many, WorldSnapshot
 from .chipmunk.steppable import check_steppable
 from .chipmunk.world_image import BODY_BYTES, SHAPE_BYTES, Image
 from .contact.tables import SUBSTEP
-from .geometry.gate import whole
-from .geometry.outline import positive
+from .geometry.gate import positive, whole
 
 CONTACTS = np.dtype(
     [

@@ -8,18 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidarea.contact import conjugate, row, tables
+from rigidarea.contact import conjugate, dtypes, preconditioner, tables
 
 
 def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e9) -> SimpleNamespace:
     """Rows between the bodies of `pairs` (body 0 is fixed), anyhow: faces, compliances, masses, velocities."""
     rng = np.random.default_rng(seed)
-    bodies = np.zeros(n, tables.BODY)
+    bodies = np.zeros(n, dtypes.BODY)
     bodies["inverse_mass"][1:] = 10 ** rng.uniform(-2, 1, n - 1)
     bodies["inverse_moment"][1:] = 10 ** rng.uniform(-2, 1, n - 1)
     for name in ("vx", "vy", "w"):
         bodies[name][1:] = rng.normal(size=n - 1)
-    rows = np.zeros(len(pairs), row.ROW)
+    rows = np.zeros(len(pairs), dtypes.ROW)
     for r, (a, b) in zip(rows, pairs):
         angle = rng.uniform(0, 6.3)
         r["a"], r["b"], r["ends"] = a, b, 2
@@ -39,8 +39,8 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
     mine = dict(
         bodies=bodies,
         rows=rows,
-        factors=np.zeros(len(pairs), conjugate.FACTOR),
-        mobility=np.zeros(n, conjugate.MOBILITY),
+        factors=np.zeros(len(pairs), preconditioner.FACTOR),
+        mobility=np.zeros(n, preconditioner.MOBILITY),
         live=np.arange(n, dtype=np.int32),
         counters=counters,
     )

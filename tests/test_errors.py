@@ -2,7 +2,6 @@
 
 import math
 import pickle
-import sys
 
 import numpy as np
 import pymunk
@@ -406,16 +405,13 @@ def test_a_contact_alone_cannot_be_pickled_into_use():
 
 def test_an_unknown_layout_is_refused(monkeypatch):
     """Where Chipmunk's memory is not as it must be, attach says so, and the space stays pymunk's."""
+    from rigidarea.chipmunk import area_contact
     from rigidarea.chipmunk.structs import LayoutError
-
-    module = sys.modules[
-        "rigidarea.chipmunk.attach"
-    ]  # `rigidarea.chipmunk.attach` is the function of that name
 
     def strange():
         raise LayoutError("a layout never seen")
 
-    monkeypatch.setattr(module, "layout", strange)
+    monkeypatch.setattr(area_contact, "layout", strange)
     space = scene()
     with pytest.raises(LayoutError, match="never seen"):
         ra.attach(space, 5e4)

@@ -2,7 +2,6 @@
 
 import functools
 import random
-import sys
 
 import pymunk
 import pytest
@@ -10,6 +9,7 @@ import pytest
 import rigidarea as ra
 from harness import interrupts
 from harness.interrupts import COURSES, FRAMES, _bits
+from rigidarea.chipmunk import area_contact
 from rigidarea.chipmunk.arrays import Store
 from tests.test_ownership import places, steps
 
@@ -85,7 +85,7 @@ def test_frames_that_fail_while_callbacks_are_asked(seed, monkeypatch):
     """Python is interrupted when machine code asks it for something: what touches by a hair goes on touching."""
     expected = undisturbed_callbacks()
     course, draw = COURSES["callbacks"](False), random.Random(seed)
-    serve, left = sys.modules["rigidarea.chipmunk.attach"]._serve, draw.randrange(1, 300)
+    serve, left = area_contact.serve, draw.randrange(1, 300)
 
     def serve_or_fail(own, request):
         nonlocal left
@@ -95,7 +95,7 @@ def test_frames_that_fail_while_callbacks_are_asked(seed, monkeypatch):
             raise KeyboardInterrupt
         serve(own, request)
 
-    monkeypatch.setattr(sys.modules["rigidarea.chipmunk.attach"], "_serve", serve_or_fail)
+    monkeypatch.setattr(area_contact, "serve", serve_or_fail)
     bits, done, failed = [], 0, 0
     while done < FRAMES:
         try:

@@ -8,9 +8,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
-from rigidarea.chipmunk.arrays import Store
-from rigidarea.chipmunk.attach import AreaContact
-from rigidarea.chipmunk.register import Register
+from rigidarea.chipmunk import area_contact, arrays, asked, outline_pool, register
 from rigidarea.contact import tables
 
 DT = 1 / 60
@@ -69,9 +67,7 @@ def test_growth_is_not_seen(seed):
 class Raise:
     """Raises once, at the k-th line that Python runs for machine code."""
 
-    FILES = tuple(
-        sys.modules[name].__file__ for name in (AreaContact.__module__, Store.__module__, Register.__module__)
-    )
+    FILES = tuple(module.__file__ for module in (area_contact, asked, arrays, outline_pool, register))
 
     def __init__(self, k: int, error: type[BaseException]) -> None:
         self.left, self.error, self.inside = k, error, False

@@ -13,7 +13,8 @@ import shapely
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from rigidarea.geometry.outline import SEGMENT_THICKNESS, Outline, arc_points, circle_points
+from rigidarea.geometry.arcs import arc_points, circle_points
+from rigidarea.geometry.outline import SEGMENT_THICKNESS, Outline
 
 SQUARE = [(0, 0), (4, 0), (4, 4), (0, 4)]
 ROUNDING = 1e-13  # relative; some hundred operations on numbers of the outline's size

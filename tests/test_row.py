@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 
 
 def body(kernel: Any, **fields: float) -> Any:
-    made = np.zeros(1, kernel.tables.BODY)
+    made = np.zeros(1, kernel.dtypes.BODY)
     for name, value in (dict(extent=1e9) | fields).items():
         made[name] = value
     return made[0]
@@ -24,8 +24,8 @@ def body(kernel: Any, **fields: float) -> Any:
 def row_of(kernel: Any, a: Any, b: Any, h: float, **changes: Any) -> SimpleNamespace:
     """A row between two bodies: region, pair and law as given by name, arms from where the bodies are."""
     tables = kernel.tables
-    r = np.zeros(1, tables.REGION)
-    pair = np.zeros(1, tables.PAIR)
+    r = np.zeros(1, kernel.dtypes.REGION)
+    pair = np.zeros(1, kernel.dtypes.PAIR)
     law = tables.Law(1e4, 2e-4, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 0.5, 0.0, kernel.constants.FOLLOWED)
     law = law._replace(**{n: changes.pop(n) for n in list(changes) if n in ("followed", "law", "length")})
     for name in ("friction", "elasticity", "surface_x", "surface_y"):
@@ -39,7 +39,7 @@ def row_of(kernel: Any, a: Any, b: Any, h: float, **changes: Any) -> SimpleNames
         x, y = r["x"] - one["x"], r["y"] - one["y"]
         r[f"arm_{side}"] = x * r["ny"] - y * r["nx"]
         r[f"lean_{side}"] = x * ty - y * tx
-    row = np.zeros(1, kernel.row.ROW)[0]
+    row = np.zeros(1, kernel.dtypes.ROW)[0]
     kernel.row.make_row(row, r, law, a, b, pair[0], h)
     return SimpleNamespace(row=row, region=r, law=law, pair=pair[0])
 
@@ -348,8 +348,8 @@ def test_stepped_impact_converges_to_what_is_asked(kernel: Any, e: float, power:
 def test_the_depth_that_bears_a_load(kernel: Any, law: int, depth: float, k: float, n: float) -> None:
     """Of a face, a disc and a corner (area as depth^n) under a k that is given: at that depth k A is the load."""
     rules = kernel.tables.Law(k, 2e-4, 10.0, law, 0.7, kernel.tables.CHORD, 0.5, 0.0, FOLLOWED)
-    pair = np.zeros(1, kernel.tables.PAIR)[0]
-    r = np.zeros(1, kernel.tables.REGION)[0]
+    pair = np.zeros(1, kernel.dtypes.PAIR)[0]
+    r = np.zeros(1, kernel.dtypes.REGION)[0]
     seen = 0.01
     r["area"], r["chord"], r["depth"] = 3.0 * seen**n, 3.0 * n * seen ** (n - 1), seen
     area, chord = 3.0 * depth**n, 3.0 * n * depth ** (n - 1)
@@ -364,7 +364,7 @@ def chosen(kernel: Any, **changes: Any) -> tuple[Any, Any, Any, Any]:
         **changes
     )
     a, b = body(kernel, inverse_mass=0.5, extent=0.4), body(kernel, inverse_mass=0.1, extent=2.0)
-    pair = np.zeros(1, tables.PAIR)[0]
+    pair = np.zeros(1, kernel.dtypes.PAIR)[0]
     kernel.stiffness.choose_stiffness(law, pair, 0.5, a, b, 1 / 60)
     return law, a, b, pair
 
@@ -375,7 +375,7 @@ def test_whatever_lies_there_bears_its_load_at_the_depth_allowed(
 ) -> None:
     """k A = rate x depth of a level face, a disc, a corner; of a tilted face the rate times its mean thickness."""
     law, _, _, pair = chosen(kernel)
-    r = np.zeros(1, kernel.tables.REGION)[0]
+    r = np.zeros(1, kernel.dtypes.REGION)[0]
     r["area"], r["chord"], r["depth"] = 3.0 * depth**n, 3.0 * n * depth ** (n - 1), depth
     pressed = depth
     if n == 1.0:  # a face, its two ends' depths as 1 to 1 - tilt
@@ -391,7 +391,7 @@ def test_whatever_lies_there_bears_its_load_at_the_depth_allowed(
 
 def test_a_given_stiffness_is_that_of_every_region(kernel: Any) -> None:
     law, _, _, pair = chosen(kernel, stiffness=77.0)
-    r = np.zeros(1, kernel.tables.REGION)[0]
+    r = np.zeros(1, kernel.dtypes.REGION)[0]
     assert kernel.stiffness.stiffness_of(law, pair, r, 0.5, 1 / 60) == 77.0
     assert pair["rate"] == 77.0 * 0.5
 

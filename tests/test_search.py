@@ -9,7 +9,8 @@ import pytest
 
 import rigidarea as ra
 from rigidarea.chipmunk.arrays import Store
-from rigidarea.contact import broad, order, tables, tree
+from rigidarea.chipmunk.outline_pool import enter_outline
+from rigidarea.contact import broad, dtypes, order, tables, tree
 from rigidarea.geometry.place import place
 
 SQUARE = ra.Outline([(-0.5, -0.5), (0.5, -0.5), (0.5, 0.5), (-0.5, 0.5)])
@@ -19,7 +20,7 @@ BLADE = ra.Outline([(-1.5, -0.1), (1.5, -0.1), (1.5, 0.1), (-1.5, 0.1)])
 def scattered(rng: np.random.Generator, n: int, room: float) -> Store:
     """n bodies of one shape each, every tenth static, anywhere in a square."""
     store = Store()
-    heads = [store.outline(outline, outline.smallest_extent) for outline in (SQUARE, BLADE)]
+    heads = [enter_outline(store, outline, outline.smallest_extent) for outline in (SQUARE, BLADE)]
     store.grow_shapes(n + 16)
     store.grow_bodies(n + 16)
     store.sync()
@@ -152,7 +153,7 @@ def test_the_hash_table_is_a_dictionary() -> None:
     """Random pairs come and go; the table is asked for all of them and for others, and grows on the way."""
     rng = np.random.default_rng(3)
     store = Store()
-    store.tables = store.tables._replace(shapes=np.zeros(200, tables.SHAPE), bodies=np.zeros(1, tables.BODY))
+    store.tables = store.tables._replace(shapes=np.zeros(200, dtypes.SHAPE), bodies=np.zeros(1, dtypes.BODY))
     size = len(store.tables.pairs)
     known: dict[tuple[int, int], int] = {}
     for _ in range(3000):

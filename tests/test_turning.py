@@ -9,7 +9,7 @@ import pytest
 
 import rigidarea as ra
 from rigidarea import shapes
-from rigidarea.contact.tables import BODY, REGION
+from rigidarea.contact.dtypes import BODY, REGION
 from rigidarea.geometry.overlap import new_work
 from rigidarea.geometry.place import Pose, overlap_of_outlines
 from rigidarea.geometry.turning import curvatures, turning_speed

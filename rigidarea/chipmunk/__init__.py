@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from .attach import AreaContact, Settings, SimulationError, attach, attached
+from .area_contact import AreaContact
+from .asked import SimulationError
+from .attach import Settings, attach, attached
 from .contact_report import REGIONS
 
 __all__ = ["REGIONS", "AreaContact", "Settings", "SimulationError", "attach", "attached"]

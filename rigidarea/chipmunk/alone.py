@@ -1,9 +1,9 @@
 """A world without Chipmunk: a frame that reads copies of its structs, in memory of its own, and calls no Python.
 
 A world (`rigidarea.worlds`) is one block of memory: WORLD, a state record, tables, and copies of Chipmunk's structs of
-the space, its bodies, shapes and joints, at which the addresses in the tables point. So `frame.solve` runs on it, the
-same machine code, as if Chipmunk had called it. What
-Chipmunk does in a step beside asking us is here: velocities (cpBodyUpdateVelocity, to the bit), and nothing else, as
+the space, its bodies, shapes and joints, at which the addresses in the tables point. So `hidden_constraint.solve` runs
+on it, the same machine code, as if Chipmunk had called it. What Chipmunk does in a step beside asking us is here:
+velocities (cpBodyUpdateVelocity, to the bit), and nothing else, as
 there are no callbacks, nobody sleeps, and pairs are found by our own broad phase. Outlines are shared, scratch is the
 thread's.
 """
@@ -21,16 +21,11 @@ from ..contact.broad import forget_the_gone
 from ..contact.join import roomy
 from ..contact.space_record import STATE, clear, enter_body, load_tables
 from ..contact.tables import BODIES, SHAPES, TOLD, Tables, rehash
+from .awake import watch_bodies
+from .begin import look_at_jointed
 from .joints import joints_of, read_joint, take_joints
 from .moved import HEAD, free_again
-from .record import (
-    _look_at_jointed,
-    _watch,
-    floats,
-    look_at_partners,
-    members,
-    words,
-)
+from .record import floats, look_at_partners, members, words
 
 #: What a world's memory begins with; `..._at` are addresses.
 WORLD = record(
@@ -42,7 +37,7 @@ WORLD = record(
         ("count", "i8"),  # bodies of the space
         ("damping", "f8"),  # share of its velocity that a body keeps in a unit of time
         ("joint_at", "u8"),  # what stands for our own constraint: it knows the space
-        ("solve_at", "u8"),  # `frame.solve` and `frame.report`
+        ("solve_at", "u8"),  # `hidden_constraint.solve` and `hidden_constraint.report`
         ("report_at", "u8"),
         ("stamp_at", "i8"),  # where the space has its count of steps and its time step (bytes)
         ("step_at", "i8"),
@@ -90,7 +85,7 @@ def _update_velocities(s: Any, space: int, damping: float, dt: float) -> None:
 
 @kernel
 def _begin(s: Any, space: int, world: Any, dt: float) -> bool:
-    """As `record.begin`, where nobody comes or goes and nobody is asked."""
+    """As `begin.begin`, where nobody comes or goes and nobody is asked."""
     stamp = array_at(space + world.stamp_at, (1,), np.uint32)
     stamp[0] += np.uint32(1)
     s.frame = np.int64(stamp[0])
@@ -102,12 +97,12 @@ def _begin(s: Any, space: int, world: Any, dt: float) -> bool:
     tables = load_tables(s)
     tables.counters[TOLD] = 0
     forget_the_gone(tables)
-    if not _watch(s, tables, space, dt):
+    if not watch_bodies(s, tables, space, dt):
         return False
     look_at_partners(s, tables)
     constraints = members(space, s.space_constraints)
     take_joints(s, tables, constraints)
-    _look_at_jointed(s, tables)
+    look_at_jointed(s, tables)
     for joint in joints_of(s):
         joint.taken = 1
         read_joint(s, joint)

@@ -16,13 +16,12 @@ from typing import Any
 import numpy as np
 from pymunk._chipmunk_cffi import ffi
 
-from ..contact.conjugate import FACTOR, MOBILITY
+from ..contact.dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
 from ..contact.joint import JOINT
-from ..contact.row import ROW
+from ..contact.preconditioner import FACTOR, MOBILITY
 from ..contact.space_record import _ARRAYS as ARRAYS
 from ..contact.space_record import LASTING, OFFSETS, STATE, enter_bodies
 from ..contact.tables import (
-    BODY,
     COUNTERS,
     FREE_BODY,
     FREE_PAIR,
@@ -36,25 +35,19 @@ from ..contact.tables import (
     MORE_SHAPES,
     MORE_SLOTS,
     MORE_WORK,
-    NEIGHBOURS,
-    PAIR,
-    REGION,
-    SHAPE,
     SHAPES,
     Tables,
     append_free,
     rehash,
 )
 from ..contact.tree import FREE, NODE
-from ..geometry.overlap import enlarged, fits, new_work
-from ..geometry.pool import HEAD, HasRings, Pool, pack
-from .chipmunk_outlines import Forms, enter_form, read_shapes
+from ..geometry.overlap import enlarged, new_work
+from ..geometry.pool import HEAD, HasRings, Pool
+from .chipmunk_outlines import Forms
 from .structs import address_of
 
 #: Joints for which there is room from the start, and in `apart`, where any of them may be: whose bodies do not collide.
 JOINTS = 8
-#: Crossings for which there is room from the start, where the largest outline has many points: more come with use.
-MOST_CROSSINGS = 4096
 
 #: Arrays of a `Store` itself that the record has.
 _OWN = ("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs")
@@ -112,7 +105,7 @@ class Store:
         )
         self.tables.counters[[FREE_REGION, FREE_PAIR, FREE_SHAPE, FREE_BODY]] = -1
         self.slots = np.full(64, -1, np.int32)  # Chipmunk's shape id -> row of tables.shapes
-        size = max(64, _power(2 * bodies))
+        size = max(64, power_above(2 * bodies))
         self.body_keys = np.zeros(size, np.uint64)  # hash table: Chipmunk's body -> row of tables.bodies
         self.body_rows = np.zeros(size, np.int32)
         self.heard_alone = np.zeros(0, np.uint64)  # collision types that have callbacks with any other
@@ -195,7 +188,7 @@ class Store:
         if bodies > 0:
             new.grow_bodies(max(len(new.tables.bodies) + bodies, 2 * len(new.tables.bodies)))
         if slots > 0:
-            new.slots = _longer(new.slots, max(len(new.slots) + slots, 2 * len(new.slots)), -1)
+            new.slots = longer(new.slots, max(len(new.slots) + slots, 2 * len(new.slots)), -1)
         self.publish(new)
 
     def grow_pairs(self, n: int) -> None:
@@ -235,8 +228,8 @@ class Store:
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
         if n > len(self.tables.joints):
-            apart = _longer(self.tables.apart, 2 * n)
-            self.tables = self.tables._replace(apart=apart, joints=_longer(self.tables.joints, 2 * n))
+            apart = longer(self.tables.apart, 2 * n)
+            self.tables = self.tables._replace(apart=apart, joints=longer(self.tables.joints, 2 * n))
             self.renew_rows()
 
     def grow_work(self) -> None:
@@ -246,143 +239,29 @@ class Store:
 
     def grow_shapes(self, n: int) -> None:
         """Room for n shapes."""
-        longer = {name: _longer(getattr(self.tables, name), n) for name in ("shapes", "movers", "asked")}
-        self.tables = self.tables._replace(**longer)
+        grown = {name: longer(getattr(self.tables, name), n) for name in ("shapes", "movers", "asked")}
+        self.tables = self.tables._replace(**grown)
         self._grow_nodes(n)
 
     def grow_bodies(self, n: int) -> None:
         """Room for n bodies."""
-        longer = {name: _longer(getattr(self.tables, name), n) for name in ("bodies", "live", "awake")}
-        self.tables = self.tables._replace(**longer, mobility=np.zeros(n, MOBILITY))
+        grown = {name: longer(getattr(self.tables, name), n) for name in ("bodies", "live", "awake")}
+        self.tables = self.tables._replace(**grown, mobility=np.zeros(n, MOBILITY))
         used, keys, rows = self.body_keys != 0, self.body_keys, self.body_rows
-        self.body_keys, self.body_rows = np.zeros(_power(2 * n), np.uint64), np.zeros(_power(2 * n), np.int32)
+        self.body_keys, self.body_rows = (
+            np.zeros(power_above(2 * n), np.uint64),
+            np.zeros(power_above(2 * n), np.int32),
+        )
         enter_bodies(self.body_keys, self.body_rows, keys[used], rows[used])
 
     def _grow_nodes(self, shapes: int) -> None:
         """Room for so many shapes in the trees."""
         old, roots = self.tables.nodes, self.tables.roots.copy()
-        new = _longer(old, 2 * shapes)
+        new = longer(old, 2 * shapes)
         new["parent"][len(old) :] = np.arange(len(old) + 1, len(new) + 1)
         new["parent"][-1] = roots[FREE]
         roots[FREE] = len(old)
         self.tables = self.tables._replace(nodes=new, roots=roots)
-
-    def _pool_room(self, points: int, rings: int, boxes: int, heads: int, raw: int) -> None:
-        """Room for so much more in the pool."""
-        need = self.forms.fill + np.array((points, rings, boxes, heads, raw))
-
-        def longer(array: np.ndarray, which: int) -> np.ndarray:
-            n = int(need[which])
-            return array if n <= len(array) else _longer(array, max(n, 2 * len(array)))
-
-        pool, forms, new = self.pool, self.forms, copy.copy(self)
-        new.pool = Pool._make(map(longer, pool, (0, 0, 0, 1, 2, 0, 3)))
-        new.forms = Forms._make([*map(longer, forms[:5], (3, 3, 3, 3, 4)), *forms[5:]])
-        heads = len(new.forms.users)
-        if 2 * heads > len(forms.table):
-            new.forms = new.forms._replace(table=np.full(_power(4 * heads), -1, np.int32))
-            for h in np.flatnonzero(forms.span[: forms.fill[3], 1]):
-                enter_form(new.forms, int(h))
-        self.publish(new)
-
-    def outline(self, outline: HasRings, extent: float) -> int:
-        """The outline's number in the pool; packed the first time it is seen, its mirror behind it.
-
-        extent: its smallest extent (length).
-        """
-        found = self._outlines.get(id(outline))
-        if found is not None:
-            return found[0]
-        one = pack([outline])
-        self._pool_room(len(one.points), len(one.rings), len(one.boxes), 1, 0)
-        pool, (p, r, b, h, _) = self.pool, (int(n) for n in self.forms.fill)
-        pool.points[p : p + len(one.points)] = one.points
-        pool.arcs[p : p + len(one.points)] = one.arcs
-        pool.following[p : p + len(one.points)] = one.following + p
-        pool.ring_of[p : p + len(one.points)] = one.ring_of + r
-        pool.rings[r : r + len(one.rings)] = one.rings + p
-        pool.boxes[b : b + len(one.boxes)] = one.boxes
-        pool.heads[h] = one.heads[0]
-        pool.heads[h]["point"] += p
-        pool.heads[h]["ring"] += r
-        pool.heads[h]["box"] += b
-        self.forms.fill[:4] += len(one.points), len(one.rings), len(one.boxes), 1
-        left, bottom, right, top = outline.bounds
-        self.forms.extent[h] = extent, 0.5 * (right - left), 0.5 * (top - bottom)
-        self.forms.mirror[h], self.forms.users[h], self.forms.span[h, 1] = -1, 0, 0
-        self._note_most(len(one.points), len(one.rings))
-        self._outlines[id(outline)] = h, outline
-        return h
-
-    def _note_most(self, points: int, rings: int) -> None:
-        """There is an outline of so many points and rings: room for two of them to meet."""
-        most = (max(self._most[0], points), max(self._most[1], rings))
-        crossings = max(len(self.work.cross), min(4 * most[0], MOST_CROSSINGS))
-        new = copy.copy(self)
-        new._most = most
-        if crossings > len(self.work.cross) or not fits(self.work, 2 * most[0], 2 * most[1]):
-            new.work = new_work(2 * most[0], crossings, 2 * most[1])
-            self.publish(new)
-        else:
-            self._most = most
-
-    def read(self, addresses: int, heads: int, n: int) -> int:
-        """Outlines of n of Chipmunk's own shapes (`read_shapes`). Which has no area; -1: all have."""
-        done, start = 0, int(self.forms.fill[3])
-        while done < n:
-            done, why = read_shapes(self.at, addresses, heads, done, n)
-            if why < 0:
-                return done
-            if why > 0:
-                more = n - done + why
-                self._pool_room(8 * more, 2 * more, 32 * more, 2 * more, 10 * more)
-        if self.forms.fill[3] > start:
-            self._note_most(int(self.pool.heads["count"][start : self.forms.fill[3]].max()), 1)
-        return -1
-
-    def tidy(self) -> None:
-        """Outlines that no shape has go, in time."""
-        n = int(self.forms.fill[3])
-        if n <= 2 * self._used + 64:
-            return
-        used = np.flatnonzero(self.forms.users[:n] > 0)
-        self._used = max(len(used), (n - 64) // 2)  # asked again when there are many more
-        if n <= 2 * len(used) + 64:
-            return
-        self._used = len(used)
-        old, forms, new = self.pool, self.forms, copy.copy(self)
-        renumbered = np.full(n + 1, -1, np.int32)  # the last for "none"
-        renumbered[used] = np.arange(len(used))
-        heads, span = old.heads[used], forms.span[used]
-        points, rings, boxes, raws = heads["count"], heads["rings"], 2 * heads["leaves"], span[:, 1].copy()
-        take = [_ranges(heads["point"], points), _ranges(heads["ring"], rings), _ranges(heads["box"], boxes)]
-        shift = [
-            _starts(points) - heads["point"],
-            _starts(rings) - heads["ring"],
-            _starts(boxes) - heads["box"],
-        ]
-        raw = forms.raw[_ranges(span[:, 0], raws)]
-        span[:, 0] = _starts(raws)
-        following = old.following[take[0]] + np.repeat(shift[0], points)
-        ring_of = old.ring_of[take[0]] + np.repeat(shift[1], points)
-        ends = old.rings[take[1]] + np.repeat(shift[0], rings)[:, None]
-        for name, more in zip(("point", "ring", "box"), shift):
-            heads[name] += more
-        kept = old.points[take[0]], following, ring_of, ends, old.boxes[take[2]], old.arcs[take[0]], heads
-        new.pool = Pool._make(map(_filled, old, kept))
-        sums = np.array((points.sum(), rings.sum(), boxes.sum(), len(used), raws.sum()), np.int64)
-        mirror = renumbered[forms.mirror[used]]
-        told = forms.extent[used], mirror, forms.users[used], span, raw
-        new.forms = Forms._make([*map(_filled, forms[:5], told), np.full_like(forms.table, -1), sums])
-        for h in np.flatnonzero(raws):
-            enter_form(new.forms, int(h))
-        outlines = [(int(renumbered[h]), outline) for h, outline in self._outlines.values()]
-        new._outlines = {id(outline): (h, outline) for h, outline in outlines if h >= 0}
-        shapes = self.tables.shapes.copy()
-        for name in ("outline", "mirror"):
-            shapes[name] = renumbered[shapes[name]]
-        new.tables = self.tables._replace(shapes=shapes)
-        self.publish(new)
 
     def knows(self, ident: int) -> bool:
         """Whether shape `ident` has an outline here."""
@@ -409,7 +288,7 @@ def room_to_keep(sizes: dict[str, int]) -> int:
     return sum(-(-sizes[name] // 8) * 8 for name in (*LASTING, "counters"))
 
 
-def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:
+def longer(array: np.ndarray, n: int, value: int = 0) -> Any:
     """An array of n rows that begins as this one."""
     new = (
         np.full((n, *array.shape[1:]), value, array.dtype)
@@ -420,23 +299,6 @@ def _longer(array: np.ndarray, n: int, value: int = 0) -> Any:
     return new
 
 
-def _filled(array: np.ndarray, values: np.ndarray) -> Any:
-    """An array as long as this one that begins with these values."""
-    new = np.zeros(array.shape, array.dtype)
-    new[: len(values)] = values
-    return new
-
-
-def _power(n: int) -> int:
+def power_above(n: int) -> int:
     """The smallest power of two that is no less than n."""
     return 1 << (n - 1).bit_length()
-
-
-def _starts(counts: np.ndarray) -> np.ndarray:
-    """Where ranges of these lengths begin, one behind the other."""
-    return np.cumsum(counts) - counts
-
-
-def _ranges(first: np.ndarray, counts: np.ndarray) -> np.ndarray:
-    """The numbers of ranges that begin at `first`, one behind the other."""
-    return np.repeat(first - _starts(counts), counts) + np.arange(counts.sum())

@@ -50,8 +50,9 @@ from ..contact.tables import (
 )
 from ..contact.tree import MOVING, STILL, build, new_leaf
 from ..geometry.place import place
+from .awake import put_to_rest
 from .chipmunk_outlines import load_forms
-from .record import body_type, put_to_rest, read_place, row_of_shape, words
+from .record import body_type, read_place, row_of_shape, words
 
 STATIC = 2
 #: Shapes that come together by so many go into an empty tree at once.

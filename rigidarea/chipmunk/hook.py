@@ -1,8 +1,7 @@
 """What of ours Chipmunk calls in a step of its own: put into a space, and taken out of it.
 
-A constraint that only Chipmunk knows, before all joints (`frame.silence`, `frame.solve`, `frame.report`); the function
-of its global handler that it calls for a touching pair (`record.pre_solve`); the position function of every body that
-has Chipmunk's own (`record.hold`).
+A constraint that only Chipmunk knows, before all joints (`hidden_constraint`); the function of its global handler that
+it calls for a touching pair (`pre_solve`); the position function of every body that has Chipmunk's own (`begin.hold`).
 
 What is put there is taken out again when it leaves, in whatever way: a body's position function when the body is
 removed, the space is detached or is garbage; the constraint in the latter two, and when the interpreter ends and no
@@ -20,7 +19,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from . import frame, joints, record
+from . import begin, hidden_constraint, joints, pre_solve
 from .arrays import Store
 from .proxies import Spy
 from .structs import address_of
@@ -35,7 +34,7 @@ class Hook:
         classes = np.array(
             [
                 *(idle, idle, idle, none),
-                *(frame.silence.address, frame.solve.address, idle, none),
+                *(hidden_constraint.silence.address, hidden_constraint.solve.address, idle, none),
                 *(joints.prepared.address, idle, idle, none),
             ],
             np.uint64,
@@ -46,7 +45,7 @@ class Hook:
         words = ffi.cast("uintptr_t *", joint)
         pivot = int(words[0])
         words[0] = classes.ctypes.data + 32
-        words[int(state["constraint_post_solve"]) // 8] = frame.report.address
+        words[int(state["constraint_post_solve"]) // 8] = hidden_constraint.report.address
         lib.cpSpaceAddConstraint(space._space, joint)
         constraints = address_of(space._space) + int(state["space_constraints"])
         _roll(constraints, 1)  # before all joints: they are solved when its turn comes, and given back
@@ -58,8 +57,8 @@ class Hook:
         at = address_of(handler) + int(state["handler_pre_solve"]) - 8
         self._functions = ffi.cast("uintptr_t *", at)  # begin, pre_solve, post_solve, separate
         state["user_pre_solve"] = int(self._functions[1])
-        state["pre_solve_at"] = self._functions[1] = record.pre_solve.address
-        state["hold_at"] = record.hold.address
+        state["pre_solve_at"] = self._functions[1] = pre_solve.pre_solve.address
+        state["hold_at"] = begin.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
         self.spy = Spy(state)
         self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
@@ -91,7 +90,7 @@ class Hook:
         _release(body, *self._functions_of_bodies)
 
     def callbacks(self) -> dict[str, int]:
-        """Which functions of its own the global handler has: `record.begin` looks whether they are others."""
+        """Which functions of its own the global handler has: `begin.begin` looks whether they are others."""
         names = ((0, "begin"), (2, "post_solve"), (3, "separate"))
         return {f"global_{name}": int(self._functions[number]) for number, name in names}
 

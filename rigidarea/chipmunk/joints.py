@@ -208,6 +208,15 @@ def own_joints(s: Any, tables: Tables) -> int:
 
 
 @kernel
+def keep_jointed_busy(s: Any, tables: Tables) -> None:
+    """What hangs in a joint is never at rest: it is held the better the shorter the step."""
+    for joint in joints_of(s):
+        for i in (joint.a, joint.b):
+            if joint.taken and i >= 0 and tables.bodies[i].mobile:
+                tables.bodies[i].calm = -1
+
+
+@kernel
 def give_back(s: Any, joint: Any) -> None:
     """The joint as it was, its impulse that of the whole frame."""
     if joint.taken:

@@ -14,13 +14,13 @@ import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
 from ..contact.broad import ask_about, drop_pairs, put_in_tree
+from ..contact.dtypes import BODY, SHAPE
 from ..contact.space_record import LASTING, LASTING_STATE
 from ..contact.tables import (
     ANEW,
     APART,
     ASKED,
     AWAKE,
-    BODY,
     BOXED,
     COUNTED,
     FREE_PAIR,
@@ -30,7 +30,6 @@ from ..contact.tables import (
     MOVERS,
     NEAR,
     SEARCH,
-    SHAPE,
     SUBSTEP,
     TURNED,
     UNSORTED,

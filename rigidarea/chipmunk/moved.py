@@ -13,17 +13,16 @@ import numpy as np
 
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, record
+from ..contact.dtypes import BODY, SHAPE
 from ..contact.joint import KINDS, RATCHET
 from ..contact.space_record import BACK, OUT, SIZE, load_tables, move, move_tables
 from ..contact.tables import (
     AWAKE,
     BODIES,
-    BODY,
     COUNTED,
     COUNTERS,
     FREE_PAIR,
     FREE_REGION,
-    SHAPE,
     SHAPES,
     TOLD,
     USED_PAIRS,

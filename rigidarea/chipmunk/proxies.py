@@ -210,5 +210,5 @@ class Spy:
             functions = ffi.cast("uintptr_t *", address_of(handler._handler) + self._begin)
             for k in range(
                 1 if key == (None, None) else 2
-            ):  # the global pre_solve is called by `record.pre_solve`
+            ):  # the global pre_solve is called by `pre_solve.pre_solve`
                 functions[k] = others.get(int(functions[k]), int(functions[k]))

@@ -16,6 +16,7 @@ from pymunk._chipmunk_cffi import ffi, lib
 
 from ..geometry.outline import Outline
 from .arrays import Store
+from .outline_pool import drop_unused_outlines, enter_outline, read_outlines
 from .structs import address_of
 
 if TYPE_CHECKING:
@@ -162,7 +163,7 @@ class Register:
         if self._gone:
             self._gone.clear()
             try:
-                self._store.tidy()
+                drop_unused_outlines(self._store)
             except MemoryError:  # another time: pymunk is in the midst of removing
                 pass
         for address in self._left:
@@ -201,7 +202,7 @@ class Register:
         """
         addresses = _pointers(shape._shape for shape in shapes)
         heads = ffi.new("int[]", [self._given(shape) for shape in shapes])
-        bad = self._store.read(address_of(addresses), address_of(heads), len(shapes))
+        bad = read_outlines(self._store, address_of(addresses), address_of(heads), len(shapes))
         if bad >= 0:
             Outline.from_pymunk(shapes[bad])  # says what is wrong
             raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
@@ -212,9 +213,11 @@ class Register:
         if not isinstance(getattr(shape, "outline", None), Outline):
             return -1
         outline = Outline.from_pymunk(shape)
-        head = self._store.outline(outline, outline.smallest_extent)
+        head = enter_outline(self._store, outline, outline.smallest_extent)
         if outline.mirror is not None:
-            self._store.forms.mirror[head] = self._store.outline(outline.mirror, outline.smallest_extent)
+            self._store.forms.mirror[head] = enter_outline(
+                self._store, outline.mirror, outline.smallest_extent
+            )
         return head
 
     def _enter(self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any) -> None:

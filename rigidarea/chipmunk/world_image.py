@@ -127,7 +127,7 @@ def image_of(store: Store, space: pymunk.Space, rows: tuple[int, int, int] = (0,
     rows: of bodies, shapes, joints, for so many of which there is a place at least (`rows_of`): so worlds of different
     spaces have theirs at the same places.
     """
-    from . import alone, frame
+    from . import alone, hidden_constraint
 
     state, tables = store.state[0], store.tables
     offsets_of = {name: int(state[name]) for name in (*OFFSETS, "hold_at")}
@@ -191,7 +191,7 @@ def image_of(store: Store, space: pymunk.Space, rows: tuple[int, int, int] = (0,
     point(hidden, 1, joint_at, space_at)
     stamp_at, step_at, user_at = space_words()
     point(struct, user_at // 8, space_at, state_at)
-    world["solve_at"], world["report_at"] = frame.solve.address, frame.report.address
+    world["solve_at"], world["report_at"] = hidden_constraint.solve.address, hidden_constraint.report.address
     world["stamp_at"], world["step_at"], world["nothing_at"] = (
         stamp_at,
         step_at,

@@ -13,7 +13,7 @@ from ..compile.jit import kernel
 from .birth import drives
 from .constants import REST_KICKS
 from .region import closing
-from .row import harden, push
+from .row import push
 from .solve import kinetic
 from .tables import FIXED, NEARING, REST, ROWS, Law, Tables
 
@@ -31,7 +31,7 @@ def _struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> boo
     pushed = max(law.gravity, abs(closing(r, a, b, 0.0) - closing(r, a, b, 1.0)) / h)
     if u <= REST_KICKS * pushed * h or u * h <= r.depth:
         return False
-    harden(row, row.alpha)
+    row.alpha -= row.alpha
     return True
 
 

@@ -112,3 +112,14 @@ def beyond(law: Law, phase2: float) -> float:
     """How far a step is too long for a contact of (w h)^2 = phase2: 0 where it follows it, to 1."""
     part = law.followed / phase2 if phase2 > law.followed else 1.0
     return 1.0 - part * part
+
+
+@kernel(forceinline=True)
+def slipping(r: Any, a: Any, b: Any, full: float) -> float:
+    """Tangential speed of A relative to B at the region, `full` of the substep's kick taken off (length/time)."""
+    return (
+        -(a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.ny
+        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.nx
+        + (a.w - full * a.kick_w) * r.lean_a
+        - (b.w - full * b.kick_w) * r.lean_b
+    )

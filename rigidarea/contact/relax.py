@@ -16,7 +16,6 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.place import place
 from .constants import HIT
-from .row import stiffen
 from .tables import DRIFTS, LIVE, ROWS, Tables
 
 
@@ -25,7 +24,7 @@ def begin_to_relax(tables: Tables) -> bool:
     """Make rows rigid, and take down what velocities are with them as they were; whether any of them bears."""
     bears = False
     for i in range(tables.counters[ROWS]):
-        bears |= stiffen(tables.rows[i])
+        bears |= _stiffen(tables.rows[i])
     if bears:
         for k in range(tables.counters[LIVE]):
             i = tables.live[k]
@@ -84,3 +83,21 @@ def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
         turn = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
         a.w += turn if ia > 0.0 else 0.0
         b.w += turn if ib > 0.0 else 0.0
+
+
+@kernel(forceinline=True)
+def _stiffen(row: Any) -> bool:
+    """The row as of a rigid contact, as far as the step is too long for its spring; whether it bears as such."""
+    row.was1 = row.l1
+    row.was2 = row.l2
+    row.was_t = row.lt
+    if row.ends == 0:
+        return False
+    if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
+        row.f1 = 0.0
+        row.f2 = 0.0
+        return bool(row.l1 + row.l2 > 0.0)
+    if row.theta == 0.0:
+        return False
+    row.alpha -= row.theta * row.alpha
+    return bool(row.l1 + row.l2 > 0.0)

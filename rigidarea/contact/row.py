@@ -27,96 +27,14 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..compile.raw_memory import record
 from ..geometry.turning import turning_speed
 from .birth import drives, flies_off
-from .constants import (
-    HIT,
-    LOOK,
-    OVERTAKE,
-    PLACED_LOADS,
-    RELEASE_SPEED,
-    RELEASE_STEPS,
-    REST_KICKS,
-    SMOOTH,
-    TANGENT_STIFFNESS,
-)
+from .constants import HIT, OVERTAKE, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
-from .region import beyond, closing, growth, inverse_mass, region_stiffness
+from .region import beyond, closing, growth, inverse_mass, region_stiffness, slipping
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
-
-ROW = record(
-    [
-        ("region", "i4"),  # of a joint: its number
-        ("a", "i4"),  # rows of the bodies
-        ("b", "i4"),
-        ("ends", "i4"),  # 1 or 2; 0: of a joint
-        ("nx", "f8"),
-        ("ny", "f8"),
-        ("arm_a", "f8"),
-        ("arm_b", "f8"),
-        ("lean_a", "f8"),
-        ("lean_b", "f8"),
-        ("alpha", "f8"),
-        ("gamma", "f8"),
-        ("f1", "f8"),  # h F0 of the ends
-        ("t1", "f8"),  # vt
-        ("det", "f8"),  # of a joint: one over its determinant
-        ("friction", "f8"),
-        ("alpha_t", "f8"),
-        ("gamma_t", "f8"),
-        ("ft", "f8"),
-        ("tt", "f8"),
-        ("mt", "f8"),  # 1 / (alpha_t + gamma_t W_t)
-        ("slip1", "f8"),  # what an impulse at either end takes from the slip
-        ("l1", "f8"),
-        ("lt", "f8"),
-        ("weight", "f8"),  # 1/m_eff
-        ("began", "f8"),  # normal impulse with which it began
-        # of two ends:
-        ("e1", "f8"),
-        ("e2", "f8"),
-        ("own", "f8"),  # their compliance [[own, other], [other, own]] / C
-        ("other", "f8"),
-        ("f2", "f8"),
-        ("t2", "f8"),
-        ("w11", "f8"),  # mobility of the ends (1/mass)
-        ("w12", "f8"),
-        ("w22", "f8"),
-        ("slip2", "f8"),
-        ("l2", "f8"),
-        # of a joint (`joint`), which has w11, w12, w22 of both its unknowns:
-        ("low", "f8"),  # bounds of l1 and lt, and of their size
-        ("high", "f8"),
-        ("low_t", "f8"),
-        ("high_t", "f8"),
-        ("most", "f8"),
-        ("grips", "i4"),  # 1: lt is an unknown
-        # not of the sweeps:
-        ("was1", "f8"),  # the impulses before contacts are relaxed
-        ("was2", "f8"),
-        ("was_t", "f8"),
-        ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
-        ("slid", "f8"),  # slip of what relaxing has moved them by, over the substep (length/time)
-        (
-            "jammed",
-            "i4",
-        ),  # 1: put so deep, and held there by a joint: what takes them apart is no force on them
-        ("shift", "f8"),  # time by which an impact's change of velocity is moved into the past
-    ]
-)
-
-
-@kernel(forceinline=True)
-def slipping(r: Any, a: Any, b: Any, full: float) -> float:
-    """Tangential speed of A relative to B at the region, `full` of the substep's kick taken off (length/time)."""
-    return (
-        -(a.vx - b.vx - full * (a.kick_x - b.kick_x)) * r.ny
-        + (a.vy - b.vy - full * (a.kick_y - b.kick_y)) * r.nx
-        + (a.w - full * a.kick_w) * r.lean_a
-        - (b.w - full * b.kick_w) * r.lean_b
-    )
+from .target_speeds import aim_bounce, aim_speculative, least_extent, may_close, turn_along
 
 
 @kernel
@@ -135,152 +53,6 @@ def _ends(row: Any, r: Any) -> None:
     row.e2 = middle + half
 
 
-@kernel(forceinline=True)
-def least_extent(a: Any, b: Any) -> float:
-    """The smaller one's smallest extent, of those that can move (length)."""
-    if a.inverse_mass == 0.0:
-        return float(b.extent)
-    if b.inverse_mass == 0.0:
-        return float(a.extent)
-    return float(min(a.extent, b.extent))
-
-
-@kernel(forceinline=True)
-def may_close(opening: float, a: Any, b: Any, h: float) -> float:
-    """How fast what opens so fast, and is sent back, may close: as fast, but no further than from one look to the next.
-
-    Stopped sooner it would be pushed while it opens, and gain energy (l (v + v') / 2: J. J. Moreau, "Unilateral contact
-    and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
-    """
-    return float(min(opening, LOOK * least_extent(a, b) / h))
-
-
-@kernel
-def _turn_along(r: Any, a: Any, b: Any, left: float) -> float:
-    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
-
-    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
-    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
-    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
-    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
-    at rest.
-    """
-    u_x = a.vx - a.kick_x - b.vx + b.kick_x
-    u_y = a.vy - a.kick_y - b.vy + b.kick_y
-    square = u_x * u_x + u_y * u_y
-    closes = u_x * r.nx + u_y * r.ny
-    disc = a if b.inverse_mass == 0.0 else b
-    other = b if b.inverse_mass == 0.0 else a
-    round_one = 1 if b.inverse_mass == 0.0 else 2
-    if (
-        r.radial & round_one == 0
-        or other.inverse_mass > 0.0
-        or other.w != 0.0
-        or disc.pushed == 0
-        or closes <= left
-        or closes * closes > SMOOTH * square
-        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
-    ):
-        return left
-    along = u_y * r.nx - u_x * r.ny
-    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
-    # (along - then) / (closes - left): of either little but rounding may be left
-    turn = -(closes + left) / (along + then)
-    size = math.sqrt(1.0 + turn * turn)
-    nx = (r.nx - turn * r.ny) / size
-    ny = (r.ny + turn * r.nx) / size
-    r.nx = nx
-    r.ny = ny
-    return (left + then * turn) / size
-
-
-@kernel
-def _struck(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
-    """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
-
-    It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
-    and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
-    so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
-    """
-    back = r.back
-    row.alpha = 0.0
-    full = closing(r, a, b, 0.0)
-    gain = (full - closing(r, a, b, 1.0)) / h
-    time = back + 0.5 * h
-    touch = full - gain * time
-    turn = a.w - b.w
-    turn_gain = (a.kick_w - b.kick_w) / h
-    e = elasticity if r.first_speed > 0.0 else 0.0
-    row.t1 = 0.0
-    row.t2 = 0.0
-    for end in range(row.ends):
-        at = row.e1 if end == 0 else row.e2
-        since = (gain - turn_gain * at) * time
-        u0 = touch - (turn - turn_gain * time) * at
-        target = since - e * max(0.0, u0)
-        if u0 > 0.0 or e == 0.0:
-            target = min(0.0, target)
-        else:
-            target += may_close(-u0, a, b, h)
-        if end == 0:
-            row.t1 = target
-        else:
-            row.t2 = target
-    if e == 0.0 and row.ends == 1:
-        row.t1 = _turn_along(r, a, b, max(0.0, row.t1))
-    row.alpha_t = 0.0
-    row.tt = surface
-    if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
-        row.shift = back
-    if row.shift == 0.0:
-        _one_point(r, a, b, row.friction)
-
-
-@kernel(forceinline=True)
-def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
-    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
-
-    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. Of a smooth
-    disc a radius stays one: nothing turns it.
-    """
-    share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
-    smooth = r.radial if friction == 0.0 else 0
-    if smooth == 1 or smooth == 2:
-        share = 0.0 if smooth == 1 else 1.0
-    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
-    lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
-    if smooth != 3:
-        r.arm_a -= share * arm
-        r.arm_b += (1.0 - share) * arm
-    r.lean_a -= share * lean
-    r.lean_b += (1.0 - share) * lean
-
-
-@kernel
-def _nearing(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
-    """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
-
-    Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
-    point of application. A corner is thicker between them: the thicker end then has all of the depth. No end is asked
-    to open: they do not overlap yet, whatever is seen of the overlap to come when they come from aside.
-    """
-    row.alpha = 0.0
-    row.alpha_t = 0.0
-    row.tt = surface
-    speed = closing(r, a, b, 0.0)
-    turn = a.w - b.w
-    _one_point(r, a, b, row.friction)
-    if row.ends == 1:
-        row.t1 = _turn_along(r, a, b, max(0.0, (speed * r.back - r.depth + r.rest_depth) / h))
-        return
-    length = row.e2 - row.e1
-    mean = r.area / r.chord
-    lean = min(1.0, max(-1.0, 3.0 * (row.e1 + row.e2) / length))
-    left = r.rest_depth - r.depth + mean * abs(lean)
-    row.t1 = max(0.0, ((speed - turn * row.e1) * r.back - mean * lean + left) / h)
-    row.t2 = max(0.0, ((speed - turn * row.e2) * r.back + mean * lean + left) / h)
-
-
 @kernel
 def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) -> None:
     """Everything of region r that stays the same during the sweeps. `a`, `b`: its bodies, the kick already given.
@@ -295,9 +67,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
     if r.mode == STRUCK:
-        _struck(row, r, a, b, pair.elasticity, surface, h)
+        aim_bounce(row, r, a, b, pair.elasticity, surface, h)
     elif r.mode == NEARING:
-        _nearing(row, r, a, b, surface, h)
+        aim_speculative(row, r, a, b, surface, h)
     else:
         row.t1 = 0.0
         row.t2 = 0.0
@@ -414,7 +186,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             most = HIT * least / h
             row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
             if theta > 0.0:
-                row.t1 += _turn_along(r, a, b, 0.0)
+                row.t1 += turn_along(r, a, b, 0.0)
                 row.nx = r.nx
                 row.ny = r.ny
     row.began = row.l1 + row.l2
@@ -555,30 +327,6 @@ def visit(row: Any, a: Any, b: Any) -> float:
     row.lt += dt
     push(row, a, b, d1, d2, dt)
     return max(abs(d1 + d2), abs(dt)) * row.weight
-
-
-@kernel(forceinline=True)
-def stiffen(row: Any) -> bool:
-    """The row as of a rigid contact, as far as the step is too long for its spring; whether it bears as such."""
-    row.was1 = row.l1
-    row.was2 = row.l2
-    row.was_t = row.lt
-    if row.ends == 0:
-        return False
-    if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
-        row.f1 = 0.0
-        row.f2 = 0.0
-        return bool(row.l1 + row.l2 > 0.0)
-    if row.theta == 0.0:
-        return False
-    harden(row, row.theta * row.alpha)
-    return bool(row.l1 + row.l2 > 0.0)
-
-
-@kernel(forceinline=True)
-def harden(row: Any, rigid: float) -> None:
-    """Take so much of a row's give."""
-    row.alpha -= rigid
 
 
 @kernel(forceinline=True)

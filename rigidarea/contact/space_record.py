@@ -16,15 +16,14 @@ from ..compile.raw_memory import array_at, record
 from ..geometry.overlap import LOOP, Work
 from ..geometry.place import Pose, overlap_of_outlines
 from ..geometry.pool import HEAD, Pool
-from .conjugate import FACTOR, MOBILITY
+from .dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
 from .joint import JOINT
-from .row import ROW
+from .preconditioner import FACTOR, MOBILITY
 from .tables import (
     APART,
     ASKED,
     AWAKE,
     BODIES,
-    BODY,
     BOXED,
     COUNTED,
     COUNTERS,
@@ -33,10 +32,6 @@ from .tables import (
     MORE_KEPT,
     MORE_PAIRS,
     MOVERS,
-    NEIGHBOURS,
-    PAIR,
-    REGION,
-    SHAPE,
     SHAPES,
     USED_PAIRS,
     USED_REGIONS,

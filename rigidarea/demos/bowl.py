@@ -8,7 +8,7 @@ import pymunk
 
 from .. import Outline
 from ..gallery import Headline, Scene, add_body, static_body
-from ..geometry.outline import arc_points
+from ..geometry.arcs import arc_points
 from ..shapes import ring, rounded_polygon
 
 RADIUS, WALL, RIM = 5.0, 0.4, 2.0

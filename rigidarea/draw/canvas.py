@@ -11,7 +11,8 @@ import pymunk
 import shapely
 from numpy.typing import NDArray
 
-from ..geometry.outline import Outline, Points
+from ..geometry.arcs import Points
+from ..geometry.outline import Outline
 
 Color = tuple[int, int, int]
 

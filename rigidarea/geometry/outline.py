@@ -17,8 +17,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from functools import cached_property, lru_cache, partial
-from typing import Any, Literal, Unpack
+from functools import lru_cache, partial
+from typing import Any, Literal
 
 import numpy as np
 import pymunk
@@ -26,47 +26,27 @@ import shapely
 from numpy.typing import ArrayLike
 
 from . import arcs as curves
-from .arcs import Points, arc_points, circle_points
+from .arcs import Points
 from .gate import (
-    LARGEST,
-    ShapeAttributes,
     check_valid,
-    checked_attribute,
     checked_bulges,
     checked_ring,
     finite,
     listed,
-    not_negative,
     numbers,
     positive,
 )
+from .measured import measured
 from .simple import check_simple
-from .stand_in import MAX_VERTICES, hull_of, stand_in, width_of
+from .solid import Solid
 from .svg_picture import FILL, figure, path_data, svg
-
-DEFAULT_TOLERANCE = 5e-5
-"""Largest sagitta of a chord over half the shape's smaller extent (dimensionless): a disc would get 316 points. An
-eighth of the penetration that `attach` allows by default, so that what rolls on a sampled curve hardly feels its
-facets. Contacts cost what the contact is, not the outline."""
 
 SEGMENT_THICKNESS = 2.0
 """Depth of the solid behind a segment of radius 0 over the segment's length (dimensionless). See
 `Outline.from_pymunk`."""
 
-_EPS = float(np.finfo(np.float64).eps)
 
-__all__ = [
-    "DEFAULT_TOLERANCE",
-    "SEGMENT_THICKNESS",
-    "Outline",
-    "Points",
-    "arc_points",
-    "circle_points",
-    "positive",
-]
-
-
-class Outline:
+class Outline(Solid):
     """The boundary of a rigid body: an outer ring and any number of holes. Immutable.
 
     points: (n, 2) array-like, n >= 3, the outer ring. Either sense, closed or not; repeated points are
@@ -78,23 +58,6 @@ class Outline:
     coordinates, fewer than three distinct points, zero area, a ring that crosses itself (with the place), a
     hole outside its ring, holes that overlap.
     """
-
-    rings: tuple[Points, ...]
-    """Read-only float64 arrays (n, 2): [0] the outer ring, counter-clockwise; the rest holes, clockwise. Where there
-    are `arcs` these are the ends of edges, not a polygon: whoever wants one takes `sample(tolerance)`."""
-    arcs: tuple[Points, ...]
-    """Empty for a polygon. Else, a ring, a read-only (n, 3) array beside its points: centre x, y and signed radius
-    (length) of the arc from point i to point i + 1; radius > 0 counter-clockwise, < 0 clockwise, 0 a straight edge. No
-    arc sweeps more than half a turn."""
-    area: float
-    """Area of the solid (length²), holes taken off."""
-    centroid: tuple[float, float]
-    """Centroid of the solid, body coordinates (length)."""
-    bounds: tuple[float, float, float, float]
-    """(xmin, ymin, xmax, ymax), body coordinates (length)."""
-    mirror: Outline | None
-    """The same segment's solid on its other side, for an outline made from a pymunk segment of radius 0;
-    else None."""
 
     def __init__(self, points: ArrayLike, holes: Iterable[ArrayLike] = ()) -> None:
         rings = [checked_ring(points, "points")]
@@ -160,45 +123,9 @@ class Outline:
         resample: Callable[..., Outline] | None = None,
         arcs: Sequence[Points] = (),
     ) -> None:
-        if not all(np.isfinite(ring).all() and np.abs(ring).max() <= LARGEST for ring in rings):
-            raise ValueError(f"coordinates must be finite and at most {LARGEST:g} in size")
-        if not any(ring[:, 2].any() for ring in arcs):
-            arcs = ()
-        outer = curves.extremes(rings[0], arcs[0]) if arcs else rings[0]
-        lower, upper = np.minimum.reduce(outer), np.maximum.reduce(outer)
-        middle = (
-            lower + upper
-        ) / 2  # sums are taken relative to it: far from the origin they lose all digits
-        if arcs and len(rings) == 1 and curves.is_circle(arcs[0]):
-            middle = arcs[0][0, :2]
-        total, first = 0.0, np.zeros(2)
-        oriented, bent = [], []
-        for i, ring in enumerate(rings):
-            arc = curves.about(arcs[i], middle) if arcs else None
-            area, moment, _ = curves.measures(ring - middle, arc)
-            if (area > 0) == (i > 0):
-                area, moment = -area, -moment
-                if arcs:
-                    ring, arc = curves.reversed_ring(ring, arcs[i])
-                    bent.append(arc)
-                else:
-                    ring = np.ascontiguousarray(ring[::-1])
-            elif arcs:
-                bent.append(arcs[i])
-            oriented.append(ring)
-            total += area
-            first += moment
-        for array in (*oriented, *bent):
-            array.flags.writeable = False
-        if not (total > 0 and math.isfinite(total)):
-            raise ValueError(
-                f"an outline must enclose an area above 0, got {total:.3g} within {upper - lower}"
-            )
-        self.rings = tuple(oriented)
-        self.arcs = tuple(bent)
-        self.area = float(total)
-        self.centroid = tuple((middle + first / total).tolist())
-        self.bounds = (*lower.tolist(), *upper.tolist())
+        found = measured(rings, arcs)
+        self.rings, self.arcs = found.rings, found.arcs
+        self.area, self.centroid, self.bounds = found.area, found.centroid, found.bounds
         self.mirror = None
         self._resample = resample
 
@@ -269,72 +196,6 @@ class Outline:
             return _half_space(tuple(shape.a), tuple(shape.b), side, thickness)
         raise ValueError(f"expected a pymunk Circle, Poly or Segment, got {type(shape).__name__}")
 
-    # --- what it measures ---
-
-    def moment(self, mass: float, offset: tuple[float, float] = (0, 0)) -> float:
-        """Moment of inertia (mass·length²) of the solid about the body's origin, the outline shifted by
-        `offset` (length).
-
-        Like `pymunk.moment_for_poly`, for concave outlines, arcs and holes too. Exact.
-        Raises ValueError unless mass is finite and not negative.
-        """
-        mass = not_negative(mass, "mass")
-        dx, dy = numbers(offset, "offset", 2)
-        x, y = self.centroid[0] + dx, self.centroid[1] + dy
-        return mass * (self._gyration + x * x + y * y)
-
-    @cached_property
-    def _gyration(self) -> float:
-        """Squared radius of gyration about the centroid (length²)."""
-        rings = self._with_arcs()
-        about = [(ring - self.centroid, curves.about(arc, self.centroid)) for ring, arc in rings]
-        return sum(curves.measures(ring, arc)[2] for ring, arc in about) / self.area
-
-    def _with_arcs(self) -> list[tuple[Points, Points | None]]:
-        return list(zip(self.rings, self.arcs or (None,) * len(self.rings)))
-
-    @cached_property
-    def convex(self) -> bool:
-        """True for one ring without a reflex corner or hollow arc; collinear points are allowed."""
-        if len(self.rings) > 1:
-            return False
-        ring = self.rings[0]
-        if self.arcs:
-            starts, ends = curves.tangents(ring, self.arcs[0])
-            behind = np.roll(ends, 1, axis=0)
-            turn = behind[:, 0] * starts[:, 1] - behind[:, 1] * starts[:, 0]
-            # tangents are known to the rounding of a coordinate over the shortest radius or edge
-            least = np.abs(self.arcs[0][:, 2])[self.arcs[0][:, 2] != 0].min()
-            least = min(least, np.hypot(*(np.roll(ring, -1, axis=0) - ring).T).min())
-            return bool(
-                (self.arcs[0][:, 2] >= 0).all() and np.all(turn >= -8 * _EPS * np.abs(ring).max() / least)
-            )
-        ahead = np.roll(ring, -1, axis=0) - ring
-        behind = np.roll(ahead, 1, axis=0)
-        turn = behind[:, 0] * ahead[:, 1] - behind[:, 1] * ahead[:, 0]
-        # a coordinate is known to half an ulp, so a turn to that times the two edges' lengths
-        noise = 2 * _EPS * np.abs(ring).max() * (np.abs(ahead).sum(axis=1) + np.abs(behind).sum(axis=1))
-        return bool(np.all(turn >= -noise))
-
-    @cached_property
-    def polygon_rings(self) -> tuple[Points, ...]:
-        """The rings as polygons: arcs sampled to `DEFAULT_TOLERANCE` times half the smaller extent."""
-        if not self.arcs:
-            return self.rings
-        xmin, ymin, xmax, ymax = self.bounds
-        return self.sample(DEFAULT_TOLERANCE * min(xmax - xmin, ymax - ymin) / 2).rings
-
-    @cached_property
-    def polygon(self) -> shapely.Polygon:
-        """The same region as a shapely Polygon, of `polygon_rings`."""
-        outer, *holes = self.polygon_rings
-        return shapely.Polygon(outer, holes)
-
-    @property
-    def two_sided(self) -> bool:
-        """True for a segment of radius 0 that is solid on whichever side the other body did not come from."""
-        return self.mirror is not None
-
     # --- other outlines from it ---
 
     def sample(self, tolerance: float) -> Outline:
@@ -368,85 +229,6 @@ class Outline:
         if self.mirror is not None:
             _face_each_other(outline, Outline.from_curve([r @ turn + (dx, dy) for r in self.mirror.rings]))
         return outline
-
-    # --- into a pymunk space ---
-
-    def add_to(self, body: pymunk.Body, **shape_attrs: Unpack[ShapeAttributes]) -> pymunk.Shape:
-        """Put the outline on a body, behind a proxy shape of pymunk's that contains it; returns that shape,
-        to add to the space.
-
-        The proxy only tells the broad phase where to look; contact is computed with the exact outline,
-        which hangs on it as `shape.outline` and survives copying and pickling. The proxy is the
-        circle itself for a disc, its convex hull where that has no more than 8 vertices, else the tighter of
-        its bounding circle and a bounding octagon (the circle, unless the octagon is a tenth smaller). In an attached
-        space callbacks and `debug_draw` see the outline. pymunk's own queries see the proxy: `point_query`,
-        `segment_query` and `shapes_collide` report a slot, a hole or the gap between two teeth as solid;
-        `rigidarea.point_query` and `rigidarea.segment_query` do not. The proxy has no mass: give the body its mass
-        and moment (`moment`, or `body`).
-
-        shape_attrs: friction, elasticity, collision_type, filter, sensor, surface_velocity, as in pymunk.
-        Raises ValueError for other names (mass and density among them), and for values that pymunk could not take.
-        """
-        if not isinstance(body, pymunk.Body):
-            raise ValueError(f"body must be a pymunk.Body, got {type(body).__name__}")
-        known = ShapeAttributes.__annotations__
-        unknown = sorted(set(shape_attrs) - set(known))
-        if unknown:
-            raise ValueError(f"expected shape attributes among {', '.join(known)}; got {', '.join(unknown)}")
-        for name, value in shape_attrs.items():
-            checked_attribute(name, value)
-        kind, form = self._stand_in
-        shape = kind(body, *form)
-        for name, value in shape_attrs.items():
-            setattr(shape, name, value)
-        shape.outline = self
-        return shape
-
-    @cached_property
-    def proxied(self) -> bool:
-        """Whether pymunk's broad phase sees another shape (`add_to`): not of a disc, a convex polygon of at the most
-        8 points, a segment.
-        """
-        if self.arcs:
-            return len(self.rings) > 1 or not curves.is_circle(self.arcs[0])
-        return not self.two_sided and (len(self.rings[0]) > MAX_VERTICES or not self.convex)
-
-    @cached_property
-    def smallest_extent(self) -> float:
-        """The least distance of two parallel lines with the outline between them (length): its smallest thickness."""
-        return width_of(self._hull)
-
-    @cached_property
-    def _hull(self) -> Points:
-        return hull_of(self.polygon_rings[0])
-
-    @cached_property
-    def _stand_in(self) -> tuple[Callable[..., pymunk.Shape], tuple[Any, ...]]:
-        """The stand-in's class and its arguments after the body; the same for every body the outline is put
-        on."""
-        if self.mirror is not None:
-            b, a = self.rings[0][:2].tolist()
-            return pymunk.Segment, (a, b, 0)
-        if self.arcs and len(self.rings) == 1 and curves.is_circle(self.arcs[0]):
-            x, y, radius = self.arcs[0][0].tolist()
-            return pymunk.Circle, (radius, (x, y))
-        return stand_in(hull_of(curves.around(self.rings[0], self.arcs[0])) if self.arcs else self._hull)
-
-    def body(self, *, density: float | None = None, mass: float | None = None) -> pymunk.Body:
-        """A dynamic pymunk body at the origin with this outline's mass, moment, centre of gravity (no shape on it yet).
-
-        Give either density (mass/length²) or mass. Raises ValueError unless exactly one is given, positive
-        and finite.
-        """
-        if density is not None and mass is None:
-            mass = positive(density, "density") * self.area
-        elif mass is None or density is not None:
-            raise ValueError(f"expected either density or mass, got density={density!r}, mass={mass!r}")
-        mass = positive(mass, "mass")
-        body = pymunk.Body(mass, mass * self._gyration)
-        body.center_of_gravity = self.centroid
-        body.position = 0, 0  # which pymunk moves with the centre of gravity
-        return body
 
     # --- immutable: copies share it ---
 

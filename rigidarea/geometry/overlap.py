@@ -42,9 +42,10 @@ import numpy as np
 from ..compile.jit import kernel
 from .clip import clip
 from .convex import convex_pair
-from .disc import disc_convex, disc_disc
+from .disc import disc_convex
 from .loops import general
 from .pool import Pool
+from .two_discs import disc_disc
 from .work import (
     A_EDGE,
     B_EDGE,

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..geometry.arcs import circle_ring
-from ..geometry.outline import Outline, positive
+from ..geometry.gate import positive
+from ..geometry.outline import Outline
 from ..geometry.simple import check_simple
 
 

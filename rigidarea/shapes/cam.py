@@ -6,8 +6,9 @@ from functools import partial
 
 import numpy as np
 
+from ..geometry.arcs import circle_points
 from ..geometry.gate import finite, not_negative, positive
-from ..geometry.outline import Outline, circle_points
+from ..geometry.outline import Outline
 
 
 def eccentric(

@@ -12,8 +12,9 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.arcs import circle_points
 from ..geometry.gate import finite, not_negative, positive, size, whole
-from ..geometry.outline import Outline, circle_points
+from ..geometry.outline import Outline
 from .curve import MOST_TEETH, sample_curve
 
 

@@ -18,8 +18,8 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ..geometry.arcs import circle_ring
-from ..geometry.outline import Outline, arc_points, circle_points
+from ..geometry.arcs import arc_points, circle_points, circle_ring
+from ..geometry.outline import Outline
 
 Array = NDArray[np.float64]
 Rings = tuple[Array, tuple[Array, ...]]

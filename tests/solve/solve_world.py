@@ -6,7 +6,6 @@ what fails there is either pymunk's own error (said in the test) or the test's.
 
 from __future__ import annotations
 
-import inspect
 import itertools
 import math
 import os
@@ -26,11 +25,6 @@ ENGINE = os.environ.get("SOLVE_ENGINE", "area")
 area_only = pytest.mark.skipif(ENGINE != "area", reason="of area contact only")
 DT = 1 / 60
 G = 10.0
-
-#: The hooks there are: machine code, and Python's where `attach` lets one choose.
-HOOKS: list[dict[str, str]] = (
-    [{"hook": "compiled"}, {"hook": "python"}] if "hook" in inspect.signature(ra.attach).parameters else [{}]
-)
 
 Vector = tuple[float, float]
 

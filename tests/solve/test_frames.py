@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pymunk
 import pytest
-from solve_world import DT, HOOKS, World, area_only
+from solve_world import DT, World, area_only
 from test_mass_ratio import on_two, statics, supports
 from test_symmetry import differ, heap
 
@@ -141,24 +141,3 @@ def test_the_explicit_step_is_symplectic_euler():
         y += h * v
         v += h * (k * max(0.5 - y, 0.0) - G)
         assert (body.position.y, body.velocity.y) == pytest.approx((y, v), abs=1e-10)
-
-
-@pytest.mark.skipif(len(HOOKS) < 2, reason="one hook only")
-@pytest.mark.parametrize("steps", [1, 4, None])
-def test_the_twins_agree(steps):
-    """Machine code and Python, with forces of the user's, a concave body and sleep: 1 s, to 1e-9 of a size."""
-    ends = []
-    for hook in HOOKS:
-        world = World(G, stiffness=1e5, friction=0.5, elasticity=0.2, **hook)
-        world.floor()
-        world.space.sleep_time_threshold = 0.3
-        boxes = [world.box((0.05 * i, 0.5 + 1.01 * i)) for i in range(3)]
-        pushed = world.box((4, 0.5), velocity=(1, 0))
-        pin = pymunk.PivotJoint(world.space.static_body, pushed, (4, 3))
-        world.space.add(pin)
-        for i in range(60):
-            boxes[2].force = 0.5 * math.sin(0.2 * i), 0.0
-            pushed.torque = 0.1
-            world.step(steps)
-        ends.append(world.state())
-    assert ends[1] == pytest.approx(ends[0], abs=1e-9)

@@ -32,8 +32,10 @@ add(body, hook.add_to(body), 1.5, 1)
 hung = pymunk.Body(1, 0.1)
 add(hung, pymunk.Circle(hung, 0.3), -3, 0.5)
 space.add(pymunk.PivotJoint(space.static_body, hung, (-3, 3)))
+space.sleep_time_threshold = 0.3
 contact = ra.attach(space)
-for _ in range(24):
+for i in range(24):
+    hung.force, hung.torque = (0.5 * (i % 5), 0), 0.1
     contact.step(1 / 60)
 for b in space.bodies:
     print(*(float.hex(v) for v in (*b.position, b.angle, *b.velocity, b.angular_velocity)))
@@ -41,7 +43,7 @@ for b in space.bodies:
 
 
 def test_interpreted_and_compiled_are_the_same_to_the_bit():
-    """Rest, impacts, friction, a joint, a disc, a concave outline, mass ratios of 100: six bodies, 24 frames."""
+    """Rest, sleep, impacts, friction, a joint, forces, a disc, a concave outline, mass ratios of 100."""
     seen = []
     for off in ("0", "1"):
         run = subprocess.run(

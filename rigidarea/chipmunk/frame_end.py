@@ -1,0 +1,40 @@
+"""A frame is given back to Chipmunk."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..compile.jit import kernel
+from ..contact.tables import AWAKE, DRIFTS, Tables
+from .joints import joints_of
+from .record import words, write_motion, write_place
+from .structs import function
+
+_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
+
+
+@kernel
+def finish_frame(s: Any, tables: Tables, good: bool) -> None:
+    """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at.
+
+    Of a frame that failed also what the user's position functions have moved.
+    """
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame:
+            continue
+        if body.mobile or not good:
+            write_motion(s, body)
+        if (body.kind == DRIFTS and s.explicit == 0) or not good:
+            write_place(s, body)
+            if body.kind == DRIFTS and s.explicit == 0:
+                words(body.address + s.body_position_func, 1)[0] = s.hold_at
+            shape = words(body.address + s.body_shapes, 1)[0]
+            while shape != 0:
+                _cache_box(s.scratch_at, shape)
+                shape = words(shape + s.shape_next, 1)[0]
+    if good and s.explicit == 0:  # what joints have made of the velocity of bodies that are in no space
+        for joint in joints_of(s):
+            for i in (joint.a, joint.b):
+                if i >= 0 and not tables.bodies[i].awake and tables.bodies[i].inverse_mass > 0.0:
+                    write_motion(s, tables.bodies[i])

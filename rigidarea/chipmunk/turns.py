@@ -1,0 +1,70 @@
+"""A frame in which islands take different numbers of substeps."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..compile.jit import kernel
+from ..contact.islands import (
+    FINEST,
+    all_in_one_group,
+    connect,
+    mark_bodies_with_neighbours,
+    next_turn,
+    number,
+    part,
+    spare,
+)
+from ..contact.space_record import keep_tables, load_tables
+from ..contact.tables import AWAKE, MET, SUBSTEP, TURN
+from .joints import joints_of
+from .record import floats
+from .substep import near_pairs, substeps
+from .undo import begin_again
+
+
+@kernel
+def substeps_by_islands(s: Any, space: int, dt: float) -> int:
+    """A frame in which some bodies want more substeps than others.
+
+    Returns how many the finest took; 0: there was no room for it.
+    """
+    g = floats(space + s.space_gravity, 2)
+    tables = load_tables(s)
+    tables.counters[TURN] = 0
+    if not near_pairs(s, space, dt, dt, False):
+        return 0
+    # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
+    if s.steps_given == 0 and s.joint_count > 0:
+        mark_bodies_with_neighbours(tables)
+        for joint in joints_of(s):
+            if joint.taken:
+                spare(tables, joint.a, s.substeps)
+                spare(tables, joint.b, s.substeps)
+    part(tables)
+    for joint in joints_of(s):
+        if joint.taken:
+            connect(tables, joint.a, joint.b)
+    if number(tables, g[0], g[1]) < 2:
+        all_in_one_group(load_tables(s))
+        taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
+        return int(taken) if substeps(s, space, dt, taken) else 0
+    turn = next_turn(tables, FINEST)
+    taken = turn
+    most = max(turn, s.substeps)
+    if not keep_tables(s):
+        return 0
+    last = tables.counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
+    while turn > 0:
+        tables.counters[SUBSTEP] = last - turn
+        if not substeps(s, space, dt, turn):
+            return 0
+        turn = next_turn(tables, turn)
+    if tables.counters[MET]:
+        begin_again(s)
+        s.contacts = 0
+        all_in_one_group(load_tables(s))
+        if not substeps(s, space, dt, most):
+            return 0
+        taken = most
+    return int(taken)

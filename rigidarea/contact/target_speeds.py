@@ -1,0 +1,160 @@
+"""The speeds at which rows are to leave their bodies where no force in the step says so: a bounce, an overlap to come.
+
+A bounce shorter than the step is over by its end, and an overlap that the next drift would bring may close until it is
+there: neither has a course within the step that a force could follow, so that `row.make_row` asks for a speed.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from .constants import LOOK, REST_KICKS, SMOOTH
+from .region import closing
+
+
+@kernel(forceinline=True)
+def least_extent(a: Any, b: Any) -> float:
+    """The smaller one's smallest extent, of those that can move (length)."""
+    if a.inverse_mass == 0.0:
+        return float(b.extent)
+    if b.inverse_mass == 0.0:
+        return float(a.extent)
+    return float(min(a.extent, b.extent))
+
+
+@kernel(forceinline=True)
+def may_close(opening: float, a: Any, b: Any, h: float) -> float:
+    """How fast what opens so fast, and is sent back, may close: as fast, but no further than from one look to the next.
+
+    Stopped sooner it would be pushed while it opens, and gain energy (l (v + v') / 2: J. J. Moreau, "Unilateral contact
+    and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
+    """
+    return float(min(opening, LOOK * least_extent(a, b) / h))
+
+
+@kernel
+def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
+    """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
+
+    It may close by `left` (length/time) along the side ahead. Pushed along that side's normal it loses part of its
+    speed in every substep, however smooth the chain; pushed across the mean of the velocities before and after, it
+    keeps it (l (v + v') / 2 = 0: a discrete gradient, O. Gonzalez, J. Nonlinear Sci. 6 (1996),
+    doi:10.1007/BF02440162). So where it lies on something already, comes to the next side at a flat angle, and is not
+    at rest.
+    """
+    u_x = a.vx - a.kick_x - b.vx + b.kick_x
+    u_y = a.vy - a.kick_y - b.vy + b.kick_y
+    square = u_x * u_x + u_y * u_y
+    closes = u_x * r.nx + u_y * r.ny
+    disc = a if b.inverse_mass == 0.0 else b
+    other = b if b.inverse_mass == 0.0 else a
+    round_one = 1 if b.inverse_mass == 0.0 else 2
+    if (
+        r.radial & round_one == 0
+        or other.inverse_mass > 0.0
+        or other.w != 0.0
+        or disc.pushed == 0
+        or closes <= left
+        or closes * closes > SMOOTH * square
+        or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)
+    ):
+        return left
+    along = u_y * r.nx - u_x * r.ny
+    then = math.copysign(math.sqrt(max(0.0, square - left * left)), along)
+    # (along - then) / (closes - left): of either little but rounding may be left
+    turn = -(closes + left) / (along + then)
+    size = math.sqrt(1.0 + turn * turn)
+    nx = (r.nx - turn * r.ny) / size
+    ny = (r.ny + turn * r.nx) / size
+    r.nx = nx
+    r.ny = ny
+    return (left + then * turn) / size
+
+
+@kernel
+def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
+    """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
+
+    It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
+    and where that is no leaving, it rests. Had it left at once, the change of velocity would have acted since then:
+    so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
+    """
+    back = r.back
+    row.alpha = 0.0
+    full = closing(r, a, b, 0.0)
+    gain = (full - closing(r, a, b, 1.0)) / h
+    time = back + 0.5 * h
+    touch = full - gain * time
+    turn = a.w - b.w
+    turn_gain = (a.kick_w - b.kick_w) / h
+    e = elasticity if r.first_speed > 0.0 else 0.0
+    row.t1 = 0.0
+    row.t2 = 0.0
+    for end in range(row.ends):
+        at = row.e1 if end == 0 else row.e2
+        since = (gain - turn_gain * at) * time
+        u0 = touch - (turn - turn_gain * time) * at
+        target = since - e * max(0.0, u0)
+        if u0 > 0.0 or e == 0.0:
+            target = min(0.0, target)
+        else:
+            target += may_close(-u0, a, b, h)
+        if end == 0:
+            row.t1 = target
+        else:
+            row.t2 = target
+    if e == 0.0 and row.ends == 1:
+        row.t1 = turn_along(r, a, b, max(0.0, row.t1))
+    row.alpha_t = 0.0
+    row.tt = surface
+    if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
+        row.shift = back
+    if row.shift == 0.0:
+        _one_point(r, a, b, row.friction)
+
+
+@kernel(forceinline=True)
+def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
+    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
+
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. Of a smooth
+    disc a radius stays one: nothing turns it.
+    """
+    share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
+    smooth = r.radial if friction == 0.0 else 0
+    if smooth == 1 or smooth == 2:
+        share = 0.0 if smooth == 1 else 1.0
+    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
+    lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
+    if smooth != 3:
+        r.arm_a -= share * arm
+        r.arm_b += (1.0 - share) * arm
+    r.lean_a -= share * lean
+    r.lean_b += (1.0 - share) * lean
+
+
+@kernel
+def aim_speculative(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
+    """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
+
+    Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
+    point of application. A corner is thicker between them: the thicker end then has all of the depth. No end is asked
+    to open: they do not overlap yet, whatever is seen of the overlap to come when they come from aside.
+    """
+    row.alpha = 0.0
+    row.alpha_t = 0.0
+    row.tt = surface
+    speed = closing(r, a, b, 0.0)
+    turn = a.w - b.w
+    _one_point(r, a, b, row.friction)
+    if row.ends == 1:
+        row.t1 = turn_along(r, a, b, max(0.0, (speed * r.back - r.depth + r.rest_depth) / h))
+        return
+    length = row.e2 - row.e1
+    mean = r.area / r.chord
+    lean = min(1.0, max(-1.0, 3.0 * (row.e1 + row.e2) / length))
+    left = r.rest_depth - r.depth + mean * abs(lean)
+    row.t1 = max(0.0, ((speed - turn * row.e1) * r.back - mean * lean + left) / h)
+    row.t2 = max(0.0, ((speed - turn * row.e2) * r.back + mean * lean + left) / h)
