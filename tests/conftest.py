@@ -74,6 +74,7 @@ class Kernel:
         self.stiffness = kernel_module("stiffness")
         self.row = kernel_module("row")
         self.tables = kernel_module("tables")
+        self.dtypes = kernel_module("dtypes")
         self.broad = kernel_module("broad")
         self.constants = kernel_module("constants")
         self.predicates = kernel_module("predicates")
