@@ -70,11 +70,6 @@ class Image:
         at = self.offsets[name]
         return memory[at : at + self.lengths[name] * kind.itemsize].view(kind)
 
-    def counters_of(self, memory: Any) -> Any:
-        """(k, COUNTERS) of k worlds."""
-        at = self.offsets["counters"]
-        return np.ascontiguousarray(memory[:, at : at + 8 * COUNTERS]).view(np.int64)
-
     def larger(self, pairs: int, regions: int, work: int) -> Image:
         """The same with room for so many more."""
         lengths = dict(self.lengths)
