@@ -274,7 +274,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
     for b in range(count):
         buf.touched[b] = 0
     for i in range(n):
-        buf.stale[i] = buf.shift[i] = 0.0
+        buf.stale[i] = buf.shift[i] = buf.lag[i] = 0.0
         buf.touched[s.side[i]] = 1
         for j in range(i + 1):
             buf.compliance[i, j] = buf.compliance[j, i] = 0.0
@@ -285,7 +285,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
         bd, w = boundary_at(bodies, b), work_at(bodies, b)
         lo, hi = sy.first[b], sy.first[b + 1]
         if _flexible(bd):
-            body_compliance(bd, w, s, buf, b, state.q[lo:hi], buf.modal_residual[lo:hi], n)
+            body_compliance(bd, w, s, buf, b, lo, hi, state.q[lo:hi], n)
         held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1 or sy.damper[b] > 0.0)
         if sy.fixed[b] == 1 and not held:
             continue
@@ -301,6 +301,7 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> fl
             moves[2] = (s.at[i, 0] - buf.pose[b, 0]) * ey - (s.at[i, 1] - buf.pose[b, 1]) * ex
             if s.node[i] == -2:
                 moves[2] = s.local[i, 0]
+            moves[2] += buf.lag[i]
             if held:
                 ex, ey = s.local[i, 0], s.local[i, 1]
                 hub_moves(

@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.compile.jit import entry
+from rigidarea.compile.jit import entry, kernel
 
 Array = NDArray[np.float64]
 
@@ -35,7 +35,7 @@ def inertia_forces(
 
     j0: moment of inertia of the undeformed body; h, g, stiff: ``stretch``, ``coupling`` and ``geometric`` (3, m, m, or
     none: (0, m, m)) of ``modes.Reduced``; fx, fy: force on the hub, body frame; omega, alpha: angular velocity and
-    acceleration of the frame. work (4, m). The rows of R are m R̈.
+    acceleration of the frame. work (4, m): G q, G q̇, (I − S) q are left in it. The rows of R are m R̈.
     """
     m = len(q)
     if m == 0:
@@ -61,6 +61,24 @@ def inertia_forces(
         moment += gq[i] * ddq[i] + 2.0 * omega * (h[i] + free[i]) * dq[i]
         out[i] = gq[i] * alpha + ddq[i] - omega * omega * (h[i] + free[i]) + 2.0 * omega * gd[i] + tension[i]
     return moment + j * alpha
+
+
+@kernel
+def turning_rows(
+    h: Array, q: Array, dq: Array, j0: float, acc: float, vel: float, work: Array, out: Array
+) -> float:
+    """Gradient of ``inertia_forces``, whose ``work`` is read, by the frame's angle: of the row of θ, returned, and of
+    the modes' (m,) into ``out``; that of the row of θ by the modes is the same. Left out is a step times a rate of it.
+
+    acc, vel: change of an acceleration, and of a velocity, by that of its position.
+    """
+    gq, free = work[0], work[2]
+    inertia, moving = j0, 0.0
+    for i in range(len(q)):
+        out[i] = acc * gq[i]
+        inertia += (2.0 * h[i] + free[i]) * q[i]
+        moving += 2.0 * (h[i] + free[i]) * dq[i]
+    return inertia * acc + moving * vel
 
 
 def kinetic_energy(

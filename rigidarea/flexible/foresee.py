@@ -24,7 +24,9 @@ def note_places(sy, buf, state, s, sign):  # type: ignore[no-untyped-def]
     for i in range(s.made[0]):
         b = s.side[i]
         lo, hi = sy.first[b], sy.first[b + 1]
-        place = dot(buf.modal[i, : hi - lo], state.q[lo:hi]) if s.node[i] >= 0 else 0.0
+        place = -buf.lag[i] * state.x[b, 2]  # it is in ``buf.moves``, and in q as predicted
+        if s.node[i] >= 0:
+            place += dot(buf.modal[i, : hi - lo], state.q[lo:hi])
         for c in range(buf.counts[2]):
             if buf.active[c] < frames:
                 place += buf.moves[i, c] * state.x[buf.active[c] // 3, buf.active[c] % 3]

@@ -18,13 +18,18 @@ Array = NDArray[np.float64]
 
 @kernel
 def body_compliance(
-    b: Boundary, w: Work, s: Loads, buf: Any, body: int, q: Array, residual: Array, n: int
+    b: Boundary, w: Work, s: Loads, buf: Any, body: int, lo: int, hi: int, q: Array, n: int
 ) -> None:
     """One body's part of C̃ and a: modes, static flexibility, and what the loads of the iteration before moved."""
     m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
-    free, give = buf.modes[0, :m], buf.modes[1, :m]
+    free, give, residual, swing = (
+        buf.modes[0, :m],
+        buf.modes[1, :m],
+        buf.modal_residual[lo:hi],
+        buf.swing[lo:hi],
+    )
     for c in range(m):
-        free[c] = w.mobility[c] * residual[c]
+        free[c], give[c] = w.mobility[c] * residual[c], w.mobility[c] * swing[c]
     for i in range(n):
         if s.side[i] != body:
             continue
@@ -42,7 +47,7 @@ def body_compliance(
         if w.tight[0]:
             old -= follow(b, w, 1, row, ex, ey)
         buf.stale[i] = -old if static else 0.0
-        buf.shift[i] = -dot(along, free)
+        buf.shift[i], buf.lag[i] = -dot(along, free), -dot(along, give)
     for i in range(n):
         if s.side[i] != body:
             continue

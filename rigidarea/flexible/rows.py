@@ -38,7 +38,7 @@ def scheme_of(rho: float, h: float) -> Scheme:
 
 
 @kernel
-def frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyped-def]
+def frame_rows(w, sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyped-def]
     """Residual and matrix of one free frame; ``moment`` of its inertia. Returns the largest force, and residual."""
     m, rhs, k, size, mass = buf.matrix, buf.rhs, 3 * b, sy.size[b], sy.mass[b]
     mux, muy = state.mu[b, 0], state.mu[b, 1]
@@ -51,7 +51,12 @@ def frame_rows(sy, buf, state, scheme, b, hub, moment):  # type: ignore[no-untyp
     worst = max(abs(rhs[k]), abs(rhs[k + 1]), abs(rhs[k + 2]) / size)
     # dynamic rows times scale, multipliers over scale
     m[k, k] = m[k + 1, k + 1] = mass * scheme.acc * scheme.scale
-    m[k + 2, k + 2] = sy.inertia[b] * scheme.acc * scheme.scale
+    turning = buf.hubs[b, 8]
+    for j in range(sy.first[b], sy.first[b + 1]):  # the modes go with it, eliminated
+        c = buf.swing[j] * w.mobility[j - sy.first[b]]
+        turning -= c * buf.swing[j]
+        rhs[k + 2] -= c * buf.modal_residual[j]
+    m[k + 2, k + 2] = turning * scheme.scale
     for i in range(k, k + 3):
         for j in range(3 * len(sy.mass)):
             m[i, j] += buf.tangent[i, j] * scheme.scale
@@ -128,13 +133,18 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
             m[row, k + 2], m[row, row] = 1.0, 1.0 / (whole * scheme.scale)
         if kind < 2 or sy.driven[b] == 1:
             worst = max(worst, abs(g) / (sy.size[b] if kind < 2 else 1.0))
+        e = direction(kind, c, s)
+        rhs[row] = -g - share * buf.push[3 * len(sy.mass) + k + kind]
+        # modes move the hub by their own residual in this iteration, and as the frame turns
+        for j in range(hi - lo):
+            pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
+            rhs[row] += share * pe * buf.modal_residual[lo + j] * w.mobility[j]
+            m[row, k + 2] -= pe * buf.swing[lo + j] * w.mobility[j]
         for i in range(k, k + 3):
             if sy.fixed[b] == 1:
                 m[row, i] = 0.0
             m[i, row] = -m[row, i]
             m[row, i] *= share
-        rhs[row] = -g - share * buf.push[3 * len(sy.mass) + k + kind]
-        e = direction(kind, c, s)
         for other in range(3):
             column = buf.column[k + other]
             if column < 0:
@@ -153,10 +163,6 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
                 pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]
                 value += pe * pd * w.mobility[j]
             m[row, column] += share * value / scheme.scale
-        # modes move the hub by their own residual in this iteration
-        for j in range(hi - lo):
-            pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-            rhs[row] += share * pe * buf.modal_residual[lo + j] * w.mobility[j]
     return worst, off
 
 

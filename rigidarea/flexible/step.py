@@ -22,7 +22,7 @@ from rigidarea.flexible.boundary_places import clear_loads, clear_nodes
 from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
-from rigidarea.flexible.floating_frame import inertia_forces
+from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
 from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
@@ -118,7 +118,7 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
     d, moved = buf.modes[0], buf.modes[1]
     for j in range(hi - lo):
         f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
-        d[j], moved[j] = f - buf.modal_residual[lo + j], 0.0
+        d[j], moved[j] = f - buf.modal_residual[lo + j] - buf.swing[lo + j] * rhs[k + 2], 0.0
     for i in range(s_load.made[0] if hi > lo else 0):
         if s_load.side[i] == b:
             along, more = buf.modal[i], buf.answer[i]
@@ -279,6 +279,10 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 hub.moment,
             )
             buf.hubs[b, 4] = moment
+            buf.hubs[b, 8] = turning_rows(
+                sy.stretch[lo:hi], state.q[lo:hi], state.dq[lo:hi], sy.inertia[b], scheme.acc, scheme.vel, buf.modes,
+                buf.swing[lo:hi],
+            )  # fmt: skip
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
             force, left = mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
@@ -291,7 +295,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                 for i in range(3 * b, 3 * b + 3):
                     buf.matrix[i, i] = 1.0
             else:
-                force, left = frame_rows(sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
+                force, left = frame_rows(w, sy, buf, state, scheme, b, hub, buf.hubs[b, 4])
                 reference, worst = max(reference, force), max(worst, left)
             gap, left = constraint_rows(body, w, sy, buf, state, scheme, b, hub, t + h)
             open_most, worst = max(open_most, gap), max(worst, left)

@@ -91,7 +91,12 @@ class Buffers(NamedTuple):
         Array  # (REGIONS, 10): pair, force, direction, point, chord, its middle, serial number of its loads
     )
     modal_residual: Array
-    hubs: Array  # (b, 8) ``hub.Hub``; moment of the frame's inertia; ``rows.constraint_rows``; ``hub.second_order``
+    # (b, 9) ``hub.Hub``; moment of the frame's inertia; ``rows.constraint_rows``; ``hub.second_order`` (2); gradient of
+    # that moment by the frame's angle
+    hubs: Array
+    swing: (
+        Array  # (m,) gradient of the modes' residual by their frame's angle: ``floating_frame.turning_rows``
+    )
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
     counts: Ints  # [0] regions, [1] evaluation stamp, [2] columns of ``right`` but the first
     bend: Array  # (b,) largest displacement of the boundary under a contact, by static flexibility
@@ -102,6 +107,7 @@ class Buffers(NamedTuple):
     modal: Array  # (c, most modes of a body) of the modes along each load
     stale: Array  # (c,) a of ``condense``, without what follows
     shift: Array  # (c,) what the modes' residual moves
+    lag: Array  # (c,) what modes move a load as their frame turns by 1
     compliance: Array  # (c, c)
     moves: Array  # (c, 6 b)
     system: Array  # (3, c, c) scratch of ``dense.yielded``
@@ -124,9 +130,11 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
     n, m, rows = bodies, sum(modes), 6 * bodies + 3 * joints
     return Buffers(
         np.zeros((n, 4)), np.zeros((rows, rows + 1)), np.zeros(rows + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
-        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 8)),
+        np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 9)),
+        np.zeros(m),
         np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
         np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
+        np.zeros(room),
         np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((3, room, room)), np.zeros(room, np.int64),
         np.zeros((6 * n + 1, room)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from rigidarea.flexible.element import Material, lumped_mass
-from rigidarea.flexible.floating_frame import inertia_forces, kinetic_energy
+from rigidarea.flexible.floating_frame import inertia_forces, kinetic_energy, turning_rows
 from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import elastic, reduce, rigid_modes
 
@@ -62,3 +62,38 @@ def test_against_brute_force():
     energy = 0.5 * m2 @ (jacobian @ velocity) ** 2
     ours = kinetic_energy(body.mass, body.inertia, body.stretch, body.coupling, velocity[:2], omega, q, dq)
     assert ours == pytest.approx(energy, rel=1e-12)
+
+
+def test_gradient_by_the_frames_angle():
+    """``turning_rows`` against differences of ``inertia_forces``, as a step moves positions, rates and accelerations.
+
+    Left out is what a step of h does at rates and accelerations of some units: h of the gradient at the most.
+    """
+    rng = np.random.default_rng(2)
+    m, h, small = 5, 1e-4, 1e-7
+    acc, vel = 4.0 / h**2, 2.0 / h  # of the trapezoidal rule
+    stretch, q, dq, ddq = rng.standard_normal((4, m))
+    coupling = rng.standard_normal((m, m))
+    coupling -= coupling.T
+    stiff = 0.1 * rng.standard_normal((3, m, m))
+    stiff += stiff.transpose(0, 2, 1)
+    work = np.zeros((4, m))
+
+    def forces(turn, moved):
+        out = np.zeros(m)
+        moment = inertia_forces(
+            3.0, stretch, coupling, stiff, 0.0, 0.0, q + moved, dq + vel * moved, ddq + acc * moved, 1.3 + vel * turn,
+            -0.4 + acc * turn, out, work,
+        )  # fmt: skip
+        return np.array([moment, *out])
+
+    centre = forces(0.0, np.zeros(m))
+    rows = np.zeros(m)
+    own = turning_rows(stretch, q, dq, 3.0, acc, vel, work, rows)
+    by_turn = (forces(small, np.zeros(m)) - centre) / small
+    by_mode = np.array([(forces(0.0, small * e) - centre)[0] for e in np.eye(m)]) / small
+    room = 40 * h * acc  # of sums of some ten terms
+    assert own == pytest.approx(by_turn[0], abs=room)
+    assert rows == pytest.approx(by_turn[1:], abs=room)
+    assert rows == pytest.approx(by_mode, abs=room)
+    assert np.abs(rows).min() > 10 * room

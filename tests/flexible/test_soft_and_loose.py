@@ -65,8 +65,9 @@ def test_rubber_against_a_wall(level, speed):
     assert r.forces[-1, 0, 1] == 0.0
     if level == "compliant":
         assert back == pytest.approx(1.0, abs=1e-3)
-    else:
+    else:  # frames and modes are solved for together: apart, ever slower as deformation grows, 9 to 10 in a step
         assert 0.5 < back < 1.0
+        assert r.iterations[r.forces[:, 0, 1] == 0.0].max() <= 3
 
 
 def test_a_four_bar_with_clearance_in_its_journals():
