@@ -113,7 +113,7 @@ class Plan:
             if isinstance(shape, pymunk.Shape) and "sampling" in settings
         }
         frames = max(1, round(self.seconds / self.frame))
-        probe = Probe(self.space, self.frame, frames, self.stiffness, asked)
+        probe = Probe(self.space, self.frame, frames, self.stiffness, asked, self.tolerance)
         bends = any(choice.level in ELASTIC for choice in self.elastic)
         level = given.get("level")
         native = level == "pymunk" or (

@@ -155,7 +155,9 @@ class Probe:
         frames: int,
         stiffness: float | None,
         given: Mapping[pymunk.Shape, float],
+        tolerance: float,
     ) -> None:
+        self.tolerance = tolerance
         self.original = Original(space, given)
         self.bodies = self.original.bodies
         self.frame, self.frames, self.stiffness = frame, frames, stiffness
@@ -169,6 +171,7 @@ class Probe:
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.pairs = float(len(self.bodies))  # that touch, on the average
+        self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
         self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
         self._tracks: dict[tuple[Setting, float | None], Array] = {}
         self._asked: set[int] = set()
@@ -201,7 +204,9 @@ class Probe:
         """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
         key = setting, sagitta
         if key not in self._tracks:
-            self._tracks[key] = self.run(setting, sagitta, materials=None if self._tracks else {})[0]
+            first = not self._tracks
+            self._tracks[key], seen = self.run(setting, sagitta, materials={} if first else None)
+            self.groups = seen.groups if first else self.groups
         return self._tracks[key]
 
     def run(
@@ -289,22 +294,26 @@ class Probe:
                 groups[groups == groups[index[b]]] = groups[index[a]]
 
     def apart(self, one: Array, fine: Array) -> Array:
-        """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
+        """(bodies,) how far each is from where the finer run has it, over its way there so far, the largest.
 
-        A turn counts as what it moves the farthest point. What only turns is
-        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
+        What has not gone its smallest extent yet is compared over that; where no body of an island ever goes so far,
+        over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
+        motion. A turn counts as what it moves the farthest point. What only turns is compared by its spin too, root
+        mean square: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
-        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0))
-        way = np.hypot(steps[:, :, 0], steps[:, :, 1]).sum(axis=0)
-        turned = self.reach * steps[:, :, 2].sum(axis=0)
-        far = np.maximum(way, turned)
-        gone = np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=0) / np.maximum(far, self.extent)
-        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, self.extent)
-        found: Array = np.maximum(gone, twisted)
+        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0, prepend=fine[:1, :, :3]))
+        gone = np.cumsum(np.hypot(steps[:, :, 0], steps[:, :, 1]), axis=0)
+        turned = self.reach * np.cumsum(steps[:, :, 2], axis=0)
+        far = np.maximum(gone, turned)
+        scale = np.zeros(len(self.bodies))
+        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
+        least = self.extent * np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
+        most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
+        found: Array = (most / np.maximum(far, least)).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
-        turns = (way < self.extent) & (turned > self.extent)
+        turns = (gone[-1] < self.extent) & (turned[-1] > self.extent)
         ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
         return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
 
