@@ -29,6 +29,21 @@ FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
 
 
+COPIES, SAMPLED = 0.5, 0.1
+"""What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
+
+
+def budget_of(bodies: int, frames: int, steps: int | None) -> float:
+    """What trying out may cost (s): of so many bodies, planned for so many frames of so many substeps."""
+    run = costs.area_frame([(bodies, bodies, steps or SUBSTEPS)], SWEEPS) * frames
+    return max(SHARE * run, UNNOTICED_S)
+
+
+def bodies_for(budget: float) -> tuple[float, float]:
+    """How many bodies may be copied, and how many of islands that are sampled: see `part`."""
+    return COPIES * budget / costs.COPY_BODY_S, SAMPLED * budget / costs.COPY_BODY_S
+
+
 class Tried(NamedTuple):
     """A setting tried: what each body is off, with what the reference may be (relative); a frame's cost (s)."""
 
@@ -64,22 +79,18 @@ def search(
     given: Mapping[str, Any],
     materials: Mapping[pymunk.Body, Any],
     least: Setting | None,
+    budget: float,
 ) -> Found:
     """The cheapest setting whose error is within the tolerance; the one with the least where none is.
 
     native: whether Chipmunk's own response may be chosen. given: level, steps, sweeps, penetration that the user has
-    said. least: nothing is to be coarser than that.
+    said. least: nothing is to be coarser than that. budget: what trying out may cost (s).
     """
     planned = probe.frames
-    run = probe.cost(Setting("rigid", given.get("steps", SUBSTEPS), SWEEPS, PENETRATIONS[0])) * planned
-    budget = max(SHARE * run, UNNOTICED_S)
-    copies = costs.COPY_BODY_S * len(probe.bodies)
-    if copies > 0.5 * budget:
+    if probe.moving and not probe.bodies:
         return _untried(probe, tolerance, given, least)
-    probe.look(
-        (budget - copies) / RUNS,
-        Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]),
-    )
+    copies = costs.COPY_BODY_S * len(probe.bodies)
+    probe.look((budget - copies) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
     sagitta = None
     if (
         probe.sampled and least is None
@@ -95,9 +106,10 @@ def search(
 
     chosen: Tried | None = None
     best_depths: set[float] = set()
-    native = native and (probe.frames == planned or given.get("level") == "pymunk")
+    whole = probe.share == 1.0 or not probe.moving
+    native = native and ((whole and probe.frames == planned) or given.get("level") == "pymunk")
     for group in _groups(probe, tolerance, native, given, fine, least):
-        if tried and probe.spent + sum(map(probe.cost, group)) * probe.frames > budget:
+        if tried and probe.spent + sum(map(probe.price, group)) > budget:
             break
         if group[0].level == "rigid" and best_depths:
             group = [setting for setting in group if setting.penetration in best_depths]
@@ -127,7 +139,7 @@ def search(
         chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
     if sagitta is not None and chosen.error <= tolerance and chosen.setting.level == "rigid":
         for coarser in (100.0 * sagitta, 10.0 * sagitta):
-            if probe.spent + probe.cost(chosen.setting) * probe.frames > budget:
+            if probe.spent + probe.price(chosen.setting) > budget:
                 break
             errors = probe.apart(probe.track(chosen.setting, coarser), fine.track) + fine.doubt
             if errors.max(initial=0.0) <= tolerance:
@@ -139,6 +151,7 @@ def search(
         chosen.setting.level == "rigid"
         and "steps" not in given
         and least is None
+        and whole
         and chosen.error <= tolerance
     ):
         chosen, finer = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine)
@@ -151,7 +164,7 @@ def search(
 
 
 def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Setting | None) -> Found:
-    """The defaults, no deeper than a tenth of the tolerance, where a copy alone would cost too much."""
+    """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too much."""
     setting = least or Setting("rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * tolerance))
     setting = setting._replace(**{k: v for k, v in given.items() if k in Setting._fields})
     n = len(probe.bodies)

@@ -22,7 +22,9 @@ G = 9.81
 def test_a_copy_runs_as_the_space_does(make, setting):
     """Bit by bit, after runs at other settings too."""
     scene = make()
-    probe = Probe(space_of(scene)[0], scene.frame, scene.frames, None, {}, 0.01)
+    space = space_of(scene)[0]
+    moving = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+    probe = Probe(space, scene.frame, scene.frames, None, {}, 0.01, moving)
     probe.run(Setting("rigid", 7, 20, 1e-4), None)
     states, _ = probe.run(setting, None)
     settings = setting._asdict()
@@ -43,7 +45,7 @@ def test_a_copy_has_joints_filters_and_outlines():
     motor = pymunk.SimpleMotor(wheel, other, 2.0)
     motor.max_force, motor.pre_solve = 6.0, lambda *_: None
     space.add(wheel, other, shape, motor)
-    made, bodies = Original(space, {}).copy(1e-3)
+    made, bodies = Original(space, {}, space.bodies).copy(1e-3)
     (twin,), (joint,) = made.shapes, made.constraints
     assert twin.friction == 0.7 and twin.filter == shape.filter
     assert len(twin.outline.rings[0]) == len(gear.sample(1e-3 * gear.smallest_extent).rings[0])
@@ -58,7 +60,7 @@ def test_how_far_apart_two_runs_are():
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Poly.create_box(body, (3.0, 1.0)))
-    probe = Probe(space, 0.1, 4, None, {}, 0.1)
+    probe = Probe(space, 0.1, 4, None, {}, 0.1, space.bodies)
     fine = np.zeros((5, 1, 6))
     moved = fine.copy()
     moved[-1, 0, 1] = 0.02
@@ -81,7 +83,7 @@ def test_what_moves_little_is_off_by_its_share_of_the_motion():
         body = pymunk.Body(1, 1)
         body.position = 9 * i, 0
         space.add(body, pymunk.Circle(body, 0.5))
-    probe = Probe(space, 0.1, 4, None, {}, 0.01)
+    probe = Probe(space, 0.1, 4, None, {}, 0.01, space.bodies)
     fine = np.zeros((5, 2, 6))
     fine[:, 0, 0] = 0.0125 * np.arange(5)
     moved = fine.copy()
@@ -109,7 +111,7 @@ def test_the_ladder_doubts_a_first_order_error_by_what_it_is():
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Circle(body, 0.5))
-    probe = Known(space, 0.1, 1, None, {}, 1e-6)
+    probe = Known(space, 0.1, 1, None, {}, 1e-6, space.bodies)
     fine, rungs = reference(probe, 1e-6, None, 3.5, None)
     assert fine.setting.steps == LADDER[3] and len(rungs) == 4  # as far as the budget goes
     assert fine.doubt == pytest.approx(
@@ -125,7 +127,9 @@ def test_what_is_planned_is_off_by_what_it_says(tolerance):
     scene = box_dropped_askew()
     made = ra.plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
     made.apply()
-    fine = Probe(space_of(scene)[0], scene.frame, scene.frames, None, {}, tolerance)
+    space = space_of(scene)[0]
+    moving = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+    fine = Probe(space, scene.frame, scene.frames, None, {}, tolerance, moving)
     best = fine.track(Setting("rigid", 301, 20, 1e-8))
     chosen = Setting(made.level, made.steps, made.sweeps, made.penetration)
     error = float(fine.apart(fine.track(chosen), best).max())
