@@ -68,6 +68,7 @@ class Found(NamedTuple):
     seen: Seen  # of the chosen setting's run
     end: Array  # (bodies, 6) its last states
     way: Array  # (bodies,) how far each was from where it began, at the most (length)
+    sooner: Array  # (bodies,) what each is off over its way up to then, the largest
     looked: int  # frames
     begin: float  # depth after the reference's first frame, over the smallest extent
 
@@ -90,7 +91,7 @@ def search(
     if probe.moving and not probe.bodies:
         return _untried(probe, tolerance, given, least)
     copies = costs.COPY_BODY_S * len(probe.bodies)
-    probe.look((budget - copies) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
+    probe.look((budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
     sagitta = None
     if (
         probe.sampled and least is None
@@ -154,13 +155,16 @@ def search(
         and whole
         and chosen.error <= tolerance
     ):
-        chosen, finer = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine)
+        chosen, finer, states = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine, states)
     tried.sort(key=lambda each: (each.cost_s, each.error))
     probe.forget()
     end, way = np.zeros((len(probe.bodies), 6)), np.full(len(probe.bodies), np.inf)
     if len(states):
         end, way = states[-1], np.hypot(*np.moveaxis(states[:, :, :2] - states[0, :, :2], 2, 0)).max(axis=0)
-    return Found(chosen, finer, sagitta, tried, fine, seen, end, way, probe.frames, probe.begin or 0.0)
+    sooner = probe.apart(states, fine.track, so_far=True)
+    return Found(
+        chosen, finer, sagitta, tried, fine, seen, end, way, sooner, probe.frames, probe.begin or 0.0
+    )
 
 
 def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Setting | None) -> Found:
@@ -171,7 +175,7 @@ def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Se
     chosen = Tried(setting, np.full(n, np.inf), probe.cost(setting))
     seen = Seen({}, np.arange(n), np.zeros(n, bool))
     end, way = np.zeros((n, 6)), np.full(n, np.inf)
-    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, 0, 0.0)
+    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, way, 0, 0.0)
 
 
 def _groups(
@@ -214,9 +218,10 @@ def _apart(
     tolerance: float,
     sagitta: float | None,
     fine: Reference,
-) -> tuple[Tried, dict[int, int]]:
+    states: Array,
+) -> tuple[Tried, dict[int, int], Array]:
     """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
-    mixture is too; and what that costs."""
+    mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
     alike = [chosen] + [
         each
         for each in tried
@@ -235,12 +240,13 @@ def _apart(
     base = min(wanted.values(), default=chosen.setting.steps)
     finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
     if not finer:
-        return chosen, {}
+        return chosen, {}, states
     setting = chosen.setting._replace(steps=base)
-    errors = probe.apart(probe.run(setting, sagitta, finer)[0], fine.track) + fine.doubt
+    mixed = probe.run(setting, sagitta, finer)[0]
+    errors = probe.apart(mixed, fine.track) + fine.doubt
     if not errors.max(initial=0.0) <= tolerance:
-        return chosen, {}
+        return chosen, {}, states
     share = {g: float((seen.groups == g).sum()) / len(probe.bodies) for g in wanted}
     parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
     cost = costs.area_frame(parts, setting.sweeps, probe.points)
-    return Tried(setting, errors, min(cost, chosen.cost_s)), finer
+    return Tried(setting, errors, min(cost, chosen.cost_s)), finer, mixed

@@ -21,7 +21,7 @@ from . import elastic
 from .choose import Found, Tried, bodies_for, budget_of, search
 from .part import part
 from .probe import Probe, Setting
-from .promise import unpromised
+from .promise import name_of, unpromised
 from .table import Line, lines_of, text_of
 
 if TYPE_CHECKING:
@@ -139,6 +139,12 @@ class Plan:
         self.unpromised = unpromised(
             self.space, self.elastic, found.looked / frames, self.looked, begin, tried
         )
+        sooner = float(found.sooner.max(initial=0.0))
+        if self.reachable and sooner > self.tolerance:
+            name = name_of(self.space, bodies[int(found.sooner.argmax())])
+            self.unpromised.append(
+                f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
+            )
         return self
 
     def _finer(self, found: dict[pymunk.Body, int], before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:

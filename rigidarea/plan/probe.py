@@ -29,8 +29,8 @@ Array = NDArray[np.float64]
 
 SAMPLES = 120
 """Places are compared so often, at the most, in the time that is looked at."""
-NOTES = 12
-"""What contacts do is noted so often, and after the first sample."""
+NOTES, NOTING_S = 12, 0.005
+"""What contacts do is noted so often, and after the first sample; less often where that would take longer (s)."""
 LADDER = (2, 5, 12, 29, 70, 169)
 """Substeps of runs that become finer, Pell's numbers: a run's substeps do not fall together with another's, or the two
 would be off alike."""
@@ -167,7 +167,6 @@ class Probe:
         self.original = Original(space, given, bodies)
         self.bodies = self.original.bodies
         self.frame, self.frames, self.stiffness = frame, frames, stiffness
-        self.spent = 0.0
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
@@ -178,6 +177,7 @@ class Probe:
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
         self.share = float(self.free.sum()) / max(1, self.moving)  # of what moves that is copied
+        self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
         self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
@@ -266,9 +266,9 @@ class Probe:
         twins = {twin: body for twin, body in zip(bodies, self.bodies)}
         made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
         notes = 0
-        if materials is not None:  # as many as cost no more than the run does
+        if materials is not None:
             note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
-            notes = max(1, min(NOTES, int(self.price(setting) / note)))
+            notes = max(1, min(NOTES, int(NOTING_S / note)))
             self.spent += (notes + 1) * note
         every = max(1, (len(ends) - 1) // max(1, notes))
         try:
@@ -313,10 +313,11 @@ class Probe:
             if a in index and b in index:
                 join(seen.groups, index[a], index[b])
 
-    def apart(self, one: Array, fine: Array) -> Array:
-        """(bodies,) how far each is from where the finer run has it, over its way there so far, the largest.
+    def apart(self, one: Array, fine: Array, so_far: bool = False) -> Array:
+        """(bodies,) how far each is from where the finer run has it, over its way there, the largest; so_far: over its
+        way up to then.
 
-        What has not gone its smallest extent yet is compared over that; where no body of an island ever goes so far,
+        What does not go its smallest extent is compared over that; where no body of an island ever goes so far,
         over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
         motion. A turn counts as what it moves the farthest point. What only turns is compared by its spin too, root
         mean square: a drive's error is in its speed, not in its angle.
@@ -331,7 +332,7 @@ class Probe:
         np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
         least = self.extent * np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
         most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
-        found: Array = (most / np.maximum(far, least)).max(axis=0)
+        found: Array = (most / np.maximum(far if so_far else far[-1], least)).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         turns = (gone[-1] < self.extent) & (turned[-1] > self.extent)
         ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)

@@ -71,7 +71,8 @@ def test_how_far_apart_two_runs_are():
     fine[:, 0, 0] = moved[:, 0, 0] = np.arange(5)
     assert probe.apart(moved, fine) == pytest.approx([0.005])
     moved[2, 0, 1] = 0.02  # sooner: over what it has gone by then
-    assert probe.apart(moved, fine) == pytest.approx([0.01])
+    assert probe.apart(moved, fine) == pytest.approx([0.005])
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([0.01])
     assert probe.apart(moved[:0], fine) == [math.inf]
 
 
@@ -149,6 +150,24 @@ def test_what_is_tried_out_costs_no_more_than_said():
     assert 0.0 < made.looked < 60.0 and not ra.attached(space)
     run = made.cost_s_per_s * 60.0
     assert made._probe.spent <= 2.0 * max(0.05 * run, 0.1)  # the last run may go beyond
+
+
+def test_of_a_large_space_islands_are_tried_out():
+    """Fifty stacks of twenty: some whole stacks; one pile of as many: nothing, and the plan says so."""
+    for apart, tried in ((1.2, True), (1.0, False)):
+        space = pymunk.Space()
+        space.gravity = 0, -G
+        space.add(pymunk.Segment(space.static_body, (-9, 0), (90, 0), 0))
+        for i in range(1000):
+            body = pymunk.Body(1, 1 / 6)
+            body.position = apart * (i % 50), 0.5 + i // 50
+            space.add(body, pymunk.Poly.create_box(body, (1, 1)))
+        made = ra.plan(space, 0.01)
+        columns = {round(body.position.x, 3) for body in made._probe.bodies}
+        assert len(made._probe.bodies) == 20 * len(columns) and bool(columns) == tried == bool(made.tried)
+        told = f"what {1000 - 20 * len(columns)} bodies do" if tried else "anything"
+        assert any(reason.startswith(told) for reason in made.unpromised)
+        assert made._probe.spent <= max(0.05 * made.cost_s_per_s * made.seconds, 0.1)
 
 
 def test_what_is_finer_is_no_worse_a_promise():
