@@ -20,12 +20,14 @@ def part(space: pymunk.Space, most: float, some: float) -> list[pymunk.Body]:
     bodies = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
     if len(bodies) <= most:
         return bodies
-    index = {body: i for i, body in enumerate(bodies) if body.body_type == pymunk.Body.DYNAMIC}
+    index: dict[pymunk.Body | None, int] = {
+        body: i for i, body in enumerate(bodies) if body.body_type == pymunk.Body.DYNAMIC
+    }
     shapes = [shape for shape in space.shapes if shape.body in index and not shape.sensor]
     low_high = np.array([shape.cache_bb() for shape in shapes]).reshape(-1, 4)
     grown = NEAR * (low_high[:, 2:] - low_high[:, :2])
     boxes = shapely.box(*(low_high[:, :2] - grown).T, *(low_high[:, 2:] + grown).T)
-    mine = np.array([index[shape.body] for shape in shapes], int)
+    mine = np.array([index[shape.body] for shape in shapes], np.int64)
     groups = np.arange(len(bodies))
     for a, b in mine[shapely.STRtree(boxes).query(boxes, predicate="intersects")].T:
         join(groups, a, b)
