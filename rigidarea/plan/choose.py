@@ -107,7 +107,7 @@ def search(
 
     chosen: Tried | None = None
     best_depths: set[float] = set()
-    whole = probe.share == 1.0 or not probe.moving
+    whole = probe.share == 1.0
     native = native and ((whole and probe.frames == planned) or given.get("level") == "pymunk")
     for group in _groups(probe, tolerance, native, given, fine, least):
         if tried and probe.spent + sum(map(probe.price, group)) > budget:

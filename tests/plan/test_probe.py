@@ -167,7 +167,8 @@ def test_of_a_large_space_islands_are_tried_out():
         assert len(made._probe.bodies) == 20 * len(columns) and bool(columns) == tried == bool(made.tried)
         told = f"what {1000 - 20 * len(columns)} bodies do" if tried else "anything"
         assert any(reason.startswith(told) for reason in made.unpromised)
-        assert made._probe.spent <= max(0.05 * made.cost_s_per_s * made.seconds, 0.1)
+        most = max(0.05 * made.cost_s_per_s * made.seconds, 0.1)
+        assert made._probe.spent <= 1.1 * most  # the run of what is chosen comes on top
 
 
 def test_what_is_finer_is_no_worse_a_promise():
