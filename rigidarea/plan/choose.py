@@ -29,6 +29,21 @@ FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
 
 
+COPIES, SAMPLED = 0.5, 0.1
+"""What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
+
+
+def budget_of(bodies: int, frames: int, steps: int | None) -> float:
+    """What trying out may cost (s): of so many bodies, planned for so many frames of so many substeps."""
+    run = costs.area_frame([(bodies, bodies, steps or SUBSTEPS)], SWEEPS) * frames
+    return max(SHARE * run, UNNOTICED_S)
+
+
+def bodies_for(budget: float) -> tuple[float, float]:
+    """How many bodies may be copied, and how many of islands that are sampled: see `part`."""
+    return COPIES * budget / costs.COPY_BODY_S, SAMPLED * budget / costs.COPY_BODY_S
+
+
 class Tried(NamedTuple):
     """A setting tried: what each body is off, with what the reference may be (relative); a frame's cost (s)."""
 
@@ -53,6 +68,7 @@ class Found(NamedTuple):
     seen: Seen  # of the chosen setting's run
     end: Array  # (bodies, 6) its last states
     way: Array  # (bodies,) how far each was from where it began, at the most (length)
+    sooner: Array  # (bodies,) what each is off over its way up to then, the largest
     looked: int  # frames
     begin: float  # depth after the reference's first frame, over the smallest extent
 
@@ -64,22 +80,18 @@ def search(
     given: Mapping[str, Any],
     materials: Mapping[pymunk.Body, Any],
     least: Setting | None,
+    budget: float,
 ) -> Found:
     """The cheapest setting whose error is within the tolerance; the one with the least where none is.
 
     native: whether Chipmunk's own response may be chosen. given: level, steps, sweeps, penetration that the user has
-    said. least: nothing is to be coarser than that.
+    said. least: nothing is to be coarser than that. budget: what trying out may cost (s).
     """
     planned = probe.frames
-    run = probe.cost(Setting("rigid", given.get("steps", SUBSTEPS), SWEEPS, PENETRATIONS[0])) * planned
-    budget = max(SHARE * run, UNNOTICED_S)
-    copies = costs.COPY_BODY_S * len(probe.bodies)
-    if copies > 0.5 * budget:
+    if probe.moving and not probe.bodies:
         return _untried(probe, tolerance, given, least)
-    probe.look(
-        (budget - copies) / RUNS,
-        Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]),
-    )
+    copies = costs.COPY_BODY_S * len(probe.bodies)
+    probe.look((budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
     sagitta = None
     if (
         probe.sampled and least is None
@@ -95,9 +107,10 @@ def search(
 
     chosen: Tried | None = None
     best_depths: set[float] = set()
-    native = native and (probe.frames == planned or given.get("level") == "pymunk")
+    whole = probe.share == 1.0
+    native = native and ((whole and probe.frames == planned) or given.get("level") == "pymunk")
     for group in _groups(probe, tolerance, native, given, fine, least):
-        if tried and probe.spent + sum(map(probe.cost, group)) * probe.frames > budget:
+        if tried and probe.spent + sum(map(probe.price, group)) > budget:
             break
         if group[0].level == "rigid" and best_depths:
             group = [setting for setting in group if setting.penetration in best_depths]
@@ -127,7 +140,7 @@ def search(
         chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
     if sagitta is not None and chosen.error <= tolerance and chosen.setting.level == "rigid":
         for coarser in (100.0 * sagitta, 10.0 * sagitta):
-            if probe.spent + probe.cost(chosen.setting) * probe.frames > budget:
+            if probe.spent + probe.price(chosen.setting) > budget:
                 break
             errors = probe.apart(probe.track(chosen.setting, coarser), fine.track) + fine.doubt
             if errors.max(initial=0.0) <= tolerance:
@@ -139,26 +152,30 @@ def search(
         chosen.setting.level == "rigid"
         and "steps" not in given
         and least is None
+        and whole
         and chosen.error <= tolerance
     ):
-        chosen, finer = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine)
+        chosen, finer, states = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine, states)
     tried.sort(key=lambda each: (each.cost_s, each.error))
     probe.forget()
     end, way = np.zeros((len(probe.bodies), 6)), np.full(len(probe.bodies), np.inf)
     if len(states):
         end, way = states[-1], np.hypot(*np.moveaxis(states[:, :, :2] - states[0, :, :2], 2, 0)).max(axis=0)
-    return Found(chosen, finer, sagitta, tried, fine, seen, end, way, probe.frames, probe.begin or 0.0)
+    sooner = probe.apart(states, fine.track, so_far=True)
+    return Found(
+        chosen, finer, sagitta, tried, fine, seen, end, way, sooner, probe.frames, probe.begin or 0.0
+    )
 
 
 def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Setting | None) -> Found:
-    """The defaults, no deeper than a tenth of the tolerance, where a copy alone would cost too much."""
+    """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too much."""
     setting = least or Setting("rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * tolerance))
     setting = setting._replace(**{k: v for k, v in given.items() if k in Setting._fields})
     n = len(probe.bodies)
     chosen = Tried(setting, np.full(n, np.inf), probe.cost(setting))
     seen = Seen({}, np.arange(n), np.zeros(n, bool))
     end, way = np.zeros((n, 6)), np.full(n, np.inf)
-    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, 0, 0.0)
+    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, way, 0, 0.0)
 
 
 def _groups(
@@ -201,9 +218,10 @@ def _apart(
     tolerance: float,
     sagitta: float | None,
     fine: Reference,
-) -> tuple[Tried, dict[int, int]]:
+    states: Array,
+) -> tuple[Tried, dict[int, int], Array]:
     """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
-    mixture is too; and what that costs."""
+    mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
     alike = [chosen] + [
         each
         for each in tried
@@ -222,12 +240,13 @@ def _apart(
     base = min(wanted.values(), default=chosen.setting.steps)
     finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
     if not finer:
-        return chosen, {}
+        return chosen, {}, states
     setting = chosen.setting._replace(steps=base)
-    errors = probe.apart(probe.run(setting, sagitta, finer)[0], fine.track) + fine.doubt
+    mixed = probe.run(setting, sagitta, finer)[0]
+    errors = probe.apart(mixed, fine.track) + fine.doubt
     if not errors.max(initial=0.0) <= tolerance:
-        return chosen, {}
+        return chosen, {}, states
     share = {g: float((seen.groups == g).sum()) / len(probe.bodies) for g in wanted}
     parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
     cost = costs.area_frame(parts, setting.sweeps, probe.points)
-    return Tried(setting, errors, min(cost, chosen.cost_s)), finer
+    return Tried(setting, errors, min(cost, chosen.cost_s)), finer, mixed

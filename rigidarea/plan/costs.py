@@ -25,6 +25,12 @@ SWEEP_PAIR_S = 0.02e-6
 SUBSTEP_POINT_S = 0.003e-6
 #: A body's share of a copy of a space, attached (s).
 COPY_BODY_S = 60e-6
+#: A body's share, of a space whose islands are sampled, of what is done beside the runs (s).
+PART_BODY_S = 30e-6
+#: A body's share of a copy's first frame, beyond the others' (s): its broad phase is built.
+START_BODY_S = 12e-6
+#: What a pair that touches does, read (s).
+NOTE_PAIR_S = 35e-6
 #: Places of a copy read, and the call that steps it (s).
 SAMPLE_S = 25e-6
 #: A step of Chipmunk's own, and a body's share of it; a pair's that touches, and a sweep's over it (s).

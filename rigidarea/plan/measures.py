@@ -17,11 +17,17 @@ Measured = tuple[float, Any]
 
 
 def measure(
-    contact: AreaContact, rows: Any, h: float, found: dict[str, Measured], materials: Mapping[Any, Any]
+    contact: AreaContact,
+    rows: Any,
+    h: float,
+    found: dict[str, Measured],
+    materials: Mapping[Any, Any],
+    extents: dict[pymunk.Shape, float],
 ) -> None:
     """Put into `found` what is larger than what is there: see `Watch` for the names.
 
-    rows: the contact's regions. h: a substep (time). materials: of the bodies that have one.
+    rows: the contact's regions. h: a substep (time). materials: of the bodies that have one. extents: those of shapes
+    that are known (length); others are added.
     """
 
     def most(name: str, value: float, where: Any) -> None:
@@ -29,24 +35,28 @@ def measure(
             found[name] = value, where
 
     gravity = contact.space.gravity.length
-    for region in rows:
-        shapes, bodies = (region["shape_a"], region["shape_b"]), (region["body_a"], region["body_b"])
-        free = [body for body in bodies if body.body_type == pymunk.Body.DYNAMIC]
-        if not free or region["chord"] <= 0.0:
+    numbers = ("chord", "speed", "area", "force", "stiffness")
+    columns = (rows[name].tolist() for name in ("shape_a", "shape_b", "body_a", "body_b", *numbers))
+    for shape_a, shape_b, body_a, body_b, chord, speed, area, force, stiffness in zip(*columns):
+        shapes, both = (shape_a, shape_b), ((shape_a, body_a), (shape_b, body_b))
+        free = [(shape, body) for shape, body in both if body.body_type == pymunk.Body.DYNAMIC]
+        if not free or chord <= 0.0:
             continue
-        extent = min(extent_of(shape) for shape, body in zip(shapes, bodies) if body in free)
-        if region["speed"] * h <= HIT * extent:
-            most("penetration", float(region["area"] / region["chord"]) / extent, shapes)
-            most("sweeps", max(0.0, float(region["speed"])) * h / extent, shapes)
+        for shape, _ in free:
+            if shape not in extents:
+                extents[shape] = extent_of(shape)
+        extent = min(extents[shape] for shape, _ in free)
+        if speed * h <= HIT * extent:
+            most("penetration", area / chord / extent, shapes)
+            most("sweeps", max(0.0, speed) * h / extent, shapes)
+        masses = [body.mass for _, body in free]
         if gravity > 0.0:
-            most("load", float(region["force"]) / (min(body.mass for body in free) * gravity), shapes)
-        inverse = sum(1.0 / body.mass for body in free)
-        most("phase", h * math.sqrt(float(region["stiffness"] * region["chord"]) * inverse), shapes)
-        for body in free:
+            most("load", force / (min(masses) * gravity), shapes)
+        most("phase", h * math.sqrt(stiffness * chord * sum(1.0 / mass for mass in masses)), shapes)
+        for _, body in free:
             material = materials.get(body)
             if material is not None:
-                pressure = float(region["force"] / (region["chord"] * material.thickness))
-                most("strain", pressure / material.young, shapes)
+                most("strain", force / (chord * material.thickness) / material.young, shapes)
 
 
 def fastest(space: pymunk.Space, found: dict[str, Measured]) -> None:
@@ -81,9 +91,9 @@ def extent_of(shape: pymunk.Shape) -> float:
     if isinstance(shape, pymunk.Segment):
         return 2.0 * float(shape.radius) or float((shape.a - shape.b).length)
     assert isinstance(shape, pymunk.Poly)
-    corners = shape.get_vertices()
+    corners = [(float(x), float(y)) for x, y in shape.get_vertices()]
     widths = []  # of a convex polygon one side of the narrowest strip lies along an edge
-    for a, b in zip(corners, corners[1:] + corners[:1]):
-        edge = b - a
-        widths.append(max(edge.cross(corner - a) for corner in corners) / edge.length)
-    return float(min(widths)) + 2.0 * float(shape.radius)
+    for (ax, ay), (bx, by) in zip(corners, corners[1:] + corners[:1]):
+        ex, ey = bx - ax, by - ay
+        widths.append(max(ex * (y - ay) - ey * (x - ax) for x, y in corners) / math.hypot(ex, ey))
+    return min(widths) + 2.0 * float(shape.radius)

@@ -18,9 +18,10 @@ from ..chipmunk import AreaContact, SimulationError, attach, attached
 from ..geometry.gate import positive, truth, whole
 from ..geometry.outline import Outline
 from . import elastic
-from .choose import Found, Tried, search
+from .choose import Found, Tried, bodies_for, budget_of, search
+from .part import part
 from .probe import Probe, Setting
-from .promise import unpromised
+from .promise import name_of, unpromised
 from .table import Line, lines_of, text_of
 
 if TYPE_CHECKING:
@@ -113,13 +114,15 @@ class Plan:
             if isinstance(shape, pymunk.Shape) and "sampling" in settings
         }
         frames = max(1, round(self.seconds / self.frame))
-        probe = Probe(self.space, self.frame, frames, self.stiffness, asked)
+        budget = budget_of(len(self.space.bodies), frames, given.get("steps"))
+        bodies = part(self.space, *bodies_for(budget))
+        probe = Probe(self.space, self.frame, frames, self.stiffness, asked, self.tolerance, bodies)
         bends = any(choice.level in ELASTIC for choice in self.elastic)
         level = given.get("level")
         native = level == "pymunk" or (
             level is None and not bends and self.stiffness is None and not probe.stands_in
         )
-        found = search(probe, self.tolerance, native, given, self.materials, least)
+        found = search(probe, self.tolerance, native, given, self.materials, least, budget)
         self._probe, self._found = probe, found
         self.level, self.steps, self.sweeps, self.penetration = found.chosen.setting
         self.error, self.tried = found.chosen.error, found.tried
@@ -132,7 +135,16 @@ class Plan:
         self.cost_s_per_s = self._frame_cost / self.frame
         self.looked, self.planning_s = found.looked * self.frame, clock.thread_time() - started
         begin = found.begin
-        self.unpromised = unpromised(self.space, self.elastic, found.looked / frames, self.looked, begin)
+        tried = len(bodies) if found.looked else 0
+        self.unpromised = unpromised(
+            self.space, self.elastic, found.looked / frames, self.looked, begin, tried
+        )
+        sooner = float(found.sooner.max(initial=0.0))
+        if self.reachable and sooner > self.tolerance:
+            name = name_of(self.space, bodies[int(found.sooner.argmax())])
+            self.unpromised.append(
+                f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
+            )
         return self
 
     def _finer(self, found: dict[pymunk.Body, int], before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import math
 import pickle
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
@@ -23,13 +23,14 @@ from ..chipmunk import AreaContact, SimulationError, attach
 from ..geometry.outline import Outline
 from . import costs
 from .measures import Measured, extent_of, fastest, measure, reach_of
+from .part import join
 
 Array = NDArray[np.float64]
 
 SAMPLES = 120
 """Places are compared so often, at the most, in the time that is looked at."""
-NOTES = 12
-"""What contacts do is noted so often, and after the first sample."""
+NOTES, NOTING_S = 12, 0.005
+"""What contacts do is noted so often, and after the first sample; less often where that would take longer (s)."""
 LADDER = (2, 5, 12, 29, 70, 169)
 """Substeps of runs that become finer, Pell's numbers: a run's substeps do not fall together with another's, or the two
 would be off alike."""
@@ -63,9 +64,11 @@ class Seen(NamedTuple):
 class Original:
     """What copies of a space are made from; the space itself is only read."""
 
-    def __init__(self, space: pymunk.Space, given: Mapping[pymunk.Shape, float]) -> None:
+    def __init__(
+        self, space: pymunk.Space, given: Mapping[pymunk.Shape, float], bodies: Sequence[pymunk.Body]
+    ) -> None:
         self.space, self.given = space, dict(given)  # sagittas that the user has asked for (length)
-        self.bodies = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+        self.bodies = list(bodies)  # what is copied, beside what is static
 
     def copy(self, sagitta: float | None = None) -> tuple[pymunk.Space, list[pymunk.Body]]:
         """A space like it, awake, without callbacks; outlines that know their curve sampled to `sagitta` (fraction of
@@ -76,7 +79,8 @@ class Original:
         made.collision_slop, made.collision_bias = space.collision_slop, space.collision_bias
         made.collision_persistence = space.collision_persistence
         twins = {space.static_body: made.static_body}
-        for body in space.bodies:
+        static = [body for body in space.bodies if body.body_type == pymunk.Body.STATIC]
+        for body in [*static, *self.bodies]:
             if body.body_type == pymunk.Body.DYNAMIC:
                 twin = pymunk.Body(body.mass, body.moment)
             else:
@@ -146,7 +150,8 @@ def _moved(joint: pymunk.Constraint, twins: dict[pymunk.Body, pymunk.Body]) -> p
 
 
 class Probe:
-    """Copies of a space run at settings, each once; what they cost is counted by `costs` (s)."""
+    """Copies of a space, or of some `bodies` of it (see `part`), run at settings, each once; what they cost is counted
+    by `costs` (s)."""
 
     def __init__(
         self,
@@ -155,11 +160,13 @@ class Probe:
         frames: int,
         stiffness: float | None,
         given: Mapping[pymunk.Shape, float],
+        tolerance: float,
+        bodies: Sequence[pymunk.Body],
     ) -> None:
-        self.original = Original(space, given)
+        self.tolerance = tolerance
+        self.original = Original(space, given, bodies)
         self.bodies = self.original.bodies
         self.frame, self.frames, self.stiffness = frame, frames, stiffness
-        self.spent = 0.0
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
@@ -168,10 +175,17 @@ class Probe:
         self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
-        self.pairs = float(len(self.bodies))  # that touch, on the average
+        self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
+        self.share = (
+            float(self.free.sum()) / self.moving if self.moving else 1.0
+        )  # of what moves that is copied
+        self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
+        self.pairs = float(self.moving)  # of the space that touch, on the average
+        self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
         self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
         self._tracks: dict[tuple[Setting, float | None], Array] = {}
         self._asked: set[int] = set()
+        self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
         self.begin: float | None = (
             None  # depth after the first frame of the first run, over the smallest extent
@@ -180,28 +194,37 @@ class Probe:
     # --- cost ---
 
     def cost(self, setting: Setting) -> float:
-        """Processor time of a frame (s)."""
-        moving = int(self.free.sum())
+        """Processor time of a frame of the whole space (s)."""
         if setting.level == "pymunk":
-            return costs.native_frame(moving, self.pairs, setting.steps, setting.sweeps)
-        return costs.area_frame([(moving, self.pairs, setting.steps)], setting.sweeps, self.points)
+            return costs.native_frame(self.moving, self.pairs, setting.steps, setting.sweeps)
+        return costs.area_frame([(self.moving, self.pairs, setting.steps)], setting.sweeps, self.points)
+
+    def price(self, setting: Setting) -> float:
+        """Processor time of a run of a copy (s)."""
+        begin = costs.START_BODY_S * len(self.bodies) + costs.SAMPLE_S * min(SAMPLES, self.frames)
+        return begin + self.share * self.cost(setting) * self.frames
 
     def look(self, seconds: float, first: Setting) -> None:
         """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
-        self.frames = max(1, min(self.frames, int(seconds / (self.cost(first) + costs.SAMPLE_S))))
+        left = seconds - costs.START_BODY_S * len(self.bodies)
+        frame = self.share * self.cost(first) + costs.SAMPLE_S
+        self.frames = max(1, min(self.frames, int(left / frame)))
 
     # --- runs ---
 
     def forget(self) -> None:
         """Let go of the copies and what they did."""
         self._spaces.clear()
+        self._extents.clear()
         self._tracks.clear()
 
     def track(self, setting: Setting, sagitta: float | None = None) -> Array:
         """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
         key = setting, sagitta
         if key not in self._tracks:
-            self._tracks[key] = self.run(setting, sagitta, materials=None if self._tracks else {})[0]
+            first = not self._tracks
+            self._tracks[key], seen = self.run(setting, sagitta, materials={} if first else None)
+            self.groups = seen.groups if first else self.groups
         return self._tracks[key]
 
     def run(
@@ -213,7 +236,7 @@ class Probe:
     ) -> tuple[Array, Seen]:
         """A run, as `track` has it, where bodies have `asked` for substeps, by number; and, given `materials`, what it
         shows."""
-        self.spent += self.cost(setting) * self.frames + costs.SAMPLE_S * min(SAMPLES, self.frames)
+        self.spent += self.price(setting)
         contact: AreaContact | None = None
         if setting.level == "pymunk" or sagitta not in self._spaces:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
@@ -244,7 +267,12 @@ class Probe:
         seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
         twins = {twin: body for twin, body in zip(bodies, self.bodies)}
         made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
-        every = max(1, (len(ends) - 1) // NOTES)
+        notes = 0
+        if materials is not None:
+            note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
+            notes = max(1, min(NOTES, int(NOTING_S / note)))
+            self.spent += (notes + 1) * note
+        every = max(1, (len(ends) - 1) // max(1, notes))
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
@@ -253,12 +281,12 @@ class Probe:
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
                 states[k + 1] = read(space, names)
-                if materials is not None and (k == 0 or k % every == every - 1):
+                if notes and (k == 0 or k % every == every - 1):
                     self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
         except SimulationError:
             states[:] = math.nan
         if self._touching:
-            self.pairs = sum(self._touching) / len(self._touching)
+            self.pairs = sum(self._touching) / len(self._touching) / self.share
             self._touching.clear()
         return states[: len(states) if np.isfinite(states).all() else 0], seen
 
@@ -276,35 +304,39 @@ class Probe:
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
             rows = contact.regions
-            measure(contact, rows, h, seen.measured, materials)
+            measure(contact, rows, h, seen.measured, materials, self._extents)
             if self.begin is None:
                 self.begin = seen.measured.get("penetration", (0.0, None))[0]
             self._touching.append(len(rows))
             links += [(row["body_a"], row["body_b"]) for row in rows]
             for ends in links[-len(rows) :] if len(rows) else []:
                 seen.touched[[index[end] for end in ends if end in index]] = True
-        groups = seen.groups
         for a, b in links:
-            if a in index and b in index and groups[index[a]] != groups[index[b]]:
-                groups[groups == groups[index[b]]] = groups[index[a]]
+            if a in index and b in index:
+                join(seen.groups, index[a], index[b])
 
-    def apart(self, one: Array, fine: Array) -> Array:
-        """(bodies,) how far each is from where the finer run has it, over its way there or its smallest extent.
+    def apart(self, one: Array, fine: Array, so_far: bool = False) -> Array:
+        """(bodies,) how far each is from where the finer run has it, over its way there, the largest; so_far: over its
+        way up to then.
 
-        A turn counts as what it moves the farthest point. What only turns is
-        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
+        What does not go its smallest extent is compared over that; where no body of an island ever goes so far,
+        over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
+        motion. A turn counts as what it moves the farthest point. What only turns is compared by its spin too, root
+        mean square: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
-        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0))
-        way = np.hypot(steps[:, :, 0], steps[:, :, 1]).sum(axis=0)
-        turned = self.reach * steps[:, :, 2].sum(axis=0)
-        far = np.maximum(way, turned)
-        gone = np.hypot(off[:, :, 0], off[:, :, 1]).max(axis=0) / np.maximum(far, self.extent)
-        twisted = self.reach * off[:, :, 2].max(axis=0) / np.maximum(far, self.extent)
-        found: Array = np.maximum(gone, twisted)
+        off, steps = np.abs(one - fine), np.abs(np.diff(fine[:, :, :3], axis=0, prepend=fine[:1, :, :3]))
+        gone = np.cumsum(np.hypot(steps[:, :, 0], steps[:, :, 1]), axis=0)
+        turned = self.reach * np.cumsum(steps[:, :, 2], axis=0)
+        far = np.maximum(gone, turned)
+        scale = np.zeros(len(self.bodies))
+        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
+        least = self.extent * np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
+        most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
+        found: Array = (most / np.maximum(far if so_far else far[-1], least)).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
-        turns = (way < self.extent) & (turned > self.extent)
+        turns = (gone[-1] < self.extent) & (turned[-1] > self.extent)
         ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
         return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
 
@@ -333,7 +365,7 @@ def reference(
         setting = Setting("rigid", steps, FINE_SWEEPS, depth)
         if least is not None:
             setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))
-        if len(runs) > 1 and probe.spent + probe.cost(setting) * probe.frames > budget:
+        if len(runs) > 1 and probe.spent + probe.price(setting) > budget:
             break
         runs.append((setting, probe.track(setting, sagitta)))
         if j:

@@ -14,20 +14,23 @@ OVERLAP = 0.01
 
 
 def unpromised(
-    space: pymunk.Space, bending: Sequence[Choice], share: float, looked: float, begin: float
+    space: pymunk.Space, bending: Sequence[Choice], share: float, looked: float, begin: float, tried: int
 ) -> list[str]:
     """One sentence for each; empty where the error is of all that is there.
 
     share: of the time planned for that was tried out, `looked` (time). begin: depth after the first frame, over the
-    smallest extent.
+    smallest extent. tried: bodies that were.
     """
     out = []
+    others = sum(body.body_type != pymunk.Body.STATIC for body in space.bodies) - tried
     if share == 0.0 and space.bodies:
         out.append(
             "anything: a copy alone would cost more than trying out may; plan for more seconds, or fewer bodies"
         )
     elif share < 1.0 and space.bodies:
         out.append(f"what comes after the first {looked:.3g} s: so far it was tried out")
+    if others and tried:
+        out.append(f"what {others} bodies do, and meet: islands of {tried} others were tried out")
     if begin > OVERLAP:
         out.append(f"how bodies part that start {begin:.2g} of their size deep: by this solve's own law")
     if callbacks(space):

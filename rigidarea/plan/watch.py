@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pymunk
 
 from ..chipmunk import attached
-from .measures import Measured, fastest, measure
+from .measures import Measured, extent_of, fastest, measure
 from .promise import name_of
 
 #: A measured number so many times the predicted one has outgrown the plan: below, it is what estimates are off by.
@@ -67,6 +67,7 @@ class Watch:
     def _promise(self) -> None:
         """What the plan's own numbers are, as of now."""
         plan = self.plan
+        self._weight = _weight_energy(plan)
         seen = {name: value for name, (value, _) in plan._found.seen.measured.items()}
         promised = {
             "penetration": seen.get("penetration", plan.penetration),
@@ -137,7 +138,7 @@ class Watch:
         worst: dict[str, Measured] = {"speed": (0.0, None)}
         fastest(space, worst)
         if contact is not None:
-            measure(contact, contact.regions, plan.frame / plan.steps, worst, plan.materials)
+            measure(contact, contact.regions, plan.frame / plan.steps, worst, plan.materials, {})
         found = {
             name: (value, " and ".join(name_of(space, each) for each in where))
             if isinstance(where, tuple)
@@ -151,7 +152,7 @@ class Watch:
             kinetic = sum(
                 body.kinetic_energy for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC
             )
-            self._scale = max(self._scale, kinetic, _weight_energy(plan))
+            self._scale = max(self._scale, kinetic, self._weight)
             if self._energy is not None and self._scale > 0.0:
                 found["energy"] = max(0.0, energy - self._energy) / self._scale, "the space"
             self._energy = energy
@@ -160,11 +161,10 @@ class Watch:
 
 def _weight_energy(plan: Any) -> float:
     """What the space's bodies would get in falling by their own extent (force length)."""
-    probe = plan._probe
     weights = [
-        body.mass * extent
-        for body, extent, free in zip(probe.bodies, probe.extent, probe.free)
-        if free and math.isfinite(extent)
+        body.mass * min(map(extent_of, body.shapes), default=0.0)
+        for body in plan.space.bodies
+        if body.body_type == pymunk.Body.DYNAMIC
     ]
     return float(plan.space.gravity.length * sum(weights))
 

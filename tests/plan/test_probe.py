@@ -22,7 +22,9 @@ G = 9.81
 def test_a_copy_runs_as_the_space_does(make, setting):
     """Bit by bit, after runs at other settings too."""
     scene = make()
-    probe = Probe(space_of(scene)[0], scene.frame, scene.frames, None, {})
+    space = space_of(scene)[0]
+    moving = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+    probe = Probe(space, scene.frame, scene.frames, None, {}, 0.01, moving)
     probe.run(Setting("rigid", 7, 20, 1e-4), None)
     states, _ = probe.run(setting, None)
     settings = setting._asdict()
@@ -43,7 +45,7 @@ def test_a_copy_has_joints_filters_and_outlines():
     motor = pymunk.SimpleMotor(wheel, other, 2.0)
     motor.max_force, motor.pre_solve = 6.0, lambda *_: None
     space.add(wheel, other, shape, motor)
-    made, bodies = Original(space, {}).copy(1e-3)
+    made, bodies = Original(space, {}, space.bodies).copy(1e-3)
     (twin,), (joint,) = made.shapes, made.constraints
     assert twin.friction == 0.7 and twin.filter == shape.filter
     assert len(twin.outline.rings[0]) == len(gear.sample(1e-3 * gear.smallest_extent).rings[0])
@@ -58,7 +60,7 @@ def test_how_far_apart_two_runs_are():
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Poly.create_box(body, (3.0, 1.0)))
-    probe = Probe(space, 0.1, 4, None, {})
+    probe = Probe(space, 0.1, 4, None, {}, 0.1, space.bodies)
     fine = np.zeros((5, 1, 6))
     moved = fine.copy()
     moved[-1, 0, 1] = 0.02
@@ -68,23 +70,49 @@ def test_how_far_apart_two_runs_are():
     assert probe.apart(turned, fine) == pytest.approx([0.02 * math.hypot(1.5, 0.5)])
     fine[:, 0, 0] = moved[:, 0, 0] = np.arange(5)
     assert probe.apart(moved, fine) == pytest.approx([0.005])
+    moved[2, 0, 1] = 0.02  # sooner: over what it has gone by then
+    assert probe.apart(moved, fine) == pytest.approx([0.005])
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([0.01])
     assert probe.apart(moved[:0], fine) == [math.inf]
 
 
+def test_what_moves_little_is_off_by_its_share_of_the_motion():
+    """A block that rocks by a twentieth of its width, 2e-3 of it off: by 0.04 of its motion. Less than the tolerance of
+    the width is no motion; nor is a motion small beside one that is large in its island, but in another."""
+    space = pymunk.Space()
+    for i in range(2):
+        body = pymunk.Body(1, 1)
+        body.position = 9 * i, 0
+        space.add(body, pymunk.Circle(body, 0.5))
+    probe = Probe(space, 0.1, 4, None, {}, 0.01, space.bodies)
+    fine = np.zeros((5, 2, 6))
+    fine[:, 0, 0] = 0.0125 * np.arange(5)
+    moved = fine.copy()
+    moved[-1, 0, 0] += 2e-3
+    assert probe.apart(moved, fine) == pytest.approx([0.04, 0.0])
+    probe.tolerance = 0.06
+    assert probe.apart(moved, fine) == pytest.approx([2e-3, 0.0])
+    probe.tolerance = 0.01
+    fine[:, 1, 1] = moved[:, 1, 1] = np.arange(5)
+    assert probe.apart(moved, fine) == pytest.approx([0.04, 0.0])
+    probe.groups[1] = 0
+    assert probe.apart(moved, fine) == pytest.approx([2e-3, 0.0])
+
+
 def test_the_ladder_doubts_a_first_order_error_by_what_it_is():
-    """Runs that are off by c h: the doubt of the last is c h, whatever c."""
+    """Runs that go 1 and are off by c h: the doubt of the last is c h, whatever c."""
 
     class Known(Probe):
         def track(self, setting, sagitta=None):
             off = np.zeros((2, 1, 6))
-            off[1, 0, 0] = 0.3 / setting.steps
+            off[1, 0, 0] = 1.0 + 0.3 / setting.steps
             self.spent += 1.0
             return off
 
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Circle(body, 0.5))
-    probe = Known(space, 0.1, 1, None, {})
+    probe = Known(space, 0.1, 1, None, {}, 1e-6, space.bodies)
     fine, rungs = reference(probe, 1e-6, None, 3.5, None)
     assert fine.setting.steps == LADDER[3] and len(rungs) == 4  # as far as the budget goes
     assert fine.doubt == pytest.approx(
@@ -100,10 +128,12 @@ def test_what_is_planned_is_off_by_what_it_says(tolerance):
     scene = box_dropped_askew()
     made = ra.plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
     made.apply()
-    fine = Probe(space_of(scene)[0], scene.frame, scene.frames, None, {})
-    best = fine.run(Setting("rigid", 301, 20, 1e-8), None)[0]
+    space = space_of(scene)[0]
+    moving = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+    fine = Probe(space, scene.frame, scene.frames, None, {}, tolerance, moving)
+    best = fine.track(Setting("rigid", 301, 20, 1e-8))
     chosen = Setting(made.level, made.steps, made.sweeps, made.penetration)
-    error = float(fine.apart(fine.run(chosen, None)[0], best).max())
+    error = float(fine.apart(fine.track(chosen), best).max())
     assert made.reachable and error <= made.error <= tolerance
 
 
@@ -120,6 +150,25 @@ def test_what_is_tried_out_costs_no_more_than_said():
     assert 0.0 < made.looked < 60.0 and not ra.attached(space)
     run = made.cost_s_per_s * 60.0
     assert made._probe.spent <= 2.0 * max(0.05 * run, 0.1)  # the last run may go beyond
+
+
+def test_of_a_large_space_islands_are_tried_out():
+    """Fifty stacks of twenty: some whole stacks; one pile of as many: nothing, and the plan says so."""
+    for apart, tried in ((1.2, True), (1.0, False)):
+        space = pymunk.Space()
+        space.gravity = 0, -G
+        space.add(pymunk.Segment(space.static_body, (-9, 0), (90, 0), 0))
+        for i in range(1000):
+            body = pymunk.Body(1, 1 / 6)
+            body.position = apart * (i % 50), 0.5 + i // 50
+            space.add(body, pymunk.Poly.create_box(body, (1, 1)))
+        made = ra.plan(space, 0.01)
+        columns = {round(body.position.x, 3) for body in made._probe.bodies}
+        assert len(made._probe.bodies) == 20 * len(columns) and bool(columns) == tried == bool(made.tried)
+        told = f"what {1000 - 20 * len(columns)} bodies do" if tried else "anything"
+        assert any(reason.startswith(told) for reason in made.unpromised)
+        most = max(0.05 * made.cost_s_per_s * made.seconds, 0.1)
+        assert made._probe.spent <= 1.1 * most  # the run of what is chosen comes on top
 
 
 def test_what_is_finer_is_no_worse_a_promise():
