@@ -214,7 +214,8 @@ class Program:
         try:
             made = way(space)
         except KeyboardInterrupt:
-            print(TORN, file=sys.stderr, flush=True)
+            if attached(space) is None:  # else it may be ours
+                print(TORN, file=sys.stderr, flush=True)
             raise
         self.spaces = [*self.spaces[-3:], made]
 
@@ -385,7 +386,7 @@ def _limit() -> None:
     signal.setitimer(signal.ITIMER_PROF, LONGEST)
 
 
-#: Said where an interrupt has come while pymunk copied a space.
+#: Said where an interrupt has come while pymunk copied a space that is not attached.
 TORN = "a copy was interrupted"
 
 
@@ -393,9 +394,9 @@ def of_pymunk(text: str) -> bool:
     """Whether an interrupt came within pymunk's own: at random times it does not come there again in a native run.
 
     While it frees a space: shapes and joints point into freed memory from then on. While it adds what callbacks have
-    given it: it will add the same again after each step. While it copies a space: it frees the half-made one and takes
-    its bodies out of it afterwards, a write into freed memory that ends the program at some later time (valgrind shows
-    it without area contact).
+    given it: it will add the same again after each step. While it copies a space that is
+    not attached: it frees the half-made one and takes its bodies out of it afterwards, a write into freed memory that
+    ends the program at some later time (valgrind shows it without area contact).
     """
     freeing = "cffi callback <function ext_cpSpace" in text and "IteratorFunc" in text
     torn = TORN in text and " ended with -" in text
