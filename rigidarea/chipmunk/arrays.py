@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from pymunk._chipmunk_cffi import ffi
 
+from ..contact.active import ISLAND, QUEUED
 from ..contact.dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
 from ..contact.joint import JOINT
 from ..contact.preconditioner import FACTOR, MOBILITY
@@ -90,6 +91,9 @@ class Store:
             np.zeros(0, ROW),
             np.zeros(0, FACTOR),
             np.zeros(bodies, MOBILITY),
+            np.zeros(bodies, ISLAND),
+            np.zeros(0, QUEUED),
+            np.zeros(bodies, np.int32),
             np.zeros(bodies, np.int32),
             np.zeros(bodies, np.int32),
             np.zeros(shapes, np.int32),
@@ -222,8 +226,8 @@ class Store:
     def renew_rows(self) -> None:
         """A row for every region and every joint: no frame remembers them."""
         size = len(self.tables.regions) + len(self.tables.joints)
-        rows = np.zeros(size, ROW)
-        self.tables = self.tables._replace(rows=rows, factors=np.zeros(size, FACTOR))
+        rows, factors, queue = np.zeros(size, ROW), np.zeros(size, FACTOR), np.zeros(size, QUEUED)
+        self.tables = self.tables._replace(rows=rows, factors=factors, queue=queue)
 
     def grow_joints(self, n: int) -> None:
         """Room for n joints."""
@@ -246,7 +250,8 @@ class Store:
     def grow_bodies(self, n: int) -> None:
         """Room for n bodies."""
         grown = {name: longer(getattr(self.tables, name), n) for name in ("bodies", "live", "awake")}
-        self.tables = self.tables._replace(**grown, mobility=np.zeros(n, MOBILITY))
+        mobility, islands, members = np.zeros(n, MOBILITY), np.zeros(n, ISLAND), np.zeros(n, np.int32)
+        self.tables = self.tables._replace(**grown, mobility=mobility, islands=islands, members=members)
         used, keys, rows = self.body_keys != 0, self.body_keys, self.body_rows
         self.body_keys, self.body_rows = (
             np.zeros(power_above(2 * n), np.uint64),

@@ -5,9 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from ..contact.active import form_islands, rest_settled, rest_small
 from ..contact.blows import blows, bound_bounces
-from ..contact.conjugate import conjugate_gradients, conjugate_gradients_of_joints
-from ..contact.constants import GAINED, MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
+from ..contact.conjugate import conjugate_gradients, search_all
+from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.islands import note, share_kicks
 from ..contact.join import any_pair_touches, gather, has_room, join, no_pair_comes_near
 from ..contact.joint import free_turning, geometric_stiffness
@@ -15,19 +16,17 @@ from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
 from ..contact.solve import (
     clamp_warm_start,
-    common,
     drift,
     finish,
     fly,
     held_back,
     kick,
     kinetic,
-    pace,
     sweep,
     warm_start,
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
-from ..contact.tables import BOUNCES, ROWS, SUBSTEP, UNSORTED, Tables
+from ..contact.tables import BOUNCES, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
 from .joints import ask_springs, own_joints
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
 from .record import floats, look_at_partners
@@ -77,53 +76,50 @@ def _join(s: Any, tables: Tables, h: float, first: bool) -> int:
 def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was room for it.
 
-    They go on while the last sweep has moved much, or contacts have added energy, which they never do.
+    They go on in islands where the last sweep has moved much, or contacts have added energy, which they never do.
     """
     # before the warm start: what that adds is no speed at which anybody comes
     if _join(s, tables, h, True) < 0:
         return False
     if tables.counters[ROWS] == 0:
         return True  # nothing that could change a velocity
-    mass, x, y = common(tables)
-    energy = kinetic(tables, x, y)
-    came = kinetic(tables, 0.0, 0.0) if tables.counters[BOUNCES] > 0 else 0.0
-    small = pace(load_law(s), mass, energy, h)
+    law = load_law(s)
+    came = kinetic(tables) if tables.counters[BOUNCES] > 0 else 0.0
+    form_islands(tables, law, h, 0)
     warm_start(tables)
     if jointed:
         clamp_warm_start(tables, h)
-    enough = mass * (SETTLED * small) ** 2
     searches = whole // SEARCH_SWEEPS
     sweeps = max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
-        moved = 0.0
         known = True  # which rows bear: those that have joined since the search are not among them
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
                 joined = _join(s, tables, h, False)
                 if joined < 0:
                     return False
+                if joined > 0:
+                    form_islands(tables, law, h, tables.counters[ROWS] - joined)
                 wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
                 known = joined == 0
-            moved = sweep(tables, k % 2 == 0)
-            if k > 0 and moved <= SETTLED * small:
+            if k > 0 and tables.counters[QUEUE] == 0:
                 break
+            sweep(tables, k % 2 == 0)
+            rest_settled(tables, k + 1, whole, SETTLED)
             if k == 0:
-                if jointed:
-                    conjugate_gradients_of_joints(tables, SEARCH_STEPS, enough)
-                else:
-                    conjugate_gradients(tables, min(1, searches), False)
-                if moved > small and blows(tables, load_law(s), h):
+                search_all(tables, False)
+                conjugate_gradients(tables, SEARCH_STEPS if jointed else min(1, searches), jointed)
+                if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
                 known = True
             elif k == 1 and not jointed:
-                conjugate_gradients(tables, searches - 1, known)
-        if moved <= SETTLED * small:
-            break
-        gained = not jointed and kinetic(tables, x, y) > GAINED * energy + held_back(tables, h)
-        if not gained and moved <= small:
+                search_all(tables, known)
+                conjugate_gradients(tables, searches - 1, False)
+        rest_small(tables, h, jointed)
+        if tables.counters[QUEUE] == 0:
             break
     if tables.counters[BOUNCES] > 0 and not jointed:
         bound_bounces(tables, came + held_back(tables, h))
@@ -139,13 +135,12 @@ def _relaxing(sweeps: int) -> int:
 @kernel
 def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
     """Bodies are moved by what takes overlaps apart, and go on without that speed."""
-    if not begin_to_relax(tables):
+    if not begin_to_relax(tables, load_law(s), h):
         return
-    mass, x, y = common(tables)
-    small = pace(load_law(s), mass, kinetic(tables, x, y), h)
     for k in range(whole):
-        moved = sweep(tables, k % 2 == 0)
-        if moved <= small and (k + 1 >= _relaxing(whole) or moved <= SETTLED * small):
+        sweep(tables, k % 2 == 0)
+        rest_settled(tables, k + 2, _relaxing(whole) + 1, 1.0)  # the last sweep before was of the same bodies
+        if tables.counters[QUEUE] == 0:
             break
     end_relaxing(tables, h)
 

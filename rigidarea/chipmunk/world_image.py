@@ -33,9 +33,13 @@ from .structs import LayoutError, address_of
 #: Bytes of Chipmunk's structs that are copied.
 SPACE_BYTES, BODY_BYTES, SHAPE_BYTES = 200, 248, 192
 #: Arrays of the state record that no frame remembers: a thread's.
+_OF_ROWS, _OF_BODIES = ("rows", "factors", "queue"), ("mobility", "islands", "members")
 _SCRATCH = (
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("rows", "factors", "mobility", "kept", "seen"),
+    *_OF_ROWS,
+    *_OF_BODIES,
+    "kept",
+    "seen",
 )
 #: Arrays of a world's own that grow with pairs and regions, and those whose size is known.
 GROWING = ("pairs", "regions", "near", "told", "table")
@@ -87,8 +91,8 @@ class Image:
         lengths, kinds = self.lengths, self.kinds
         rows = lengths["regions"] + lengths["joints"]
         arrays = {name: np.zeros_like(array) for name, array in self.work._asdict().items()}
-        arrays |= {"rows": np.zeros(rows, kinds["rows"]), "factors": np.zeros(rows, kinds["factors"])}
-        arrays |= {"mobility": np.zeros(lengths["bodies"], kinds["mobility"])}
+        arrays |= {name: np.zeros(rows, kinds[name]) for name in _OF_ROWS}
+        arrays |= {name: np.zeros(lengths["bodies"], kinds[name]) for name in _OF_BODIES}
         room = room_to_keep({name: n * kinds[name].itemsize for name, n in lengths.items()})
         arrays |= {"kept": np.zeros(room, np.uint8), "seen": np.zeros((lengths["bodies"], 3))}
         words = [len(_SCRATCH) * 2]
@@ -242,7 +246,7 @@ def image_of(store: Store, space: pymunk.Space, rows: tuple[int, int, int] = (0,
     place_of = np.full(lengths["bodies"], -1, np.int32)
     for i, address in enumerate(own):
         place_of[store.row_of(address)] = i
-    kinds |= {name: getattr(tables, name).dtype for name in ("rows", "factors", "mobility")}
+    kinds |= {name: getattr(tables, name).dtype for name in (*_OF_ROWS, *_OF_BODIES)}
     made_of = [kind_of(joint) for joint in joints]
     made = Image(
         family=store,

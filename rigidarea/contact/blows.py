@@ -15,7 +15,7 @@ from .constants import REST_KICKS
 from .region import closing
 from .row import push
 from .solve import kinetic
-from .tables import FIXED, NEARING, REST, ROWS, Law, Tables
+from .tables import FIXED, ISLANDS, NEARING, QUEUE, REST, ROWS, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -37,28 +37,44 @@ def _struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> boo
 
 @kernel
 def blows(tables: Tables, law: Law, h: float) -> bool:
-    """Whether a blow goes on through what lies at rest: there it is no bed any more.
+    """Whether a blow goes on through what lies at rest: there it is no bed any more, and its island is to be searched.
 
-    Not of what hangs in a joint, or a kinematic body hits: those press on, and something has to give way.
+    Only where the last sweep has moved more than is small. Not of what hangs in a joint, or a kinematic body hits: those
+    press on, and something has to give way.
     """
     rows = tables.rows
-    for i in range(tables.counters[ROWS]):
+    hit = False
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.searching = 0
+        hit |= island.active and island.moved > island.small
+    if not hit:
+        return False
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         a = tables.bodies[rows[i].a]
         b = tables.bodies[rows[i].b]
         a.free = a.calm >= 0
         b.free = b.calm >= 0
-    for i in range(tables.counters[ROWS]):
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         a = tables.bodies[rows[i].a]
         b = tables.bodies[rows[i].b]
         if drives(a) or drives(b):
             a.free = 0
             b.free = 0
     struck = False
-    for i in range(tables.counters[ROWS]):
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
+        island = tables.islands[tables.queue[k].island]
+        if island.moved <= island.small or rows[i].ends == 0:
+            continue
         a = tables.bodies[rows[i].a]
         b = tables.bodies[rows[i].b]
-        if rows[i].ends > 0 and (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
-            struck |= _struck_at_rest(rows[i], tables.regions[rows[i].region], law, a, b, h)
+        if (a.free or a.kind == FIXED) and (b.free or b.kind == FIXED):
+            if _struck_at_rest(rows[i], tables.regions[rows[i].region], law, a, b, h):
+                island.searching = 1
+                struck = True
     return struck
 
 
@@ -94,14 +110,14 @@ def bound_bounces(tables: Tables, most: float) -> None:
     dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), and so has a solve that has not converged. Of
     the impulses' part s energy is a square, known by three of its values.
     """
-    whole = kinetic(tables, 0.0, 0.0)
+    whole = kinetic(tables)
     if whole <= most or _push_bounces(tables, -1.0) > 1.0:
         if whole > most:
             _push_bounces(tables, 1.0)
         return
-    none = kinetic(tables, 0.0, 0.0)
+    none = kinetic(tables)
     _push_bounces(tables, 0.5)
-    half = kinetic(tables, 0.0, 0.0)
+    half = kinetic(tables)
     square = 2.0 * (whole + none) - 4.0 * half
     slope = whole - none - square
     s = 1.0

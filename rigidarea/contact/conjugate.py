@@ -11,7 +11,7 @@ In a pile, where supports are shared, it is the preconditioner of conjugate grad
 
 The system is that of the rows that bear: a face on both ends, a point that presses, friction that grips. An end that
 the step would pull on is let go, and the search begins anew; what ought to press again is found by the sweeps before
-and after.
+and after. Each island (`active`) is searched by itself, all of them side by side: a step's length is the island's.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from .constants import SETTLED
 from .joint import clamp_joint
 from .preconditioner import take_part
 from .row import push
-from .tables import LIVE, ROWS, Tables
+from .tables import ISLANDS, MEMBERS, QUEUE, Tables
 
 
 @kernel
 def _forget(tables: Tables) -> None:
     """No velocities, no impulses."""
-    for k in range(tables.counters[LIVE]):
-        i = tables.live[k]
-        m = tables.mobility[i]
+    for k in range(tables.counters[MEMBERS]):
+        m = tables.mobility[tables.members[k]]
         m.x = 0.0
         m.y = 0.0
         m.w = 0.0
@@ -55,13 +55,19 @@ def _residual(row: Any, f: Any, a: Any, b: Any) -> None:
     f.rt = f.et * (row.ft - row.lt) + slip - row.tt
 
 
+@kernel(forceinline=True)
+def _bears(f: Any) -> bool:
+    return bool(f.first or f.second or f.grip)
+
+
 @kernel
 def _up(tables: Tables) -> None:
     """Residuals, and the pass in the order of the rows."""
     _forget(tables)
-    for i in range(tables.counters[ROWS]):
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         f = tables.factors[i]
-        if not (f.first or f.second or f.grip):
+        if not tables.islands[tables.queue[k].island].searching or not _bears(f):
             continue
         row = tables.rows[i]
         _residual(row, f, tables.bodies[row.a], tables.bodies[row.b])
@@ -99,16 +105,17 @@ def _up(tables: Tables) -> None:
 
 
 @kernel
-def _down(tables: Tables) -> float:
-    """The pass back; the residual times the direction, which is what the next step's length is judged by."""
+def _down(tables: Tables) -> None:
+    """The pass back; `product`: residual times direction, by which the next step's length is judged."""
     _forget(tables)
-    total = 0.0
-    n = tables.counters[ROWS]
+    n = tables.counters[QUEUE]
     for k in range(n):
-        f = tables.factors[n - 1 - k]
-        if not (f.first or f.second or f.grip):
+        i = tables.queue[n - 1 - k].row
+        f = tables.factors[i]
+        island = tables.islands[tables.queue[n - 1 - k].island]
+        if not island.searching or not _bears(f):
             continue
-        row = tables.rows[n - 1 - k]
+        row = tables.rows[i]
         ma = tables.mobility[row.a]
         mb = tables.mobility[row.b]
         g1 = f.ax1 * ma.x + f.ay1 * ma.y + f.aw1 * ma.w - (f.bx1 * mb.x + f.by1 * mb.y + f.bw1 * mb.w)
@@ -120,110 +127,159 @@ def _down(tables: Tables) -> float:
             f.zt -= f.d2t * g2
         f.z1 -= f.d11 * g1 + f.d1t * gt
         f.zt -= f.d1t * g1 + f.dtt * gt
-        total += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
+        island.product += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
         _give(row, f, ma, mb)
-    return total
 
 
 @kernel
-def descend(tables: Tables, before: float, enough: float) -> float:
-    """One step of the search, after `take_part`: what to say `before` in the next; 0 where it must begin anew.
-
-    Nothing is done where no more than `enough` is left.
-    """
-    _up(tables)
-    product = _down(tables)
-    if not product > enough:
-        return 0.0
-    beta = product / before if before > 0.0 else 0.0
-    curvature = 0.0
-    for k in range(tables.counters[LIVE]):
-        i = tables.live[k]
+def _aim(tables: Tables) -> None:
+    """The direction of the search, conjugate to the one before; `part`: how far along it is best, 0: nowhere."""
+    for k in range(tables.counters[MEMBERS]):
+        i = tables.members[k]
         body = tables.bodies[i]
         m = tables.mobility[i]
+        if m.island < 0 or not tables.islands[m.island].searching:
+            continue
+        island = tables.islands[m.island]
+        beta = island.part
         m.ux = m.x + (beta * m.ux if beta > 0.0 else 0.0)
         m.uy = m.y + (beta * m.uy if beta > 0.0 else 0.0)
         m.uw = m.w + (beta * m.uw if beta > 0.0 else 0.0)
-        curvature += body.inverse_mass * (m.ux * m.ux + m.uy * m.uy) + body.inverse_moment * m.uw * m.uw
-    ahead = 0.0  # of the whole direction: a clamp before has left some of the old one
-    for i in range(tables.counters[ROWS]):
-        f = tables.factors[i]
-        if f.first or f.second or f.grip:
+        island.curvature += _inertia(body, m.ux, m.uy, m.uw)
+    for k in range(tables.counters[QUEUE]):
+        f = tables.factors[tables.queue[k].row]
+        island = tables.islands[tables.queue[k].island]
+        if island.searching and _bears(f):
+            beta = island.part
             f.p1 = f.z1 + beta * f.p1
             f.p2 = f.z2 + beta * f.p2
             f.pt = f.zt + beta * f.pt
-            ahead += f.r1 * f.p1 + f.r2 * f.p2 + f.rt * f.pt
-            curvature += (
-                f.e11 * f.p1 * f.p1 + f.e11 * f.p2 * f.p2 + 2.0 * f.e12 * f.p1 * f.p2 + f.et * f.pt * f.pt
-            )
-    if not (ahead > 0.0 and curvature > 0.0):
+            island.ahead += (
+                f.r1 * f.p1 + f.r2 * f.p2 + f.rt * f.pt
+            )  # a clamp before has left some of the old one
+            island.curvature += _compliance(f, f.p1, f.p2, f.pt)
+
+
+@kernel(forceinline=True)
+def _inertia(body: Any, x: float, y: float, w: float) -> float:
+    return float(body.inverse_mass * (x * x + y * y) + body.inverse_moment * w * w)
+
+
+@kernel(forceinline=True)
+def _compliance(f: Any, l1: float, l2: float, lt: float) -> float:
+    return float(f.e11 * l1 * l1 + f.e11 * l2 * l2 + 2.0 * f.e12 * l1 * l2 + f.et * lt * lt)
+
+
+@kernel(forceinline=True)
+def _length(island: Any) -> float:
+    """How far along a direction the least is left to solve; 0: nowhere."""
+    if not (island.ahead > 0.0 and island.curvature > 0.0):
         return 0.0
-    if _clamp(tables, ahead / curvature):
-        _go(tables, 1.0)
-        return product
-    _go(tables, _best(tables))
-    return 0.0
+    return float(island.ahead / island.curvature)
 
 
 @kernel
-def _clamp(tables: Tables, length: float) -> bool:
-    """The step so far in the direction of the search, no end pulling, no friction beyond its bound; whether none was.
+def _descend(tables: Tables, small: float) -> bool:
+    """One step of the search, after `take_part`, for all islands that are searched; whether there are any still.
+
+    An island is left alone where no more is left to solve than its mass times the square of so small a part of `small`.
+    """
+    counters = tables.counters
+    for k in range(counters[ISLANDS]):
+        tables.islands[k].product = 0.0
+    _up(tables)
+    _down(tables)
+    left = False
+    for k in range(counters[ISLANDS]):
+        island = tables.islands[k]
+        enough = small * island.small
+        island.searching = island.searching and island.product > island.mass * enough * enough
+        island.part = island.product / island.before if island.before > 0.0 else 0.0
+        island.ahead = 0.0
+        island.curvature = 0.0
+        left |= island.searching
+    if not left:
+        return False
+    _aim(tables)
+    for k in range(counters[ISLANDS]):
+        island = tables.islands[k]
+        island.part = _length(island) if island.searching else 0.0
+        island.whole = 1
+    cut = _clamp(tables)
+    if cut:
+        _best(tables)
+    for k in range(counters[ISLANDS]):
+        island = tables.islands[k]
+        going = island.part > 0.0
+        island.before = island.product if going and island.whole else 0.0
+        if going:
+            island.part = 1.0 if island.whole else min(1.0, _length(island))
+    return True
+
+
+@kernel
+def _clamp(tables: Tables) -> bool:
+    """The step so far in the direction of the search, no end pulling, no friction beyond its bound; whether any was.
 
     What may be done is convex, so that any part of the step may be.
     """
-    whole = True
-    for i in range(tables.counters[ROWS]):
+    cut = False
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         f = tables.factors[i]
-        if not (f.first or f.second or f.grip):
+        island = tables.islands[tables.queue[k].island]
+        if not island.searching or not _bears(f):
             continue
         row = tables.rows[i]
-        l1 = row.l1 + length * f.p1
-        l2 = row.l2 + length * f.p2
-        lt = row.lt + length * f.pt
+        whole = True
+        l1 = row.l1 + island.part * f.p1
+        l2 = row.l2 + island.part * f.p2
+        lt = row.lt + island.part * f.pt
         if row.ends == 0:
             f.z1, f.zt = clamp_joint(row, l1, lt)
-            whole = whole and f.z1 == l1 and f.zt == lt
+            whole = f.z1 == l1 and f.zt == lt
             f.z1 -= row.l1
             f.z2 = 0.0
             f.zt -= row.lt
-            continue
-        if l1 < 0.0 or l2 < 0.0:
-            whole = False
-            l1 = max(0.0, l1)
-            l2 = max(0.0, l2)
-        most = row.friction * (l1 + l2)
-        if abs(lt) > most:
-            whole = False
-            lt = min(most, max(-most, lt))
-        f.z1 = l1 - row.l1
-        f.z2 = l2 - row.l2
-        f.zt = lt - row.lt
-    return whole
+        else:
+            if l1 < 0.0 or l2 < 0.0:
+                whole = False
+                l1 = max(0.0, l1)
+                l2 = max(0.0, l2)
+            most = row.friction * (l1 + l2)
+            if abs(lt) > most:
+                whole = False
+                lt = min(most, max(-most, lt))
+            f.z1 = l1 - row.l1
+            f.z2 = l2 - row.l2
+            f.zt = lt - row.lt
+        if not whole:
+            island.whole = 0
+            cut = True
+    return cut
 
 
 @kernel
-def _best(tables: Tables) -> float:
-    """How much of a step that was cut short leaves the least to solve; 0: all of it would add."""
+def _best(tables: Tables) -> None:
+    """How much of a step that was cut short leaves the least to solve (`part`); 0: all of it would add."""
     _forget(tables)
-    gain = 0.0
-    curvature = 0.0
-    for i in range(tables.counters[ROWS]):
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].ahead = 0.0
+        tables.islands[k].curvature = 0.0
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         f = tables.factors[i]
-        if f.first or f.second or f.grip:
+        island = tables.islands[tables.queue[k].island]
+        if island.searching and not island.whole and _bears(f):
             row = tables.rows[i]
-            gain += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
-            curvature += (
-                f.e11 * f.z1 * f.z1 + f.e11 * f.z2 * f.z2 + 2.0 * f.e12 * f.z1 * f.z2 + f.et * f.zt * f.zt
-            )
+            island.ahead += f.r1 * f.z1 + f.r2 * f.z2 + f.rt * f.zt
+            island.curvature += _compliance(f, f.z1, f.z2, f.zt)
             _give(row, f, tables.mobility[row.a], tables.mobility[row.b])
-    for k in range(tables.counters[LIVE]):
-        i = tables.live[k]
-        body = tables.bodies[i]
+    for k in range(tables.counters[MEMBERS]):
+        i = tables.members[k]
         m = tables.mobility[i]
-        curvature += body.inverse_mass * (m.x * m.x + m.y * m.y) + body.inverse_moment * m.w * m.w
-    if not (gain > 0.0 and curvature > 0.0):
-        return 0.0
-    return min(1.0, gain / curvature)
+        if m.island >= 0:
+            tables.islands[m.island].curvature += _inertia(tables.bodies[i], m.x, m.y, m.w)
 
 
 @kernel(forceinline=True)
@@ -242,13 +298,13 @@ def _give(row: Any, f: Any, a: Any, b: Any) -> None:
 
 
 @kernel
-def _go(tables: Tables, part: float) -> None:
-    """Take so much of the step."""
-    if part == 0.0:
-        return
-    for i in range(tables.counters[ROWS]):
+def _go(tables: Tables) -> None:
+    """Take `part` of the step."""
+    for k in range(tables.counters[QUEUE]):
+        i = tables.queue[k].row
         f = tables.factors[i]
-        if f.first or f.second or f.grip:
+        part = tables.islands[tables.queue[k].island].part
+        if part > 0.0 and _bears(f):
             row = tables.rows[i]
             d1 = part * f.z1
             d2 = part * f.z2
@@ -260,27 +316,32 @@ def _go(tables: Tables, part: float) -> None:
 
 
 @kernel
-def conjugate_gradients(tables: Tables, steps: int, known: bool) -> None:
-    """So many steps for all rows that bear; `known`: those that did in the search before."""
-    if tables.counters[ROWS] == 0:
-        return
-    before = 0.0
-    for _ in range(steps):
-        if before == 0.0 and not known:
-            take_part(tables)
-        known = False
-        before = descend(tables, before, 0.0)
+def search_all(tables: Tables, known: bool) -> None:
+    """Every island that is active takes part in the next search; `known`: with the rows that bore in the last one."""
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.searching = island.active
+        island.known = known
 
 
 @kernel
-def conjugate_gradients_of_joints(tables: Tables, steps: int, enough: float) -> None:
-    """As many steps for all rows that bear, joints among them, until no more than `enough` is left to solve.
+def conjugate_gradients(tables: Tables, steps: int, jointed: bool) -> None:
+    """So many steps for all rows that bear, of the islands that are to be searched.
 
-    A step that is cut short ends it: other rows bear from there on. enough: mass times the square of a speed.
+    jointed: none after a step that is cut short, since other rows bear from there on, nor once what is left is as small
+    as what sweeps leave.
     """
-    take_part(tables)
-    before = 0.0
+    if tables.counters[QUEUE] == 0:
+        return
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].before = 0.0
     for _ in range(steps):
-        before = descend(tables, before, enough)
-        if before == 0.0:
+        take_part(tables)
+        if not _descend(tables, SETTLED if jointed else 0.0):
             return
+        _go(tables)
+        for k in range(tables.counters[ISLANDS]):
+            island = tables.islands[k]
+            island.known = 0
+            if jointed and island.before == 0.0:
+                island.searching = 0

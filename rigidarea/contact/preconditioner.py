@@ -11,7 +11,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
-from .tables import LIVE, ROWS, Tables
+from .tables import MEMBERS, QUEUE, Tables
 
 #: What one row takes part with: unknowns are end 1, end 2, friction.
 FACTOR = record(
@@ -57,7 +57,10 @@ MOBILITY = record(
         ("vx", "f8"),  # its velocity before contacts are relaxed
         ("vy", "f8"),
         ("vw", "f8"),
-        ("moved", "i8"),  # 1: by what relaxing has taken from it
+        ("moved", "i4"),  # 1: by what relaxing has taken from it
+        ("root", "i4"),  # of its island of rows (`active`): a body that stands for it; its number, -1: none
+        ("island", "i4"),
+        ("solved", "i4"),  # 1: that is solved
     ]
 )
 
@@ -69,13 +72,21 @@ LEAST_GIVE = 1e-6
 AT_ITS_BOUND = 1e-9
 
 
+@kernel(forceinline=True)
+def begins_anew(island: Any) -> bool:
+    """Whether an island's rows that bear are to be found before its search goes on."""
+    return bool(island.searching and island.before == 0.0 and not island.known)
+
+
 @kernel
 def _free(tables: Tables) -> None:
-    """Every body as mobile as it is alone."""
-    for k in range(tables.counters[LIVE]):
-        i = tables.live[k]
+    """Every body of an island that begins anew as mobile as it is alone."""
+    for k in range(tables.counters[MEMBERS]):
+        i = tables.members[k]
         body = tables.bodies[i]
         m = tables.mobility[i]
+        if m.island >= 0 and not begins_anew(tables.islands[m.island]):
+            continue
         m.mxx = body.inverse_mass
         m.mxy = 0.0
         m.myy = body.inverse_mass
@@ -193,9 +204,12 @@ def _invert(
 
 @kernel
 def take_part(tables: Tables) -> None:
-    """Which rows bear, and what each finds its bodies like, and leaves them."""
+    """Which rows of islands that begin anew bear, and what each finds its bodies like, and leaves them."""
     _free(tables)
-    for i in range(tables.counters[ROWS]):
+    for k in range(tables.counters[QUEUE]):
+        if not begins_anew(tables.islands[tables.queue[k].island]):
+            continue
+        i = tables.queue[k].row
         row = tables.rows[i]
         f = tables.factors[i]
         if not _bears(row, f):

@@ -15,17 +15,27 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.place import place
+from .active import island_of, list_active, measure
 from .constants import HIT
-from .tables import DRIFTS, LIVE, ROWS, Tables
+from .tables import DRIFTS, ISLANDS, LIVE, ROWS, Law, Tables
 
 
 @kernel
-def begin_to_relax(tables: Tables) -> bool:
-    """Make rows rigid, and take down what velocities are with them as they were; whether any of them bears."""
+def begin_to_relax(tables: Tables, law: Law, h: float) -> bool:
+    """Make rows rigid, and take down what velocities are with them as they were; whether any of them bears.
+
+    Islands in which one does are active.
+    """
     bears = False
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].active = 0
     for i in range(tables.counters[ROWS]):
-        bears |= _stiffen(tables.rows[i])
+        if _stiffen(tables.rows[i]):
+            tables.islands[island_of(tables, tables.rows[i])].active = 1
+            bears = True
     if bears:
+        list_active(tables)
+        measure(tables, law, h, False)
         for k in range(tables.counters[LIVE]):
             i = tables.live[k]
             body = tables.bodies[i]

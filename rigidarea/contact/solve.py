@@ -13,10 +13,10 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.arc import distance2
 from ..geometry.place import place, shift
-from .constants import HIT, LEFT, MOVED, ROUNDING
+from .constants import HIT, ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
-from .tables import AWAKE, DRIFTS, FIXED, LIVE, ROWS, Law, Tables
+from .tables import AWAKE, DRIFTS, FIXED, ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
 
 
 @kernel
@@ -123,52 +123,34 @@ def clamp_warm_start(tables: Tables, h: float) -> None:
 
 
 @kernel
-def sweep(tables: Tables, up: bool) -> float:
-    """Visit every row once, from the bottom to the top or back (Gauss-Seidel, symmetric over two sweeps).
+def sweep(tables: Tables, up: bool) -> None:
+    """Visit every row that is being solved once, from the bottom to the top or back (Gauss-Seidel, symmetric over two).
 
-    Returns the largest change of a contact's speed (length/time).
+    Leaves with each island the largest change of a contact's speed (`moved`).
     """
-    n = tables.counters[ROWS]
-    most = 0.0
-    for i in range(n):
-        row = tables.rows[i if up else n - 1 - i]
-        most = max(most, visit(row, tables.bodies[row.a], tables.bodies[row.b]))
-    return most
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].moved = 0.0
+    n = tables.counters[QUEUE]
+    for k in range(n):
+        queued = tables.queue[k if up else n - 1 - k]
+        row = tables.rows[queued.row]
+        moved = visit(row, tables.bodies[row.a], tables.bodies[row.b])
+        island = tables.islands[queued.island]
+        if moved > island.moved:
+            island.moved = moved
 
 
 @kernel
-def common(tables: Tables) -> tuple[float, float, float]:
-    """Mass of all that contacts may move, and its centre's velocity: what is the same for all is nobody's speed."""
-    mass = 0.0
-    x = 0.0
-    y = 0.0
-    for k in range(tables.counters[LIVE]):
-        body = tables.bodies[tables.live[k]]
-        if body.inverse_mass > 0.0:
-            own = 1.0 / body.inverse_mass
-            mass += own
-            x += own * body.vx
-            y += own * body.vy
-    return (mass, x / mass, y / mass) if mass > 0.0 else (0.0, 0.0, 0.0)
-
-
-@kernel
-def kinetic(tables: Tables, x: float, y: float) -> float:
-    """Kinetic energy of all that contacts may move, for one who goes at (x, y)."""
+def kinetic(tables: Tables) -> float:
+    """Kinetic energy of all that contacts may move."""
     total = 0.0
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         if body.inverse_mass > 0.0:
-            total += 0.5 * distance2(body.vx, body.vy, x, y) / body.inverse_mass
+            total += 0.5 * distance2(body.vx, body.vy, 0.0, 0.0) / body.inverse_mass
         if body.inverse_moment > 0.0:
             total += 0.5 * body.w * body.w / body.inverse_moment
     return total
-
-
-@kernel
-def pace(law: Law, mass: float, energy: float, h: float) -> float:
-    """The change of speed in a sweep that is small beside what pushes gives in a substep, and the bodies' speed."""
-    return LEFT * law.gravity * h + MOVED * math.sqrt(2.0 * energy / mass) if mass > 0.0 else 0.0
 
 
 @kernel

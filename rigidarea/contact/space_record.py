@@ -16,6 +16,7 @@ from ..compile.raw_memory import array_at, record
 from ..geometry.overlap import LOOP, Work
 from ..geometry.place import Pose, overlap_of_outlines
 from ..geometry.pool import HEAD, Pool
+from .active import ISLAND, QUEUED
 from .dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
 from .joint import JOINT
 from .preconditioner import FACTOR, MOBILITY
@@ -61,7 +62,7 @@ LASTING: dict[str, tuple[Any, int]] = {
     "joints": (JOINT, JOINTS),
 }
 #: What no frame starts from: made anew in each, or from the others (`table`).
-SCRATCH = ("rows", "factors", "mobility", "told", "table")
+SCRATCH = ("rows", "factors", "mobility", "islands", "queue", "members", "told", "table")
 #: Of the state record, what outlives a frame.
 LASTING_STATE = ("before", "frame", "taken", "contacts", "asleep")
 #: What `move` does.
@@ -72,7 +73,8 @@ EXTREME = 1e30
 _ARRAYS = [
     *("points", "following", "ring_of", "rings", "boxes", "arcs", "heads"),
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
-    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility", "live", "awake"),
+    *("bodies", "shapes", "pairs", "regions", "rows", "factors", "mobility"),
+    *("islands", "queue", "members", "live", "awake"),
     *("movers", "asked", "told", "nodes", "roots", "near", "apart", "joints", "table", "counters"),
     *("slots", "body_keys", "body_rows", "heard_alone", "heard_pairs"),
     *("form_extent", "form_mirror", "form_users", "form_span", "form_raw", "form_table", "form_fill"),
@@ -339,6 +341,9 @@ def load_tables(s: Any) -> Tables:
         array_at(s.rows_at, (s.rows_n,), ROW),
         array_at(s.factors_at, (s.factors_n,), FACTOR),
         array_at(s.mobility_at, (s.mobility_n,), MOBILITY),
+        array_at(s.islands_at, (s.islands_n,), ISLAND),
+        array_at(s.queue_at, (s.queue_n,), QUEUED),
+        array_at(s.members_at, (s.members_n,), np.int32),
         array_at(s.live_at, (s.live_n,), np.int32),
         array_at(s.awake_at, (s.awake_n,), np.int32),
         array_at(s.movers_at, (s.movers_n,), np.int32),

@@ -37,7 +37,8 @@ PLACED, SPENT = 1, 2
 #: least, and 1 where the scratch is too small, or there is none for
 #: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
-#: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come.
+#: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come. Islands of
+#: rows (`active`), rows in `queue`, bodies in `members`.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, MET, TOOTHED, BOUNCES = range(12, 20)
@@ -45,7 +46,8 @@ BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CO
 JOINTS, REJOINED, GONE = range(30, 33)
 MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(33, 40)
 USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(40, 45)
-COUNTERS = 45
+ISLANDS, QUEUE, MEMBERS = range(45, 48)
+COUNTERS = 48
 
 
 class Law(NamedTuple):
@@ -72,6 +74,9 @@ class Tables(NamedTuple):
     rows: np.ndarray  # (n,) ROW
     factors: np.ndarray  # (n,) FACTOR, of the rows
     mobility: np.ndarray  # (n,) MOBILITY, of the bodies
+    islands: np.ndarray  # (n,) ISLAND: of rows (`active`)
+    queue: np.ndarray  # (n,) QUEUED: rows that are being solved, in order
+    members: np.ndarray  # (n,) int32: bodies of those islands, and what nothing moves
     live: (
         np.ndarray
     )  # (n,) int32: bodies that go through the substeps now, and what does not move and they are near

@@ -1,0 +1,260 @@
+"""Islands of rows: what is solved together, and which of it still is.
+
+Rows that share a body that contacts or joints can move are one island; what they cannot move parts islands (as Box2D's
+and Chipmunk's, but made anew in every substep from the rows that there are). Each island has a tolerance of its own,
+and is left alone once it is solved: what lies still, or rolls by itself, pays for no collapse elsewhere. Sweeps and
+searches see the rows (`Tables.queue`) and the bodies (`Tables.members`) of the islands that are active.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from ..compile.raw_memory import record
+from ..geometry.arc import distance2
+from .constants import GAINED, LEFT, MOVED, SETTLED
+from .tables import ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
+
+ISLAND = record(
+    [
+        ("active", "i1"),  # 1: it is not solved yet
+        ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
+        ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
+        ("whole", "i1"),  # 1: no bound has cut the search's step short
+        ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
+        ("mass", "f8"),
+        ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
+        ("y", "f8"),
+        ("energy", "f8"),  # kinetic, relative to that
+        ("held", "f8"),  # at least what its rows' springs hold, and could give back (energy)
+        ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
+        ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
+        (
+            "before",
+            "f8",
+        ),  # of the search: residual times direction, a step before and in this one; 0: begin anew
+        ("product", "f8"),
+        ("ahead", "f8"),
+        ("curvature", "f8"),
+        ("part", "f8"),
+    ]
+)
+
+
+#: A row that is being solved, and the number of its island.
+QUEUED = record([("row", "i4"), ("island", "i4")])
+
+
+@kernel(forceinline=True)
+def moves(body: Any) -> bool:
+    """Whether an impulse moves it."""
+    return bool(body.inverse_mass > 0.0 or body.inverse_moment > 0.0)
+
+
+@kernel(forceinline=True)
+def _root(tables: Tables, i: int) -> int:
+    """The body that stands for body i's island (union-find with halving: Tarjan & van Leeuwen 1984)."""
+    mobility = tables.mobility
+    while mobility[i].root != i:
+        mobility[i].root = mobility[mobility[i].root].root
+        i = mobility[i].root
+    return i
+
+
+@kernel(forceinline=True)
+def island_of(tables: Tables, row: Any) -> int:
+    """The number of a row's island."""
+    return int(tables.mobility[_of_row(tables, row)].island)
+
+
+@kernel(forceinline=True)
+def _of_row(tables: Tables, row: Any) -> int:
+    """The body by which a row belongs to its island."""
+    return int(row.a if moves(tables.bodies[row.a]) else row.b)
+
+
+@kernel
+def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
+    """Part the rows into islands. Those are active that have a row from `first` on, or were before: all, if that is 0.
+
+    `small` and `energy` are of the velocities before the sweeps.
+    """
+    mobility = tables.mobility
+    n = tables.counters[ROWS]
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
+        m = mobility[i]
+        m.root = i
+        m.island = -1
+        if first == 0:
+            m.solved = 0
+    for r in range(n):
+        row = tables.rows[r]
+        if moves(tables.bodies[row.a]) and moves(tables.bodies[row.b]):
+            i = _root(tables, row.a)
+            j = _root(tables, row.b)
+            mobility[max(i, j)].root = min(i, j)
+    count = 0
+    for r in range(n):
+        i = _of_row(tables, tables.rows[r])
+        root = _root(tables, i)
+        if mobility[root].island < 0:
+            mobility[root].island = count
+            tables.islands[count].rows = 0
+            tables.islands[count].active = 0
+            tables.islands[count].known = 0
+            count += 1
+        island = tables.islands[mobility[root].island]
+        island.rows += 1 if tables.rows[r].ends > 0 else 2
+        if r >= first or not mobility[i].solved:
+            island.active = 1
+    tables.counters[ISLANDS] = count
+    for k in range(tables.counters[LIVE]):
+        i = tables.live[k]
+        if mobility[i].island < 0:
+            mobility[i].island = mobility[_root(tables, i)].island
+        if not moves(tables.bodies[i]):
+            mobility[i].island = -1
+    measure(tables, law, h, True)
+    list_active(tables)
+
+
+@kernel
+def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
+    """Mass, centre's velocity, energy and what is small of every island, before the sweeps or now."""
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.mass = 0.0
+        island.x = 0.0
+        island.y = 0.0
+        island.energy = 0.0
+    for k in range(tables.counters[LIVE]):
+        number = tables.mobility[tables.live[k]].island
+        body = tables.bodies[tables.live[k]]
+        if number >= 0 and body.inverse_mass > 0.0:
+            island = tables.islands[number]
+            own = 1.0 / body.inverse_mass
+            island.mass += own
+            island.x += own * (body.came_vx if before else body.vx)
+            island.y += own * (body.came_vy if before else body.vy)
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        if island.mass > 0.0:
+            island.x /= island.mass
+            island.y /= island.mass
+    for k in range(tables.counters[LIVE]):
+        number = tables.mobility[tables.live[k]].island
+        body = tables.bodies[tables.live[k]]
+        if number >= 0:
+            island = tables.islands[number]
+            vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
+            island.energy += _kinetic(body, vx - island.x, vy - island.y, w)
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.small = LEFT * law.gravity * h
+        if island.mass > 0.0:
+            island.small += MOVED * math.sqrt(2.0 * island.energy / island.mass)
+
+
+@kernel(forceinline=True)
+def _kinetic(body: Any, vx: float, vy: float, w: float) -> float:
+    energy = 0.0
+    if body.inverse_mass > 0.0:
+        energy += 0.5 * distance2(vx, vy, 0.0, 0.0) / body.inverse_mass
+    if body.inverse_moment > 0.0:
+        energy += 0.5 * w * w / body.inverse_moment
+    return energy
+
+
+@kernel
+def list_active(tables: Tables) -> None:
+    """List the rows of active islands, in order, and their bodies with all that nothing moves."""
+    counters = tables.counters
+    n = 0
+    for r in range(counters[ROWS]):
+        number = island_of(tables, tables.rows[r])
+        if tables.islands[number].active:
+            tables.queue[n].row = r
+            tables.queue[n].island = number
+            n += 1
+    counters[QUEUE] = n
+    n = 0
+    for k in range(counters[LIVE]):
+        i = tables.live[k]
+        number = tables.mobility[i].island
+        if number < 0 or tables.islands[number].active:
+            tables.members[n] = i
+            tables.mobility[i].solved = 0
+            n += 1
+    counters[MEMBERS] = n
+
+
+@kernel
+def _drop(tables: Tables) -> None:
+    """Take rows and bodies of islands that are not active any more out of the lists."""
+    counters = tables.counters
+    n = 0
+    for k in range(counters[QUEUE]):
+        number = tables.queue[k].island
+        if tables.islands[number].active:
+            tables.queue[n].row = tables.queue[k].row
+            tables.queue[n].island = number
+            n += 1
+    counters[QUEUE] = n
+    n = 0
+    for k in range(counters[MEMBERS]):
+        i = tables.members[k]
+        number = tables.mobility[i].island
+        if number < 0 or tables.islands[number].active:
+            tables.members[n] = i
+            n += 1
+        else:
+            tables.mobility[i].solved = 1
+    counters[MEMBERS] = n
+
+
+@kernel
+def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
+    """Islands are solved that the last of so many sweeps has changed by no more than SETTLED of what is small.
+
+    After `least` sweeps by no more than `most` of it. One row alone is solved by its first visit (`row.visit`), unless
+    that has moved much: then a blow may go on through it (`blows`).
+    """
+    dropped = False
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        if not island.active:
+            continue
+        enough = SETTLED if swept < least else most
+        alone = island.rows == 1 and island.moved <= island.small
+        if alone or (swept > 1 and island.moved <= enough * island.small):
+            island.active = 0
+            dropped = True
+    if dropped:
+        _drop(tables)
+
+
+@kernel
+def rest_small(tables: Tables, h: float, jointed: bool) -> None:
+    """Islands are solved in which the last sweep's changes were small, and contacts have added no energy."""
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].held = GAINED * tables.islands[k].energy
+    if not jointed:
+        for k in range(tables.counters[QUEUE]):
+            row = tables.rows[tables.queue[k].row]
+            if row.ends > 0:
+                held = (row.f1 + row.f2) / h * tables.regions[row.region].depth
+                tables.islands[tables.queue[k].island].held += held
+        for k in range(tables.counters[MEMBERS]):
+            i = tables.members[k]
+            if tables.mobility[i].island >= 0:
+                island = tables.islands[tables.mobility[i].island]
+                body = tables.bodies[i]
+                island.held -= _kinetic(body, body.vx - island.x, body.vy - island.y, body.w)
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        if island.active and island.moved <= island.small and island.held >= 0.0:
+            island.active = 0
+    _drop(tables)
