@@ -24,8 +24,9 @@ ISLAND = record(
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
+        ("fixed", "i4"),  # a body that nothing moves, on which it bears; -1: none
         ("mass", "f8"),
-        ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
+        ("x", "f8"),  # velocity of that body, else of its own centre: speeds are relative to it (length/time)
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
         ("held", "f8"),  # at least what its rows' springs hold, and could give back (energy)
@@ -103,10 +104,16 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
         if mobility[root].island < 0:
             mobility[root].island = count
             tables.islands[count].rows = 0
+            tables.islands[count].fixed = -1
             tables.islands[count].active = 0
             tables.islands[count].known = 0
             count += 1
         island = tables.islands[mobility[root].island]
+        row = tables.rows[r]
+        if not moves(tables.bodies[row.a]):
+            island.fixed = row.a
+        elif not moves(tables.bodies[row.b]):
+            island.fixed = row.b
         island.rows += 1 if tables.rows[r].ends > 0 else 2
         if r >= first or not mobility[i].solved:
             island.active = 1
@@ -123,7 +130,7 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
 
 @kernel
 def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
-    """Mass, centre's velocity, energy and what is small of every island, before the sweeps or now."""
+    """Mass, energy and what is small of every island, by the velocities before the sweeps or by those now."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.mass = 0.0
@@ -141,7 +148,10 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.y += own * (body.came_vy if before else body.vy)
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        if island.mass > 0.0:
+        if island.fixed >= 0:
+            island.x = tables.bodies[island.fixed].vx
+            island.y = tables.bodies[island.fixed].vy
+        elif island.mass > 0.0:
             island.x /= island.mass
             island.y /= island.mass
     for k in range(tables.counters[LIVE]):
