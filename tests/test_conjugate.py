@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from rigidarea.contact import conjugate, dtypes, preconditioner, tables
+from rigidarea.contact import active, conjugate, dtypes, preconditioner, tables
 
 
 def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e9) -> SimpleNamespace:
@@ -48,12 +48,24 @@ def system(pairs: list[tuple[int, int]], n: int, seed: int, friction: float = 1e
 
 
 def tables_of(s: SimpleNamespace) -> Any:
-    """The kernels' tables; what the search does not look at is empty."""
+    """The kernels' tables, every island to be searched; what the search does not look at is empty."""
     from rigidarea.chipmunk.arrays import Store
 
-    return Store().tables._replace(
-        bodies=s.bodies, rows=s.rows, factors=s.factors, mobility=s.mobility, live=s.live, counters=s.counters
+    found = Store().tables._replace(
+        bodies=s.bodies,
+        rows=s.rows,
+        factors=s.factors,
+        mobility=s.mobility,
+        islands=np.zeros(s.n, active.ISLAND),
+        queue=np.zeros(len(s.rows), active.QUEUED),
+        members=np.zeros(s.n, np.int32),
+        live=s.live,
+        counters=s.counters,
     )
+    law = tables.Law(0.0, 2e-4, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 1.0, -1.0, 0.05)
+    active.form_islands(found, law, 1 / 120, 0)
+    conjugate.search_all(found, False)
+    return found
 
 
 def dense(s: SimpleNamespace) -> tuple[np.ndarray, np.ndarray]:
@@ -151,3 +163,40 @@ def test_no_end_pulls_and_no_friction_is_beyond_its_bound(seed):
     most = s.rows["friction"] * (s.rows["l1"] + s.rows["l2"])
     assert (np.abs(s.rows["lt"]) <= most * (1 + 1e-12)).all()
     assert lacking(s, start) <= 1.0 + 1e-12
+
+
+def test_islands_are_searched_as_if_each_were_alone():
+    """Three piles on one ground, side by side: each goes as it does by itself, however hard the others are."""
+    alone = [system(tree(n, n) + [(1, n - 1)], n, n) for n in (4, 9, 15)]
+    pairs, first = [], 0
+    for one in alone:
+        pairs += [tuple(first + i if i else 0 for i in pair) for pair in one.pairs]
+        first += one.n - 1
+    together = system(pairs, first + 1, 0)
+    at, row = 1, 0
+    for one in alone:
+        together.bodies[at : at + one.n - 1] = one.bodies[1:]
+        rows = one.rows.copy()
+        rows["a"], rows["b"] = together.rows["a"][row : row + len(rows)], together.rows["b"][row : row + len(rows)]
+        together.rows[row : row + len(rows)] = rows
+        at, row = at + one.n - 1, row + len(rows)
+    conjugate.conjugate_gradients(tables_of(together), 3, False)
+    for one in alone:
+        conjugate.conjugate_gradients(tables_of(one), 3, False)
+    assert (together.rows["l1"] == np.concatenate([one.rows["l1"] for one in alone])).all()
+    assert together.counters[tables.ISLANDS] >= 3  # a tree may have several stems
+
+
+def test_an_island_that_is_solved_is_left_alone_until_a_row_joins_it():
+    """Two towers: one is solved, the other goes on; a row between the two makes one island of them, and it goes on."""
+    s = system([(0, 1), (1, 2), (0, 3), (3, 4)], 5, 3)
+    found = tables_of(s)
+    queue = found.queue["row"]
+    assert list(queue[: s.counters[tables.QUEUE]]) == [0, 1, 2, 3]
+    found.islands["moved"][:2] = 0.0, 1e9
+    active.rest_settled(found, 2, 9, 0.0)
+    assert list(queue[: s.counters[tables.QUEUE]]) == [2, 3]
+    s.rows[3]["a"], s.rows[3]["b"] = 2, 4
+    law = tables.Law(0.0, 2e-4, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 1.0, -1.0, 0.05)
+    active.form_islands(found, law, 1 / 120, 3)
+    assert list(queue[: s.counters[tables.QUEUE]]) == [0, 1, 2, 3] and s.counters[tables.ISLANDS] == 2

@@ -76,7 +76,7 @@ def _join(s: Any, tables: Tables, h: float, first: bool) -> int:
 def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     """The sweeps (`whole` of them) and searches of a substep, and the rows that join. Whether there was room for it.
 
-    They go on in islands where the last sweep has moved much, or contacts have added energy, which they never do.
+    They go on in islands where the last sweep has moved much.
     """
     # before the warm start: what that adds is no speed at which anybody comes
     if _join(s, tables, h, True) < 0:
@@ -118,7 +118,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             elif k == 1 and not jointed:
                 search_all(tables, known)
                 conjugate_gradients(tables, searches - 1, False)
-        rest_small(tables, h, jointed)
+        rest_small(tables)
         if tables.counters[QUEUE] == 0:
             break
     if tables.counters[BOUNCES] > 0 and not jointed:
@@ -139,7 +139,7 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
         return
     for k in range(whole):
         sweep(tables, k % 2 == 0)
-        rest_settled(tables, k + 2, _relaxing(whole) + 1, 1.0)  # the last sweep before was of the same bodies
+        rest_settled(tables, k + 1, _relaxing(whole), 1.0)
         if tables.counters[QUEUE] == 0:
             break
     end_relaxing(tables, h)

@@ -14,7 +14,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
 from ..geometry.arc import distance2
-from .constants import GAINED, LEFT, MOVED, SETTLED
+from .constants import LEFT, MOVED, SETTLED
 from .tables import ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
@@ -24,12 +24,10 @@ ISLAND = record(
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
-        ("fixed", "i4"),  # a body that nothing moves, on which it bears; -1: none
         ("mass", "f8"),
-        ("x", "f8"),  # velocity of that body, else of its own centre: speeds are relative to it (length/time)
+        ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
-        ("held", "f8"),  # at least what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         (
@@ -104,16 +102,10 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
         if mobility[root].island < 0:
             mobility[root].island = count
             tables.islands[count].rows = 0
-            tables.islands[count].fixed = -1
             tables.islands[count].active = 0
             tables.islands[count].known = 0
             count += 1
         island = tables.islands[mobility[root].island]
-        row = tables.rows[r]
-        if not moves(tables.bodies[row.a]):
-            island.fixed = row.a
-        elif not moves(tables.bodies[row.b]):
-            island.fixed = row.b
         island.rows += 1 if tables.rows[r].ends > 0 else 2
         if r >= first or not mobility[i].solved:
             island.active = 1
@@ -148,10 +140,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.y += own * (body.came_vy if before else body.vy)
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        if island.fixed >= 0:
-            island.x = tables.bodies[island.fixed].vx
-            island.y = tables.bodies[island.fixed].vy
-        elif island.mass > 0.0:
+        if island.mass > 0.0:
             island.x /= island.mass
             island.y /= island.mass
     for k in range(tables.counters[LIVE]):
@@ -239,7 +228,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
             continue
         enough = SETTLED if swept < least else most
         alone = island.rows == 1 and island.moved <= island.small
-        if alone or (swept > 1 and island.moved <= enough * island.small):
+        if alone or island.moved <= enough * island.small:
             island.active = 0
             dropped = True
     if dropped:
@@ -247,24 +236,10 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 
 @kernel
-def rest_small(tables: Tables, h: float, jointed: bool) -> None:
-    """Islands are solved in which the last sweep's changes were small, and contacts have added no energy."""
-    for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].held = GAINED * tables.islands[k].energy
-    if not jointed:
-        for k in range(tables.counters[QUEUE]):
-            row = tables.rows[tables.queue[k].row]
-            if row.ends > 0:
-                held = (row.f1 + row.f2) / h * tables.regions[row.region].depth
-                tables.islands[tables.queue[k].island].held += held
-        for k in range(tables.counters[MEMBERS]):
-            i = tables.members[k]
-            if tables.mobility[i].island >= 0:
-                island = tables.islands[tables.mobility[i].island]
-                body = tables.bodies[i]
-                island.held -= _kinetic(body, body.vx - island.x, body.vy - island.y, body.w)
+def rest_small(tables: Tables) -> None:
+    """Islands are solved in which the last sweep's changes were small."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        if island.active and island.moved <= island.small and island.held >= 0.0:
+        if island.moved <= island.small:
             island.active = 0
     _drop(tables)

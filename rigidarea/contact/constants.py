@@ -79,11 +79,8 @@ SEARCH_SWEEPS = 10
 SEARCH_STEPS = 8
 #: One sweep of so many, rounded up, is for the velocities that are left when positions are right (`relax`).
 RELAX_SWEEPS = 5
-#: Kinetic energy of a substep that has grown by more than this factor, and what springs held, is a solve that has not
-#: converged.
-GAINED = 1.005
-#: Nor is it, where the last sweep has still changed speeds by more than a part of what pushes gives in a substep, and a
-#: part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
+#: A solve has not converged where the last sweep has still changed speeds by more than a part of what pushes gives in a
+#: substep, and a part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
 MOVED = 0.003
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
