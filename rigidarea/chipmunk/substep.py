@@ -139,7 +139,7 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
         return
     for k in range(whole):
         sweep(tables, k % 2 == 0)
-        rest_settled(tables, k + 1, _relaxing(whole), 1.0)
+        rest_settled(tables, k + 2, _relaxing(whole) + 1, 1.0)  # the last sweep before was of the same bodies
         if tables.counters[QUEUE] == 0:
             break
     end_relaxing(tables, h)

@@ -29,6 +29,7 @@ ISLAND = record(
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
+        ("still", "f8"),  # how much smaller it is for bodies that hardly move past one another (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         (
             "before",
@@ -152,9 +153,10 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.energy += _kinetic(body, vx - island.x, vy - island.y, w)
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        island.small = LEFT * law.gravity * h
-        if island.mass > 0.0:
-            island.small += MOVED * math.sqrt(2.0 * island.energy / island.mass)
+        kick = law.gravity * h
+        speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
+        island.small = LEFT * kick + MOVED * speed
+        island.still = LEFT * max(0.0, kick - speed)
 
 
 @kernel(forceinline=True)
@@ -228,7 +230,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
             continue
         enough = SETTLED if swept < least else most
         alone = island.rows == 1 and island.moved <= island.small
-        if alone or island.moved <= enough * island.small:
+        if alone or (swept > 1 and island.moved <= enough * island.small):
             island.active = 0
             dropped = True
     if dropped:
@@ -237,9 +239,9 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 @kernel
 def rest_small(tables: Tables) -> None:
-    """Islands are solved in which the last sweep's changes were small."""
+    """Islands are solved in which the last sweep's changes were small; what lies still is solved as far as it goes."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        if island.moved <= island.small:
+        if island.moved <= island.small - island.still:
             island.active = 0
     _drop(tables)
