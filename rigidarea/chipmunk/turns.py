@@ -9,18 +9,19 @@ from ..contact.islands import (
     FINEST,
     all_in_one_group,
     connect,
+    connect_in_reach,
     mark_bodies_with_neighbours,
     next_turn,
     number,
     part,
+    sort_by_turns,
     spare,
 )
-from ..contact.space_record import keep_tables, load_tables
-from ..contact.tables import AWAKE, MET, SUBSTEP, TURN
+from ..contact.space_record import load_tables
+from ..contact.tables import AWAKE, SUBSTEP, TURN
 from .joints import joints_of
 from .record import floats
 from .substep import near_pairs, substeps
-from .undo import begin_again
 
 
 @kernel
@@ -45,26 +46,22 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
-    if number(tables, g[0], g[1]) < 2:
+    numbers = number(tables)
+    if numbers > 1:
+        connect_in_reach(tables, dt)
+        numbers = number(tables)
+    if numbers < 2:
         all_in_one_group(load_tables(s))
         taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
         return int(taken) if substeps(s, space, dt, taken) else 0
+    sort_by_turns(tables, g[0], g[1])
     turn = next_turn(tables, FINEST)
     taken = turn
     most = max(turn, s.substeps)
-    if not keep_tables(s):
-        return 0
     last = tables.counters[SUBSTEP] + most  # of each turn: what is there at the end is known by it
     while turn > 0:
         tables.counters[SUBSTEP] = last - turn
         if not substeps(s, space, dt, turn):
             return 0
         turn = next_turn(tables, turn)
-    if tables.counters[MET]:
-        begin_again(s)
-        s.contacts = 0
-        all_in_one_group(load_tables(s))
-        if not substeps(s, space, dt, most):
-            return 0
-        taken = most
     return int(taken)

@@ -39,8 +39,8 @@ def _struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> boo
 def blows(tables: Tables, law: Law, h: float) -> bool:
     """Whether a blow goes on through what lies at rest: there it is no bed any more, and its island is to be searched.
 
-    Only where the last sweep has moved more than is small. Not of what hangs in a joint, or a kinematic body hits: those
-    press on, and something has to give way.
+    Only where the last sweep has moved more than is small. Not of what hangs in a joint, or a kinematic body hits:
+    those press on, and something has to give way.
     """
     rows = tables.rows
     hit = False

@@ -5,8 +5,8 @@ islands. Two islands share nothing within a frame, so that each may take substep
 delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
 (`tables.live`) and pairs (from counters[FIRST] to counters[LAST] of `tables.near`) alone.
 
-Near is what a search has found for the whole frame. A blow within it may carry a body further: then two turns meet
-(counters[MET]), and the frame is run again as one.
+Near is what a search has found for the whole frame. A blow within it may carry a body further: where that could be into
+another turn, by all the kinetic energy of its island, the two islands are one (`connect_in_reach`).
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from .tables import (
     FIXED,
     LAST,
     LIVE,
-    MET,
+    MOVERS,
     NEAR,
     TOOTHED,
     TURN,
@@ -38,6 +38,7 @@ from .tables import (
     Law,
     Tables,
 )
+from .tree import MOVING, next_met
 
 #: More substeps than any turn has.
 FINEST = 1 << 30
@@ -187,10 +188,10 @@ def part(tables: Tables) -> None:
 
 
 @kernel
-def number(tables: Tables, gx: float, gy: float) -> int:
+def number(tables: Tables) -> int:
     """Each island takes as many substeps as the body of it that wants most; how many numbers: 0, 1, or 2 for more.
 
-    After `part` and `connect`. Where there are two or more, leaves the near pairs turn by turn.
+    After `part` and `connect`.
     """
     counters = tables.counters
     bodies = tables.bodies
@@ -210,19 +211,72 @@ def number(tables: Tables, gx: float, gy: float) -> int:
             numbers = 1
         elif body.steps != first:
             numbers = 2
+    return numbers
+
+
+@kernel
+def connect_in_reach(tables: Tables, dt: float) -> None:
+    """Islands of which one may send a body as far as another within a frame of dt, beyond what is near, are one.
+
+    No body of an island can have more than its whole kinetic energy, whatever bears on what.
+    """
+    counters = tables.counters
+    for k in range(counters[AWAKE]):
+        tables.islands[tables.awake[k]].energy = 0.0
+    for k in range(counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        energy = 0.0
+        if body.inverse_mass > 0.0:
+            speed = math.hypot(body.vx, body.vy) + math.hypot(body.gain_x, body.gain_y)
+            energy += 0.5 * speed * speed / body.inverse_mass
+        if body.inverse_moment > 0.0:
+            spin = abs(body.w) + abs(body.gain_w)
+            energy += 0.5 * spin * spin / body.inverse_moment
+        tables.islands[_root(tables, tables.awake[k])].energy += energy
+    for k in range(counters[MOVERS]):
+        shape = tables.shapes[tables.movers[k]]
+        body = tables.bodies[shape.body]
+        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        energy = tables.islands[_root(tables, shape.body)].energy
+        way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
+        low_x = shape.left - way
+        low_y = shape.bottom - way
+        high_x = shape.right + way
+        high_y = shape.top + way
+        if (
+            body.kind == FIXED
+            or shape.sensor
+            or (
+                low_x >= shape.low_x
+                and low_y >= shape.low_y
+                and high_x <= shape.high_x
+                and high_y <= shape.high_y
+            )
+        ):
+            continue
+        at = -1
+        while True:
+            at = next_met(tables.nodes, tables.roots[MOVING], at, low_x, low_y, high_x, high_y)
+            if at < 0:
+                break
+            other = tables.shapes[tables.nodes[at].owner].body
+            if tables.bodies[other].awake and tables.bodies[other].steps != body.steps:
+                connect(tables, shape.body, other)
+
+
+@kernel
+def sort_by_turns(tables: Tables, gx: float, gy: float) -> None:
+    """Leave the near pairs turn by turn (after `number`)."""
+    counters = tables.counters
     moved = counters[TURNED] == 0 or counters[UNSORTED] == 1
     for k in range(counters[NEAR]):
         if moved:
             break
         near = tables.near[k]
         moved = near.turn != turn_of(tables.bodies[near.a], tables.bodies[near.b])
-    if numbers < 2:
-        return numbers
     counters[TURNED] = 1
     if moved:
         arrange(tables, gx, gy)
-    counters[MET] = 0
-    return numbers
 
 
 @kernel

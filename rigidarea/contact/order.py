@@ -19,7 +19,6 @@ from .tables import (
     JOINTS,
     LAST,
     LIVE,
-    MET,
     NEAR,
     REJOINED,
     TURN,
@@ -104,8 +103,6 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
         one.order = share * (ux * x + uy * y)
         one.beside = share * (ux * y - uy * x)
         one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
-        if one.turn < 0:
-            tables.counters[MET] = 1
         sorted_already = sorted_already and (i == 0 or not _after(tables, near[i - 1], one))
     gap = 1
     while gap < n and not sorted_already:
