@@ -28,8 +28,12 @@ ISLAND = record(
         ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
+        ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
-        ("still", "f8"),  # how much smaller it is for bodies that hardly move past one another (length/time)
+        (
+            "still",
+            "f8",
+        ),  # how much smaller it is where neither speeds nor springs could do more than a kick (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         (
             "before",
@@ -130,6 +134,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.x = 0.0
         island.y = 0.0
         island.energy = 0.0
+        island.held = 0.0
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
         body = tables.bodies[tables.live[k]]
@@ -151,12 +156,18 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island = tables.islands[number]
             vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
             island.energy += _kinetic(body, vx - island.x, vy - island.y, w)
+    for r in range(tables.counters[ROWS]):
+        row = tables.rows[r]
+        if row.ends > 0:
+            held = (row.f1 + row.f2) / h * tables.regions[row.region].depth
+            tables.islands[island_of(tables, row)].held += held
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         kick = law.gravity * h
         speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
         island.small = LEFT * kick + MOVED * speed
-        island.still = LEFT * max(0.0, kick - speed)
+        able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
+        island.still = LEFT * max(0.0, kick - able)
 
 
 @kernel(forceinline=True)
