@@ -177,7 +177,10 @@ def test_islands_are_searched_as_if_each_were_alone():
     for one in alone:
         together.bodies[at : at + one.n - 1] = one.bodies[1:]
         rows = one.rows.copy()
-        rows["a"], rows["b"] = together.rows["a"][row : row + len(rows)], together.rows["b"][row : row + len(rows)]
+        rows["a"], rows["b"] = (
+            together.rows["a"][row : row + len(rows)],
+            together.rows["b"][row : row + len(rows)],
+        )
         together.rows[row : row + len(rows)] = rows
         at, row = at + one.n - 1, row + len(rows)
     conjugate.conjugate_gradients(tables_of(together), 3, False)

@@ -167,7 +167,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
         island.small = LEFT * kick + MOVED * speed
         able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
-        island.still = LEFT * max(0.0, kick - able)
+        island.still = LEFT * kick if able < kick else 0.0
 
 
 @kernel(forceinline=True)
