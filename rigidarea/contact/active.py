@@ -23,6 +23,7 @@ ISLAND = record(
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
+        ("still", "i1"),  # 1: neither its speeds nor its springs could do more than a kick: it is at rest
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
         ("mass", "f8"),
         ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
@@ -30,15 +31,8 @@ ISLAND = record(
         ("energy", "f8"),  # kinetic, relative to that
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
-        (
-            "still",
-            "f8",
-        ),  # how much smaller it is where neither speeds nor springs could do more than a kick (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
-        (
-            "before",
-            "f8",
-        ),  # of the search: residual times direction, a step before and in this one; 0: begin anew
+        ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
         ("ahead", "f8"),
         ("curvature", "f8"),
@@ -167,7 +161,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
         island.small = LEFT * kick + MOVED * speed
         able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
-        island.still = LEFT * kick if able < kick else 0.0
+        island.still = able < kick
 
 
 @kernel(forceinline=True)
@@ -250,9 +244,9 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 @kernel
 def rest_small(tables: Tables) -> None:
-    """Islands are solved in which the last sweep's changes were small; what lies still is solved as far as it goes."""
+    """Islands are solved in which the last sweep's changes were small, but those at rest only by `rest_settled`."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        if island.moved <= island.small - island.still:
+        if island.moved <= island.small and not island.still:
             island.active = 0
     _drop(tables)
