@@ -97,3 +97,10 @@ def extent_of(shape: pymunk.Shape) -> float:
         ex, ey = bx - ax, by - ay
         widths.append(max(ex * (y - ay) - ey * (x - ax) for x, y in corners) / math.hypot(ex, ey))
     return min(widths) + 2.0 * float(shape.radius)
+
+
+def turns_others(body: pymunk.Body) -> bool:
+    """Whether it drives what it touches round: a kinematic body that turns, or one on a motor that has a rate."""
+    if body.body_type == pymunk.Body.KINEMATIC:
+        return body.angular_velocity != 0.0
+    return any(isinstance(joint, pymunk.SimpleMotor) and joint.rate != 0.0 for joint in body.constraints)

@@ -22,7 +22,7 @@ from pymunk.batch import BodyFields, Buffer, get_space_bodies
 from ..chipmunk import AreaContact, SimulationError, attach
 from ..geometry.outline import Outline
 from . import costs
-from .measures import Measured, extent_of, fastest, measure, reach_of
+from .measures import Measured, extent_of, fastest, measure, reach_of, turns_others
 from .part import join
 
 Array = NDArray[np.float64]
@@ -171,6 +171,7 @@ class Probe:
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
+        self.drives = np.array([turns_others(body) for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
         self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
         self.sampled = any(outline._resample is not None for outline in outlines)
@@ -321,8 +322,8 @@ class Probe:
 
         What does not go its smallest extent is compared over that; where no body of an island ever goes so far,
         over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
-        motion. A turn counts as what it moves the farthest point. What only turns is compared by its spin too, root
-        mean square: a drive's error is in its speed, not in its angle.
+        motion. A turn counts as what it moves the farthest point. What only turns since something drives it is
+        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
@@ -336,7 +337,8 @@ class Probe:
         most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
         found: Array = (most / np.maximum(far if so_far else far[-1], least)).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
-        turns = (gone[-1] < self.extent) & (turned[-1] > self.extent)
+        driven = np.isin(self.groups, self.groups[self.drives])
+        turns = driven & (gone[-1] < self.extent) & (turned[-1] > self.extent)
         ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
         return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
 

@@ -76,6 +76,24 @@ def test_how_far_apart_two_runs_are():
     assert probe.apart(moved[:0], fine) == [math.inf]
 
 
+@pytest.mark.parametrize("driven", [False, True])
+def test_spin_is_compared_of_what_is_driven(driven):
+    """A plank on a pivot that a blow turns a frame late is where it should be, but for that frame; a drive is not."""
+    space = pymunk.Space()
+    plank = pymunk.Body(1, 1)
+    space.add(plank, pymunk.Poly.create_box(plank, (1, 0.1)), pymunk.PivotJoint(space.static_body, plank, (0, 0)))
+    if driven:
+        space.add(pymunk.SimpleMotor(space.static_body, plank, 1.0))
+    probe = Probe(space, 0.1, 4, None, {}, 0.1, space.bodies)
+    fine = np.zeros((60, 1, 6))
+    fine[30:, 0, 5] = 1.0
+    fine[:, 0, 2] = np.cumsum(fine[:, 0, 5]) / 60
+    late = np.roll(fine, 1, axis=0)
+    late[0] = 0.0
+    spins = math.sqrt(1 / 30)
+    assert probe.apart(late, fine)[0] == pytest.approx(spins if driven else 1 / 30, rel=0.02)
+
+
 def test_what_moves_little_is_off_by_its_share_of_the_motion():
     """A block that rocks by a twentieth of its width, 2e-3 of it off: by 0.04 of its motion. Less than the tolerance of
     the width is no motion; nor is a motion small beside one that is large in its island, but in another."""
