@@ -233,11 +233,14 @@ def connect_in_reach(tables: Tables, dt: float) -> None:
             spin = abs(body.w) + abs(body.gain_w)
             energy += 0.5 * spin * spin / body.inverse_moment
         tables.islands[_root(tables, tables.awake[k])].energy += energy
+    for k in range(counters[AWAKE]):  # as it is now, whichever islands come to be one
+        i = tables.awake[k]
+        tables.mobility[i].x = tables.islands[_root(tables, i)].energy
     for k in range(counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
         body = tables.bodies[shape.body]
         arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
-        energy = tables.islands[_root(tables, shape.body)].energy
+        energy = tables.mobility[shape.body].x
         way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
         low_x = shape.left - way
         low_y = shape.bottom - way
