@@ -81,7 +81,9 @@ def test_spin_is_compared_of_what_is_driven(driven):
     """A plank on a pivot that a blow turns a frame late is where it should be, but for that frame; a drive is not."""
     space = pymunk.Space()
     plank = pymunk.Body(1, 1)
-    space.add(plank, pymunk.Poly.create_box(plank, (1, 0.1)), pymunk.PivotJoint(space.static_body, plank, (0, 0)))
+    space.add(
+        plank, pymunk.Poly.create_box(plank, (1, 0.1)), pymunk.PivotJoint(space.static_body, plank, (0, 0))
+    )
     if driven:
         space.add(pymunk.SimpleMotor(space.static_body, plank, 1.0))
     probe = Probe(space, 0.1, 4, None, {}, 0.1, space.bodies)
