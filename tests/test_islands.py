@@ -179,9 +179,8 @@ def test_who_hardly_moves_takes_one_substep_whoever_else_takes_more() -> None:
             alone.step(FRAME)
         assert np.array_equal(state(bodies["pile"]), state(alone.bodies))
         contact.space.remove(ball, shape)
-    assert (
-        contact._store.sizes()["kept"] == 0
-    )  # no copy of the tables, which would cost what the level is large
+    # no copy of the tables, which would cost as much as the level is large
+    assert contact._store.sizes()["kept"] == 0
 
 
 def test_a_ball_wakes_the_calm_pile_that_it_meets() -> None:
