@@ -29,6 +29,7 @@ from .tables import (
     Tables,
     end_pair,
     find_pair,
+    forget_pair,
     new_pair,
 )
 from .tree import MOVING, STILL, insert, move, next_met, remove
@@ -223,7 +224,7 @@ def list_pair(tables: Tables, p: int) -> None:
 
 
 @kernel(forceinline=True)
-def _boxes_part(one: Any, other: Any) -> bool:
+def boxes_part(one: Any, other: Any) -> bool:
     return bool(
         one.low_x > other.high_x
         or other.low_x > one.high_x
@@ -234,9 +235,10 @@ def _boxes_part(one: Any, other: Any) -> bool:
 
 @entry
 def drop_pairs(tables: Tables, frame: int) -> None:
-    """Forget the pairs of what has gone, or whose boxes have parted, but for those of which Chipmunk has told in this
-    frame: a blow may have parted them, and its impulse is yet to be reported. Those of which nobody is awake are
-    remembered, but near no more.
+    """Forget the pairs of what has gone, or whose boxes have parted.
+
+    Those that Chipmunk has told of in this frame stay, with nothing remembered: it is yet to hear of them. Those of
+    which nobody is awake are remembered, but near no more.
     """
     counters = tables.counters
     k = 0
@@ -251,9 +253,13 @@ def drop_pairs(tables: Tables, frame: int) -> None:
             end_pair(tables, p)
         elif not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
             pair.near = -1
-        elif _boxes_part(one, other) and pair.stamp != frame:
+        elif not boxes_part(one, other):
+            tables.near[k].pair = p
+            k += 1
+        elif pair.stamp != frame:
             end_pair(tables, p)
         else:
+            forget_pair(tables, p)
             tables.near[k].pair = p
             k += 1
     counters[BOXED] = k
@@ -352,9 +358,13 @@ def passes(one: Any, other: Any) -> bool:
 
 @kernel
 def may_collide(tables: Tables, pair: Any) -> bool:
-    """Whether a pair's shapes are none of them sensors, and neither filters nor joints keep them apart."""
-    one = tables.shapes[pair.a]
-    other = tables.shapes[pair.b]
+    """Whether a pair's shapes may collide (`shapes_collide`)."""
+    return bool(shapes_collide(tables, tables.shapes[pair.a], tables.shapes[pair.b]))
+
+
+@kernel
+def shapes_collide(tables: Tables, one: Any, other: Any) -> bool:
+    """Whether of two shapes none is a sensor, one can move, and neither filters nor joints keep them apart."""
     a = tables.bodies[one.body]
     b = tables.bodies[other.body]
     if one.sensor or other.sensor or not passes(one, other) or not (a.mobile or b.mobile):

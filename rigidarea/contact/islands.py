@@ -19,6 +19,7 @@ from ..geometry.clearance import clearance
 from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
+from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .motion import earlier, pose_of
 from .order import arrange, bound, enlist, turn_of
@@ -218,7 +219,9 @@ def number(tables: Tables) -> int:
 def connect_in_reach(tables: Tables, dt: float) -> None:
     """Islands of which one may send a body as far as another within a frame of dt, beyond what is near, are one.
 
-    No body of an island can have more than its whole kinetic energy, whatever bears on what.
+    Contacts that do not bounce by more than they came with leave no body of an island more than its whole kinetic
+    energy. Springs, motors and kinematic bodies may: who is met by those is met in the frame after, or by
+    `recover_from_tunnelling`.
     """
     counters = tables.counters
     for k in range(counters[AWAKE]):
@@ -262,9 +265,10 @@ def connect_in_reach(tables: Tables, dt: float) -> None:
             at = next_met(tables.nodes, tables.roots[MOVING], at, low_x, low_y, high_x, high_y)
             if at < 0:
                 break
-            other = tables.shapes[tables.nodes[at].owner].body
-            if tables.bodies[other].awake and tables.bodies[other].steps != body.steps:
-                connect(tables, shape.body, other)
+            other = tables.shapes[tables.nodes[at].owner]
+            it = tables.bodies[other.body]
+            if it.awake and it.steps != body.steps and shapes_collide(tables, shape, other):
+                connect(tables, shape.body, other.body)
 
 
 @kernel

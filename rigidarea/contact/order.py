@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.pool import Pool
-from .broad import drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
+from .broad import boxes_part, drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .tables import (
     ANEW,
     ASKED,
@@ -58,17 +58,17 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 @kernel
 def sieve(tables: Tables) -> None:
-    """The near pairs that may collide before all others."""
+    """The near pairs that may collide before all others, and before those that are listed for Chipmunk alone."""
     near = tables.near
     n = 0
     for i in range(tables.counters[BOXED]):
         p = near[i].pair
         pair = tables.pairs[p]
-        if may_collide(tables, pair):
+        sa = tables.shapes[pair.a]
+        sb = tables.shapes[pair.b]
+        if may_collide(tables, pair) and not boxes_part(sa, sb):
             near[i].pair = near[n].pair
             near[n].pair = p
-            sa = tables.shapes[pair.a]
-            sb = tables.shapes[pair.b]
             near[n].a = sa.body
             near[n].b = sb.body
             near[n].extent = min(sa.extent, sb.extent)
@@ -109,6 +109,8 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
         gap = 3 * gap + 1
     while gap > 0 and not sorted_already:  # Shell's sort, in place
         for i in range(gap, n):
+            if not _after(tables, near[i - gap], near[i]):
+                continue
             _set(near[last], near[i])
             j = i
             while j >= gap and _after(tables, near[j - gap], near[last]):

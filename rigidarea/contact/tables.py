@@ -209,6 +209,12 @@ def comes_first(tables: Tables, a: int, b: int) -> bool:
 @kernel(forceinline=True)
 def _renew(pair: Any) -> None:
     """A pair that nothing is known of but who it is."""
+    pair.head = -1
+    pair.side_a = 0
+    pair.side_b = 0
+    pair.kept_a = 0
+    pair.kept_b = 0
+    pair.lasting = -2
     pair.seats = 0
     pair.rate = 0.0
     pair.firm = 0.0
@@ -233,15 +239,9 @@ def new_pair(tables: Tables, a: int, b: int) -> int:
         first = comes_first(tables, a, b)
         pair.a = a if first else b
         pair.b = b if first else a
-        pair.head = -1
-        pair.side_a = 0
-        pair.kept_a = 0
-        pair.kept_b = 0
-        pair.side_b = 0
         pair.next = -1
         pair.near = -1
         pair.stamp = -1
-        pair.lasting = -2
         pair.verdict = 1
         pair.arbiter = 0
         pair.steer_c = 1.0
@@ -278,6 +278,21 @@ def forget_contacts(tables: Tables) -> None:
             free_regions(tables.regions, tables.counters, pair.head)
             pair.head = -1
             _renew(pair)
+
+
+@kernel
+def forget_pair(tables: Tables, p: int) -> None:
+    """A pair goes on as a new one would (`new_pair`), but for what Chipmunk has told of it, and is yet to hear."""
+    pair = tables.pairs[p]
+    free_regions(tables.regions, tables.counters, pair.head)
+    _renew(pair)
+    if not comes_first(tables, pair.a, pair.b):
+        pair.a, pair.b = pair.b, pair.a
+        pair.swapped = 1 - pair.swapped
+        pair.surface_x = -pair.surface_x
+        pair.surface_y = -pair.surface_y
+        pair.jx = -pair.jx
+        pair.jy = -pair.jy
 
 
 @entry
