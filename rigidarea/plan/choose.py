@@ -11,7 +11,7 @@ import pymunk
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
 from . import costs
-from .probe import Array, Probe, Reference, Seen, Setting, reference
+from .probe import ENOUGH, LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
 
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
@@ -19,9 +19,6 @@ Response time in man-computer conversational transactions, 1968), whichever is m
 RUNS = 12.0
 """Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
-PENETRATIONS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
-DEPTHS = 3
-"""Penetrations that go on to the next number of substeps: those that were best."""
 SWEEPS, FEWER_SWEEPS = 10, 5
 SLOP = 0.1
 """Of the tolerance: the share that Chipmunk's slop may have of it."""
@@ -91,7 +88,7 @@ def search(
     if probe.moving and not probe.bodies:
         return _untried(probe, tolerance, given, least)
     copies = costs.COPY_BODY_S * len(probe.bodies)
-    probe.look((budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
+    probe.look((budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION))
     sagitta = None
     if (
         probe.sampled and least is None
@@ -106,18 +103,12 @@ def search(
         return tried[-1]
 
     chosen: Tried | None = None
-    best_depths: set[float] = set()
     whole = probe.share == 1.0
     native = native and ((whole and probe.frames == planned) or given.get("level") == "pymunk")
     for group in _groups(probe, tolerance, native, given, fine, least):
         if tried and probe.spent + sum(map(probe.price, group)) > budget:
             break
-        if group[0].level == "rigid" and best_depths:
-            group = [setting for setting in group if setting.penetration in best_depths]
-        found = sorted((attempt(setting) for setting in group), key=lambda each: each.error)
-        best = found[0]
-        if group[0].level == "rigid":
-            best_depths = {each.setting.penetration for each in found[:DEPTHS]}
+        best = min((attempt(setting) for setting in group), key=lambda each: each.error)
         if best.error <= tolerance:
             chosen = best
             break
@@ -188,9 +179,9 @@ def _groups(
 ) -> list[list[Setting]]:
     """Settings to try, the cheapest first; of each number of substeps those of several penetrations together."""
     level = given.get("level")
-    depths = [given["penetration"]] if "penetration" in given else [p for p in PENETRATIONS if p <= tolerance]
-    if probe.stiffness is not None or not depths:
-        depths = [given.get("penetration", PENETRATIONS[2])]
+    depths = [ENOUGH * tolerance, LEAST_DEPTH]
+    if "penetration" in given or probe.stiffness is not None:
+        depths = [given.get("penetration", PENETRATION)]
     sweeps = given.get("sweeps", SWEEPS)
     low = 1
     if least is not None:

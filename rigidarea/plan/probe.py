@@ -10,13 +10,16 @@ from __future__ import annotations
 import io
 import math
 import pickle
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from itertools import repeat, starmap
 from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from ..chipmunk import AreaContact, SimulationError, attach
@@ -42,6 +45,9 @@ ENOUGH = 0.01
 """Of the tolerance: a reference that may be off by less needs no finer one."""
 LEAST_DEPTH = 1e-8
 """Penetration of the finest: below, an overlap has lost half its digits (fraction of the smallest extent)."""
+
+
+STATE = BodyFields.POSITION | BodyFields.ANGLE | BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 
 
 class Setting(NamedTuple):
@@ -262,8 +268,8 @@ class Probe:
             np.append(even, [1, 2, min(4, self.frames)][: self.frames])
         )  # loads are found at first
         states = np.zeros((len(ends), len(bodies), 6))
-        names = np.array([body.id for body in bodies], np.uintp)
-        states[0] = read(space, names)
+        read = reader(space, bodies)
+        states[0] = read()
         index = {body: i for i, body in enumerate(bodies)}
         seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
         twins = {twin: body for twin, body in zip(bodies, self.bodies)}
@@ -277,11 +283,11 @@ class Probe:
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
-                    for _ in range(frames * setting.steps):
-                        space.step(self.frame / setting.steps)
+                    one = repeat((space._space, self.frame / setting.steps), frames * setting.steps)
+                    deque(starmap(lib.cpSpaceStep, one), maxlen=0)  # no callbacks: nothing for Python to do
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
-                states[k + 1] = read(space, names)
+                states[k + 1] = read()
                 if notes and (k == 0 or k % every == every - 1):
                     self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
         except SimulationError:
@@ -333,14 +339,18 @@ class Probe:
         far = np.maximum(gone, turned)
         scale = np.zeros(len(self.bodies))
         np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
-        least = self.extent * np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
-        most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
-        found: Array = (most / np.maximum(far if so_far else far[-1], least)).max(axis=0)
+        least = self.extent * (np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups] if so_far else 1.0)
+        places, turns = np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2]
+        until = slice(None) if so_far else -1
+        found: Array = np.maximum(
+            (places / np.maximum(gone[until], least)).max(axis=0),
+            (turns / np.maximum(far[until], least)).max(axis=0),
+        )
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         driven = np.isin(self.groups, self.groups[self.drives])
-        turns = driven & (gone[-1] < self.extent) & (turned[-1] > self.extent)
-        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
-        return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
+        round_ = driven & (gone[-1] < self.extent) & (turned[-1] > self.extent)
+        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(round_, spin, 1.0)
+        return np.where(self.free, np.maximum(found, np.where(round_, ripple, 0.0)), 0.0)
 
 
 class Reference(NamedTuple):
@@ -382,13 +392,16 @@ def reference(
     return Reference(setting, track, doubt), [*told, (setting, doubt)]
 
 
-def read(space: pymunk.Space, names: NDArray[np.uintp]) -> Array:
-    """(bodies, 6) states of the bodies with these ids: place, angle, velocity, spin."""
-    fields = BodyFields.BODY_ID | BodyFields.POSITION | BodyFields.ANGLE
-    fields |= BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+def reader(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[], Array]:
+    """What reads (bodies, 6) states of these, as long as none comes or goes: place, angle, velocity, spin."""
     buffer = Buffer()
-    get_space_bodies(space, fields, buffer)
-    ids = np.frombuffer(buffer.int_buf(), np.uintp)
-    states = np.frombuffer(buffer.float_buf(), np.float64).reshape(len(ids), 6)
-    order = np.argsort(ids)
-    return states[order[np.searchsorted(ids, names, sorter=order)]]
+    get_space_bodies(space, BodyFields.BODY_ID, buffer)
+    place = {body: i for i, body in enumerate(np.frombuffer(buffer.int_buf(), np.uintp).tolist())}
+    order = [place[body.id] for body in bodies]
+
+    def read() -> Array:
+        buffer.clear()
+        get_space_bodies(space, STATE, buffer)
+        return np.frombuffer(buffer.float_buf()).reshape(-1, 6)[order]
+
+    return read
