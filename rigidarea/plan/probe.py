@@ -176,6 +176,7 @@ class Probe:
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
+        self.size = np.array([sum(s.area for s in own) ** 0.5 or 1.0 for own in shapes])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
         self.drives = np.array([turns_others(body) for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
@@ -338,17 +339,17 @@ class Probe:
         turned = self.reach * np.cumsum(steps[:, :, 2], axis=0)
         far = np.maximum(gone, turned)
         scale = np.zeros(len(self.bodies))
-        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
-        least = self.extent * (np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups] if so_far else 1.0)
+        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.reach, 0.0))
+        least = self.reach * (np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups] if so_far else 1.0)
         places, turns = np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2]
         until = slice(None) if so_far else -1
         found: Array = np.maximum(
-            (places / np.maximum(gone[until], least)).max(axis=0),
+            (places / np.maximum(gone[until], least / self.reach * self.size)).max(axis=0),
             (turns / np.maximum(far[until], least)).max(axis=0),
         )
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         driven = np.isin(self.groups, self.groups[self.drives])
-        round_ = driven & (gone[-1] < self.extent) & (turned[-1] > self.extent)
+        round_ = driven & (gone[-1] < self.reach) & (turned[-1] > self.reach)
         ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(round_, spin, 1.0)
         return np.where(self.free, np.maximum(found, np.where(round_, ripple, 0.0)), 0.0)
 
