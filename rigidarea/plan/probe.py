@@ -176,7 +176,6 @@ class Probe:
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
-        self.size = np.array([sum(s.area for s in own) ** 0.5 or 1.0 for own in shapes])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
         self.drives = np.array([turns_others(body) for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
@@ -344,7 +343,7 @@ class Probe:
         places, turns = np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2]
         until = slice(None) if so_far else -1
         found: Array = np.maximum(
-            (places / np.maximum(gone[until], least / self.reach * self.size)).max(axis=0),
+            (places / np.maximum(gone[until], least / self.reach * self.extent)).max(axis=0),
             (turns / np.maximum(far[until], least)).max(axis=0),
         )
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
