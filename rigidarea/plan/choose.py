@@ -11,7 +11,7 @@ import pymunk
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
 from . import costs
-from .probe import ENOUGH, LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
+from .probe import LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
 
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
@@ -20,8 +20,6 @@ RUNS = 12.0
 """Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
 SWEEPS, FEWER_SWEEPS = 10, 5
-SLOP = 0.1
-"""Of the tolerance: the share that Chipmunk's slop may have of it."""
 FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
 
@@ -112,21 +110,21 @@ def search(
         if best.error <= tolerance:
             chosen = best
             break
-    if chosen is not None and not given.get("steps") and chosen.setting.steps > 2:
+    limit = tolerance
+    if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
+        tried += [Tried(setting, errors, probe.cost(setting)) for setting, errors in rungs[:-1]]
+        if chosen is None:  # the finest is there to measure by: nothing is known to be nearer than the last but it
+            limit = max(tolerance, tried[-1].error)
+    if chosen is None:
+        good = [each for each in tried if each.error <= limit]
+        chosen = min(good, key=lambda each: each.cost_s) if good else min(tried, key=lambda each: each.error)
+    if chosen.error <= limit and "steps" not in given and chosen.setting.steps > 2:
         between = chosen.setting._replace(steps=3 * chosen.setting.steps // 4)
         if least is None or between.steps >= least.steps:
-            chosen = min((chosen, attempt(between)), key=lambda each: (each.error > tolerance, each.cost_s))
-    if chosen is not None and "sweeps" not in given and least is None:
+            chosen = min((chosen, attempt(between)), key=lambda each: (each.error > limit, each.cost_s))
+    if chosen.error <= limit and "sweeps" not in given and least is None:
         fewer = attempt(chosen.setting._replace(sweeps=FEWER_SWEEPS))
-        chosen = fewer if fewer.error <= tolerance else chosen
-    if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
-        tried += [Tried(setting, errors, probe.cost(setting)) for setting, errors in rungs]
-    if (
-        chosen is None
-    ):  # what is near the reference by half the tolerance, where that is not known to be right
-        doubt = float(fine.doubt.max(initial=0.0))
-        good = [each for each in tried if each.error <= max(tolerance, doubt + 0.5 * tolerance)]
-        chosen = min(good, key=lambda each: each.cost_s) if good else min(tried, key=lambda each: each.error)
+        chosen = fewer if fewer.error <= limit else chosen
     if probe.frames < planned and chosen.setting.level == "rigid" and "steps" not in given:
         chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
     if sagitta is not None and chosen.error <= tolerance and chosen.setting.level == "rigid":
@@ -179,7 +177,7 @@ def _groups(
 ) -> list[list[Setting]]:
     """Settings to try, the cheapest first; of each number of substeps those of several penetrations together."""
     level = given.get("level")
-    depths = [ENOUGH * tolerance, LEAST_DEPTH]
+    depths = [PENETRATION, LEAST_DEPTH]
     if "penetration" in given or probe.stiffness is not None:
         depths = [given.get("penetration", PENETRATION)]
     sweeps = given.get("sweeps", SWEEPS)
@@ -195,7 +193,7 @@ def _groups(
         ):
             out.append([Setting("rigid", n, sweeps, p) for p in depths])
     if native:  # (where all of the time is looked at: what it is off grows slowly)
-        slop = given.get("penetration", SLOP * tolerance)
+        slop = given.get("penetration", PENETRATION)
         for n in [given["steps"]] if "steps" in given else NATIVE_STEPS:
             out.append([Setting("pymunk", n, sweeps, slop)])
     return sorted(out, key=lambda group: probe.cost(group[0]))

@@ -23,9 +23,10 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from ..chipmunk import AreaContact, SimulationError, attach
+from ..chipmunk.attach import PENETRATION
 from ..geometry.outline import Outline
 from . import costs
-from .measures import Measured, extent_of, fastest, measure, reach_of, turns_others
+from .measures import Measured, extent_of, measure, reach_of, turns_others
 from .part import join
 
 Array = NDArray[np.float64]
@@ -292,6 +293,8 @@ class Probe:
                     self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
         except SimulationError:
             states[:] = math.nan
+        speeds = np.hypot(states[:, :, 3], states[:, :, 4]) + self.reach * np.abs(states[:, :, 5])
+        seen.measured["speed"] = float(speeds.max(initial=0.0)), None
         if self._touching:
             self.pairs = sum(self._touching) / len(self._touching) / self.share
             self._touching.clear()
@@ -306,7 +309,6 @@ class Probe:
         seen: Seen,
         materials: Mapping[pymunk.Body, Any],
     ) -> None:
-        fastest(space, seen.measured)
         seen.touched[:] = False
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
@@ -373,7 +375,7 @@ def reference(
     runs: list[tuple[Setting, Array]] = []
     doubt = np.full(len(probe.bodies), math.inf)
     for j, steps in enumerate(LADDER):
-        depth = max(LEAST_DEPTH, ENOUGH * tolerance * 0.1**j)
+        depth = max(LEAST_DEPTH, PENETRATION * 0.1**j)
         setting = Setting("rigid", steps, FINE_SWEEPS, depth)
         if least is not None:
             setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))
