@@ -178,6 +178,8 @@ class Probe:
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
+        smallest = float(self.extent[self.free].min(initial=math.inf))
+        self.smallest = smallest if math.isfinite(smallest) else 0.0
         self.drives = np.array([turns_others(body) for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
         self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
@@ -195,9 +197,7 @@ class Probe:
         self._asked: set[int] = set()
         self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
-        self.begin: float | None = (
-            None  # depth after the first frame of the first run, over the smallest extent
-        )
+        self.begin: float | None = None  # depth after the first frame of the first run, over the smallest extent
 
     # --- cost ---
 
@@ -250,8 +250,7 @@ class Probe:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
         if setting.level == "pymunk":
             space, bodies = self.original.copy()
-            smallest = float(self.extent[self.free].min(initial=math.inf))
-            space.collision_slop = setting.penetration * smallest if math.isfinite(smallest) else 0.0
+            space.collision_slop = setting.penetration * self.smallest
         else:
             if sagitta not in self._spaces:
                 space, bodies = self.original.copy(sagitta)
@@ -325,13 +324,12 @@ class Probe:
                 join(seen.groups, index[a], index[b])
 
     def apart(self, one: Array, fine: Array, so_far: bool = False) -> Array:
-        """(bodies,) how far each is from where the finer run has it, over its way there, the largest; so_far: over its
-        way up to then.
+        """(bodies,) how far each is from where the finer run has it, the largest: a place over its way or its smallest
+        extent, a turn over what it moves the farthest point, the way, or a radian. What only turns since something
+        drives it is compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
 
-        What does not go its smallest extent is compared over that; where no body of an island ever goes so far,
-        over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
-        motion. A turn counts as what it moves the farthest point. What only turns since something drives it is
-        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
+        so_far: over the way up to then; and where no body of an island ever goes its smallest extent, over what the one
+        that moves most goes of it: a tilt over the tilt there is. (Below the tolerance that is no motion.)
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
@@ -339,15 +337,15 @@ class Probe:
         gone = np.cumsum(np.hypot(steps[:, :, 0], steps[:, :, 1]), axis=0)
         turned = self.reach * np.cumsum(steps[:, :, 2], axis=0)
         far = np.maximum(gone, turned)
-        scale = np.zeros(len(self.bodies))
-        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.reach, 0.0))
-        least = self.reach * (np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups] if so_far else 1.0)
-        places, turns = np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2]
+        small: Any = 1.0
+        if so_far:
+            scale = np.zeros(len(self.bodies))
+            np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
+            small = np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
         until = slice(None) if so_far else -1
-        found: Array = np.maximum(
-            (places / np.maximum(gone[until], least / self.reach * self.extent)).max(axis=0),
-            (turns / np.maximum(far[until], least)).max(axis=0),
-        )
+        places = np.hypot(off[:, :, 0], off[:, :, 1]) / np.maximum(gone[until], small * self.extent)
+        turns = self.reach * off[:, :, 2] / np.maximum(far[until], small * self.reach)
+        found: Array = np.maximum(places, turns).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         driven = np.isin(self.groups, self.groups[self.drives])
         round_ = driven & (gone[-1] < self.reach) & (turned[-1] > self.reach)
@@ -356,29 +354,28 @@ class Probe:
 
 
 class Reference(NamedTuple):
-    """The finest run, and what it may be off."""
+    """The finest run, what it may be off, and what the coarser ones are, by their own."""
 
     setting: Setting
     track: Array
     doubt: Array  # (bodies,)
+    coarser: list[tuple[Setting, Array]]  # with what the finest may be off: (bodies,)
 
 
-def reference(
-    probe: Probe, tolerance: float, sagitta: float | None, budget: float, least: Setting | None
-) -> tuple[Reference, list[tuple[Setting, Array]]]:
+def reference(probe: Probe, sagitta: float | None, budget: float, least: Setting | None) -> Reference:
     """Runs ever finer, until the last is off by nothing that matters, or the next would cost more than what is left of
-    the budget (s); and what the coarser ones are off. Runs that agree may all have missed what a finer one sees, bodies
-    that are struck in another order, say: so it is not enough that they do.
+    the budget (s). Runs that agree may all have missed what a finer one sees, bodies that are struck in another order,
+    say: so it is not enough that they do.
 
     least: as fine as that at least.
     """
     runs: list[tuple[Setting, Array]] = []
     doubt = np.full(len(probe.bodies), math.inf)
     for j, steps in enumerate(LADDER):
-        depth = max(LEAST_DEPTH, PENETRATION * 0.1**j)
-        setting = Setting("rigid", steps, FINE_SWEEPS, depth)
+        setting = Setting("rigid", steps, FINE_SWEEPS, max(LEAST_DEPTH, PENETRATION * 0.1**j))
         if least is not None:
-            setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))
+            depth = min(setting.penetration, least.penetration)
+            setting = setting._replace(steps=least.steps * steps, penetration=depth)
         if len(runs) > 1 and probe.spent + probe.price(setting) > budget:
             break
         runs.append((setting, probe.track(setting, sagitta)))
@@ -387,11 +384,10 @@ def reference(
             doubt = near[-1] / (RATIO - 1.0)
             if len(near) > 1:
                 doubt = np.maximum(doubt, near[0] / (RATIO**2 - 1.0))
-            if j > 2 and doubt.max(initial=0.0) <= ENOUGH * tolerance:
+            if j > 2 and doubt.max(initial=0.0) <= ENOUGH * probe.tolerance:
                 break
-    setting, track = runs[-1]
-    told = [(each, probe.apart(other, track) + doubt) for each, other in runs[:-1]]
-    return Reference(setting, track, doubt), [*told, (setting, doubt)]
+    fine = runs.pop()
+    return Reference(*fine, doubt, [(each, probe.apart(track, fine[1]) + doubt) for each, track in runs])
 
 
 def reader(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[], Array]:
