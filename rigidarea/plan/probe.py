@@ -23,7 +23,6 @@ from pymunk._chipmunk_cffi import lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from ..chipmunk import AreaContact, SimulationError, attach
-from ..chipmunk.attach import PENETRATION
 from ..geometry.outline import Outline
 from . import costs
 from .measures import Measured, extent_of, measure, reach_of, turns_others
@@ -372,10 +371,7 @@ def reference(probe: Probe, sagitta: float | None, budget: float, least: Setting
     runs: list[tuple[Setting, Array]] = []
     doubt = np.full(len(probe.bodies), math.inf)
     for j, steps in enumerate(LADDER):
-        setting = Setting("rigid", steps, FINE_SWEEPS, max(LEAST_DEPTH, PENETRATION * 0.1**j))
-        if least is not None:
-            depth = min(setting.penetration, least.penetration)
-            setting = setting._replace(steps=least.steps * steps, penetration=depth)
+        setting = Setting("rigid", steps * (least.steps if least else 1), FINE_SWEEPS, LEAST_DEPTH)
         if len(runs) > 1 and probe.spent + probe.price(setting) > budget:
             break
         runs.append((setting, probe.track(setting, sagitta)))
