@@ -11,13 +11,15 @@ import pymunk
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
 from . import costs
-from .probe import LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
+from .probe import LEAST_DEPTH, RATIO, Array, Probe, Reference, Seen, Setting, reference
 
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
 Response time in man-computer conversational transactions, 1968), whichever is more."""
 RUNS = 12.0
 """Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
+FINE_SHARE = 0.7
+"""Of the budget: what the ladder may take, where it needs it."""
 STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 SWEEPS, FEWER_SWEEPS = 10, 5
 FINEST_SAGITTA = 1e-6
@@ -90,13 +92,15 @@ class Search:
         if probe.sampled and self.least is None:
             # facets that turn by no more than the tolerance: turn² = 8 sagitta/radius
             self.sagitta = float(np.clip(probe.tolerance**2 / 8.0, FINEST_SAGITTA, 1e-3))
-        self.fine = reference(probe, self.sagitta, 0.5 * self.budget, self.least)
+        self.fine = reference(probe, self.sagitta, FINE_SHARE * self.budget, self.least)
         # where all is looked at: what Chipmunk's response is off grows slowly
         seen_whole = probe.share == 1.0 and probe.frames == planned
         chosen, limit = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
         rigid = chosen.setting.level == "rigid"
         if probe.frames < planned and rigid and "steps" not in self.given:
-            chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
+            chosen = chosen._replace(
+                setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps))
+            )
         if self.sagitta is not None and rigid:
             for coarser in (100.0 * self.sagitta, 10.0 * self.sagitta):
                 errors = self._errors(chosen.setting, coarser)
@@ -179,6 +183,9 @@ class Search:
         if self.least is not None:
             depths = [p for p in depths if p <= self.least.penetration] or [self.least.penetration]
             sweeps, low = max(sweeps, self.least.sweeps), self.least.steps
+        # as many substeps as a run of the ladder that would not be within two rungs further either, as errors fall
+        far = RATIO**2 * self.probe.tolerance
+        hopeless = [run.steps for run, errors in self.fine.coarser if errors.max(initial=0.0) > far]
         out = []
         if level in (None, "rigid"):
             numbers = [low * n for n in STEPS if low * n < self.fine.setting.steps] or [low]
@@ -187,7 +194,8 @@ class Search:
         if native:
             for n in [given["steps"]] if "steps" in given else STEPS:
                 out.append([Setting("pymunk", n, sweeps, depths[0])])
-        return sorted(out, key=lambda group: self.probe.cost(group[0]))
+        near = [group for group in out if group[0].steps > max(hopeless, default=0)]
+        return sorted(near or out[-1:], key=lambda group: self.probe.cost(group[0]))
 
     def _islands(self, chosen: Tried, seen: Seen, states: Array) -> tuple[Tried, dict[int, int], Array]:
         """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that

@@ -196,7 +196,9 @@ class Probe:
         self._asked: set[int] = set()
         self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
-        self.begin: float | None = None  # depth after the first frame of the first run, over the smallest extent
+        self.begin: float | None = (
+            None  # depth after the first frame of the first run, over the smallest extent
+        )
 
     # --- cost ---
 
