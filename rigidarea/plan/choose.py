@@ -11,14 +11,14 @@ import pymunk
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
 from . import costs
-from .probe import LEAST_DEPTH, RATIO, Array, Probe, Reference, Seen, Setting, reference
+from .probe import LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
 
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
 Response time in man-computer conversational transactions, 1968), whichever is more."""
 RUNS = 12.0
 """Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
-FINE_SHARE = 0.7
+FINE_SHARE = 0.5
 """Of the budget: what the ladder may take, where it needs it."""
 STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 SWEEPS, FEWER_SWEEPS = 10, 5
@@ -183,9 +183,6 @@ class Search:
         if self.least is not None:
             depths = [p for p in depths if p <= self.least.penetration] or [self.least.penetration]
             sweeps, low = max(sweeps, self.least.sweeps), self.least.steps
-        # as many substeps as a run of the ladder that would not be within two rungs further either, as errors fall
-        far = RATIO**2 * self.probe.tolerance
-        hopeless = [run.steps for run, errors in self.fine.coarser if errors.max(initial=0.0) > far]
         out = []
         if level in (None, "rigid"):
             numbers = [low * n for n in STEPS if low * n < self.fine.setting.steps] or [low]
@@ -194,8 +191,7 @@ class Search:
         if native:
             for n in [given["steps"]] if "steps" in given else STEPS:
                 out.append([Setting("pymunk", n, sweeps, depths[0])])
-        near = [group for group in out if group[0].steps > max(hopeless, default=0)]
-        return sorted(near or out[-1:], key=lambda group: self.probe.cost(group[0]))
+        return sorted(out, key=lambda group: self.probe.cost(group[0]))
 
     def _islands(self, chosen: Tried, seen: Seen, states: Array) -> tuple[Tried, dict[int, int], Array]:
         """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that

@@ -30,7 +30,7 @@ from .part import join
 
 Array = NDArray[np.float64]
 
-SAMPLES = 60
+SAMPLES = 120
 """Places are compared so often, at the most, in the time that is looked at."""
 NOTES, NOTING_S = 12, 0.005
 """What contacts do is noted so often, and after the first sample; less often where that would take longer (s)."""

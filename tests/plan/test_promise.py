@@ -71,7 +71,7 @@ def test_names():
 
 def test_a_pile_and_what_rests_are_promised():
     pile = [box(1.0, 1.0, 1.0, (0.0, 0.5 + i)) for i in range(5)]
-    assert ra.plan(space_with(*pile, gravity=9.81), 0.01, 2.0).unpromised == []
+    assert ra.plan(space_with(*pile, gravity=9.81), 0.01).unpromised == []
     assert ra.plan(space_with(), 0.01).unpromised == []  # nothing moves
     assert ra.plan(space_of(islands())[0], 0.01, 1.5).unpromised == []
 
