@@ -76,8 +76,7 @@ class Search:
         self.tried: list[Tried] = []
 
     def found(self, native: bool, materials: Mapping[pymunk.Body, Any]) -> Found:
-        """The cheapest setting whose error is within the tolerance; where none is, the cheapest that is no further from
-        the finest run than the next to finest.
+        """The cheapest setting whose error is within the tolerance; where none is, the one with the least.
 
         native: whether Chipmunk's own response may be chosen, by the plan or by the user.
         """
@@ -95,7 +94,7 @@ class Search:
         self.fine = reference(probe, self.sagitta, FINE_SHARE * self.budget, self.least)
         # where all is looked at: what Chipmunk's response is off grows slowly
         seen_whole = probe.share == 1.0 and probe.frames == planned
-        chosen, limit = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
+        chosen = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
         rigid = chosen.setting.level == "rigid"
         if probe.frames < planned and rigid and "steps" not in self.given:
             chosen = chosen._replace(
@@ -104,7 +103,7 @@ class Search:
         if self.sagitta is not None and rigid:
             for coarser in (100.0 * self.sagitta, 10.0 * self.sagitta):
                 errors = self._errors(chosen.setting, coarser)
-                if errors.max(initial=0.0) <= limit:
+                if errors.max(initial=0.0) <= max(self.probe.tolerance, chosen.error):
                     chosen, self.sagitta = chosen._replace(errors=errors), coarser
                     break
         states, seen = probe.run(chosen.setting, self.sagitta, materials=materials)
@@ -145,32 +144,27 @@ class Search:
             self.tried.append(tried)
         return tried
 
-    def _cheapest(self, native: bool) -> tuple[Tried, float]:
-        """The setting, and what it may be off: the tolerance, or where none is within that, as much as the last run but
-        the finest. (Of the finest it is not measured what it is off: it is there to measure by.)"""
-        probe, given, limit = self.probe, self.given, self.probe.tolerance
-        coarser = [Tried(setting, errors, probe.cost(setting)) for setting, errors in self.fine.coarser]
-        if {"steps", "sweeps", "penetration"} & given.keys() or given.get("level") == "pymunk":
-            coarser = []
+    def _cheapest(self, native: bool) -> Tried:
+        """The cheapest setting within the tolerance; where none is, the one with the least error that was measured (the
+        finest is there to measure by)."""
+        probe, given, tolerance = self.probe, self.given, self.probe.tolerance
         for group in self._groups(native):
-            if min(self._attempt(setting).error for setting in group) <= limit:
+            if min(self._attempt(setting).error for setting in group) <= tolerance:
                 break
-        self.tried += coarser
-        within = [each for each in self.tried if each.error <= limit]
+        if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
+            self.tried += [Tried(run, errors, probe.cost(run)) for run, errors in self.fine.coarser]
+        within = [each for each in self.tried if each.error <= tolerance]
         if not within:
-            limit = max([limit, *(each.error for each in coarser[-1:])])
-            within = [each for each in self.tried if each.error <= limit]
-        if not within:
-            return min(self.tried, key=lambda each: each.error), limit
+            return min(self.tried, key=lambda each: each.error)
         chosen = min(within, key=lambda each: (each.cost_s, each.error))
         setting = chosen.setting
         if "steps" not in given and setting.steps > max(2, self.least.steps if self.least else 0):
             between = self._attempt(setting._replace(steps=3 * setting.steps // 4))
-            chosen = between if between.error <= limit else chosen
+            chosen = between if between.error <= tolerance else chosen
         if "sweeps" not in given and self.least is None:
             fewer = self._attempt(chosen.setting._replace(sweeps=FEWER_SWEEPS))
-            chosen = fewer if fewer.error <= limit else chosen
-        return chosen, limit
+            chosen = fewer if fewer.error <= tolerance else chosen
+        return chosen
 
     def _groups(self, native: bool) -> list[list[Setting]]:
         """Settings to try, the cheapest first; of each number of substeps those of two penetrations together: the
