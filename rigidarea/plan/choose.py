@@ -16,8 +16,9 @@ from .probe import LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, referenc
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
 Response time in man-computer conversational transactions, 1968), whichever is more."""
-RUNS = 12.0
-"""Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
+RUNS = 8.5
+"""Runs of two substeps that the budget must do for: the ladder's first two are 3.5, one and two substeps at two
+penetrations 3, fewer sweeps 1, what is chosen once more 1. The time looked at is cut until it does."""
 FINE_SHARE = 0.5
 """Of the budget: what the ladder may take, where it needs it."""
 STEPS = (1, 2, 4, 8, 16, 32, 64, 128)

@@ -215,9 +215,10 @@ class Probe:
 
     def look(self, seconds: float, first: Setting) -> None:
         """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
-        left = seconds - costs.START_BODY_S * len(self.bodies)
-        frame = self.share * self.cost(first) + costs.SAMPLE_S
-        self.frames = max(1, min(self.frames, int(left / frame)))
+        left, frame = seconds - costs.START_BODY_S * len(self.bodies), self.share * self.cost(first)
+        all_read = left / (frame + costs.SAMPLE_S)
+        some_read = (left - costs.SAMPLE_S * SAMPLES) / frame
+        self.frames = max(1, min(self.frames, int(max(all_read, some_read))))
 
     # --- runs ---
 
