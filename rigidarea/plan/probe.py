@@ -185,9 +185,7 @@ class Probe:
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
-        self.share = (
-            float(self.free.sum()) / self.moving if self.moving else 1.0
-        )  # of what moves that is copied
+        self.share = self.free.sum() / self.moving if self.moving else 1.0  # of what moves that is copied
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
@@ -196,9 +194,7 @@ class Probe:
         self._asked: set[int] = set()
         self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
-        self.begin: float | None = (
-            None  # depth after the first frame of the first run, over the smallest extent
-        )
+        self.begin: float | None = None  # depth after the first run's first frame, over the smallest extent
 
     # --- cost ---
 
@@ -266,16 +262,13 @@ class Probe:
             self._asked = set(asked or {})
         space.iterations = setting.sweeps
         even = np.linspace(0, self.frames, min(SAMPLES, self.frames) + 1).astype(int)
-        ends = np.unique(
-            np.append(even, [1, 2, min(4, self.frames)][: self.frames])
-        )  # loads are found at first
+        ends = np.unique([*even, *np.minimum((1, 2, 4), self.frames)])  # loads are found at first
         states = np.zeros((len(ends), len(bodies), 6))
         read = reader(space, bodies)
         states[0] = read()
         index = {body: i for i, body in enumerate(bodies)}
         seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
-        twins = {twin: body for twin, body in zip(bodies, self.bodies)}
-        made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
+        made_of = {twin: (materials or {}).get(body) for twin, body in zip(bodies, self.bodies)}
         notes = 0
         if materials is not None:
             note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
