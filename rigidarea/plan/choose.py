@@ -155,6 +155,10 @@ class Search:
         if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
             self.tried += [Tried(run, errors, probe.cost(run)) for run, errors in self.fine.coarser]
         within = [each for each in self.tried if each.error <= tolerance]
+        if (
+            not within and self.least is not None
+        ):  # of a plan that was outgrown: better too fine than too coarse
+            return max(self.tried, key=lambda each: each.cost_s)
         if not within:
             return min(self.tried, key=lambda each: each.error)
         chosen = min(within, key=lambda each: (each.cost_s, each.error))
