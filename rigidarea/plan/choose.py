@@ -11,24 +11,20 @@ import pymunk
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
 from . import costs
-from .probe import Array, Probe, Reference, Seen, Setting, reference
+from .probe import LEAST_DEPTH, Array, Probe, Reference, Seen, Setting, reference
 
 SHARE, UNNOTICED_S = 0.05, 0.1
 """What trying out may cost: this share of the planned run, or the time that is not noticed as waiting (s; R. B. Miller,
 Response time in man-computer conversational transactions, 1968), whichever is more."""
-RUNS = 12.0
-"""Runs of two substeps that the budget must do for: the time looked at is cut until it does."""
-NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
-PENETRATIONS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8)
-DEPTHS = 3
-"""Penetrations that go on to the next number of substeps: those that were best."""
+RUNS = 8.5
+"""Runs of two substeps that the budget must do for: the ladder's first two are 3.5, one and two substeps at two
+penetrations 3, fewer sweeps 1, what is chosen once more 1. The time looked at is cut until it does."""
+FINE_SHARE = 0.5
+"""Of the budget: what the ladder may take, where it needs it."""
+STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 SWEEPS, FEWER_SWEEPS = 10, 5
-SLOP = 0.1
-"""Of the tolerance: the share that Chipmunk's slop may have of it."""
 FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
-
-
 COPIES, SAMPLED = 0.5, 0.1
 """What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
 
@@ -66,187 +62,166 @@ class Found(NamedTuple):
     tried: list[Tried]  # all, in the order of their cost
     fine: Reference
     seen: Seen  # of the chosen setting's run
-    end: Array  # (bodies, 6) its last states
-    way: Array  # (bodies,) how far each was from where it began, at the most (length)
     sooner: Array  # (bodies,) what each is off over its way up to then, the largest
-    looked: int  # frames
-    begin: float  # depth after the reference's first frame, over the smallest extent
 
 
-def search(
-    probe: Probe,
-    tolerance: float,
-    native: bool,
-    given: Mapping[str, Any],
-    materials: Mapping[pymunk.Body, Any],
-    least: Setting | None,
-    budget: float,
-) -> Found:
-    """The cheapest setting whose error is within the tolerance; the one with the least where none is.
+class Search:
+    """Settings tried on a probe.
 
-    native: whether Chipmunk's own response may be chosen. given: level, steps, sweeps, penetration that the user has
-    said. least: nothing is to be coarser than that. budget: what trying out may cost (s).
+    given: level, steps, sweeps, penetration that the user has said. least: nothing is to be coarser than that. budget:
+    what trying out may cost (s).
     """
-    planned = probe.frames
-    if probe.moving and not probe.bodies:
-        return _untried(probe, tolerance, given, least)
-    copies = costs.COPY_BODY_S * len(probe.bodies)
-    probe.look((budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATIONS[0]))
-    sagitta = None
-    if (
-        probe.sampled and least is None
-    ):  # facets that turn by no more than the tolerance: turn² = 8 sagitta/radius
-        sagitta = float(np.clip(tolerance**2 / 8.0, FINEST_SAGITTA, 1e-3))
-    fine, rungs = reference(probe, tolerance, sagitta, 0.5 * budget, least)
-    tried: list[Tried] = []
 
-    def attempt(setting: Setting, coarser: float | None = sagitta) -> Tried:
-        errors = probe.apart(probe.track(setting, coarser), fine.track) + fine.doubt
-        tried.append(Tried(setting, errors, probe.cost(setting)))
-        return tried[-1]
+    def __init__(self, probe: Probe, given: Mapping[str, Any], least: Setting | None, budget: float) -> None:
+        self.probe, self.given, self.least, self.budget = probe, given, least, budget
+        self.tried: list[Tried] = []
 
-    chosen: Tried | None = None
-    best_depths: set[float] = set()
-    whole = probe.share == 1.0
-    native = native and ((whole and probe.frames == planned) or given.get("level") == "pymunk")
-    for group in _groups(probe, tolerance, native, given, fine, least):
-        if tried and probe.spent + sum(map(probe.price, group)) > budget:
-            break
-        if group[0].level == "rigid" and best_depths:
-            group = [setting for setting in group if setting.penetration in best_depths]
-        found = sorted((attempt(setting) for setting in group), key=lambda each: each.error)
-        best = found[0]
-        if group[0].level == "rigid":
-            best_depths = {each.setting.penetration for each in found[:DEPTHS]}
-        if best.error <= tolerance:
-            chosen = best
-            break
-    if chosen is not None and not given.get("steps") and chosen.setting.steps > 2:
-        between = chosen.setting._replace(steps=3 * chosen.setting.steps // 4)
-        if least is None or between.steps >= least.steps:
-            chosen = min((chosen, attempt(between)), key=lambda each: (each.error > tolerance, each.cost_s))
-    if chosen is not None and "sweeps" not in given and least is None:
-        fewer = attempt(chosen.setting._replace(sweeps=FEWER_SWEEPS))
-        chosen = fewer if fewer.error <= tolerance else chosen
-    if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
-        tried += [Tried(setting, errors, probe.cost(setting)) for setting, errors in rungs]
-    if (
-        chosen is None
-    ):  # what is near the reference by half the tolerance, where that is not known to be right
-        doubt = float(fine.doubt.max(initial=0.0))
-        good = [each for each in tried if each.error <= max(tolerance, doubt + 0.5 * tolerance)]
-        chosen = min(good, key=lambda each: each.cost_s) if good else min(tried, key=lambda each: each.error)
-    if probe.frames < planned and chosen.setting.level == "rigid" and "steps" not in given:
-        chosen = chosen._replace(setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps)))
-    if sagitta is not None and chosen.error <= tolerance and chosen.setting.level == "rigid":
-        for coarser in (100.0 * sagitta, 10.0 * sagitta):
-            if probe.spent + probe.price(chosen.setting) > budget:
-                break
-            errors = probe.apart(probe.track(chosen.setting, coarser), fine.track) + fine.doubt
-            if errors.max(initial=0.0) <= tolerance:
-                chosen, sagitta = chosen._replace(errors=errors), coarser
-                break
-    states, seen = probe.run(chosen.setting, sagitta, materials=materials)
-    finer: dict[int, int] = {}
-    if (
-        chosen.setting.level == "rigid"
-        and "steps" not in given
-        and least is None
-        and whole
-        and chosen.error <= tolerance
-    ):
-        chosen, finer, states = _apart(probe, chosen, seen, tried, tolerance, sagitta, fine, states)
-    tried.sort(key=lambda each: (each.cost_s, each.error))
-    probe.forget()
-    end, way = np.zeros((len(probe.bodies), 6)), np.full(len(probe.bodies), np.inf)
-    if len(states):
-        end, way = states[-1], np.hypot(*np.moveaxis(states[:, :, :2] - states[0, :, :2], 2, 0)).max(axis=0)
-    sooner = probe.apart(states, fine.track, so_far=True)
-    return Found(
-        chosen, finer, sagitta, tried, fine, seen, end, way, sooner, probe.frames, probe.begin or 0.0
-    )
+    def found(self, native: bool, materials: Mapping[pymunk.Body, Any]) -> Found:
+        """The cheapest setting whose error is within the tolerance; where none is, the one with the least.
 
-
-def _untried(probe: Probe, tolerance: float, given: Mapping[str, Any], least: Setting | None) -> Found:
-    """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too much."""
-    setting = least or Setting("rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * tolerance))
-    setting = setting._replace(**{k: v for k, v in given.items() if k in Setting._fields})
-    n = len(probe.bodies)
-    chosen = Tried(setting, np.full(n, np.inf), probe.cost(setting))
-    seen = Seen({}, np.arange(n), np.zeros(n, bool))
-    end, way = np.zeros((n, 6)), np.full(n, np.inf)
-    return Found(chosen, {}, None, [], Reference(setting, end, chosen.errors), seen, end, way, way, 0, 0.0)
-
-
-def _groups(
-    probe: Probe,
-    tolerance: float,
-    native: bool,
-    given: Mapping[str, Any],
-    fine: Reference,
-    least: Setting | None,
-) -> list[list[Setting]]:
-    """Settings to try, the cheapest first; of each number of substeps those of several penetrations together."""
-    level = given.get("level")
-    depths = [given["penetration"]] if "penetration" in given else [p for p in PENETRATIONS if p <= tolerance]
-    if probe.stiffness is not None or not depths:
-        depths = [given.get("penetration", PENETRATIONS[2])]
-    sweeps = given.get("sweeps", SWEEPS)
-    low = 1
-    if least is not None:
-        depths = [p for p in depths if p <= least.penetration] or [least.penetration]
-        sweeps, low = max(sweeps, least.sweeps), least.steps
-    out = []
-    if level in (None, "rigid"):
-        doubled = (low << i for i in range(8))
-        for n in (
-            [given["steps"]] if "steps" in given else [n for n in doubled if n < fine.setting.steps] or [low]
-        ):
-            out.append([Setting("rigid", n, sweeps, p) for p in depths])
-    if native:  # (where all of the time is looked at: what it is off grows slowly)
-        slop = given.get("penetration", SLOP * tolerance)
-        for n in [given["steps"]] if "steps" in given else NATIVE_STEPS:
-            out.append([Setting("pymunk", n, sweeps, slop)])
-    return sorted(out, key=lambda group: probe.cost(group[0]))
-
-
-def _apart(
-    probe: Probe,
-    chosen: Tried,
-    seen: Seen,
-    tried: list[Tried],
-    tolerance: float,
-    sagitta: float | None,
-    fine: Reference,
-    states: Array,
-) -> tuple[Tried, dict[int, int], Array]:
-    """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
-    mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
-    alike = [chosen] + [
-        each
-        for each in tried
-        if each.setting.level == "rigid" and each.setting.penetration == chosen.setting.penetration
-    ]
-    numbers = np.unique(seen.groups[probe.free])
-    wanted = {
-        int(group): min(
-            each.setting.steps
-            for each in alike
-            if each.errors[seen.groups == group].max(initial=0.0) <= tolerance
-            and each.setting.steps <= chosen.setting.steps
+        native: whether Chipmunk's own response may be chosen, by the plan or by the user.
+        """
+        probe, planned = self.probe, self.probe.frames
+        if probe.moving and not probe.bodies:
+            return self._untried()
+        copies = costs.COPY_BODY_S * len(probe.bodies)
+        probe.look(
+            (self.budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION)
         )
-        for group in numbers
-    }
-    base = min(wanted.values(), default=chosen.setting.steps)
-    finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
-    if not finer:
-        return chosen, {}, states
-    setting = chosen.setting._replace(steps=base)
-    mixed = probe.run(setting, sagitta, finer)[0]
-    errors = probe.apart(mixed, fine.track) + fine.doubt
-    if not errors.max(initial=0.0) <= tolerance:
-        return chosen, {}, states
-    share = {g: float((seen.groups == g).sum()) / len(probe.bodies) for g in wanted}
-    parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
-    cost = costs.area_frame(parts, setting.sweeps, probe.points)
-    return Tried(setting, errors, min(cost, chosen.cost_s)), finer, mixed
+        self.sagitta = None
+        if probe.sampled and self.least is None:
+            # facets that turn by no more than the tolerance: turn² = 8 sagitta/radius
+            self.sagitta = float(np.clip(probe.tolerance**2 / 8.0, FINEST_SAGITTA, 1e-3))
+        self.fine = reference(probe, self.sagitta, FINE_SHARE * self.budget, self.least)
+        # where all is looked at: what Chipmunk's response is off grows slowly
+        seen_whole = probe.share == 1.0 and probe.frames == planned
+        chosen = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
+        rigid = chosen.setting.level == "rigid"
+        if probe.frames < planned and rigid and "steps" not in self.given:
+            chosen = chosen._replace(
+                setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps))
+            )
+        if self.sagitta is not None and rigid:
+            for coarser in (100.0 * self.sagitta, 10.0 * self.sagitta):
+                errors = self._errors(chosen.setting, coarser)
+                if errors.max(initial=0.0) <= max(self.probe.tolerance, chosen.error):
+                    chosen, self.sagitta = chosen._replace(errors=errors), coarser
+                    break
+        states, seen = probe.run(chosen.setting, self.sagitta, materials=materials)
+        finer: dict[int, int] = {}
+        if rigid and "steps" not in self.given and self.least is None and probe.share == 1.0:
+            chosen, finer, states = self._islands(chosen, seen, states)
+        sooner = probe.apart(states, self.fine.track, so_far=True)
+        self.tried.sort(key=lambda each: (each.cost_s, each.error))
+        probe.forget()
+        return Found(chosen, finer, self.sagitta, self.tried, self.fine, seen, sooner)
+
+    def _untried(self) -> Found:
+        """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too
+        much."""
+        setting = self.least or Setting(
+            "rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * self.probe.tolerance)
+        )
+        setting = setting._replace(**{k: v for k, v in self.given.items() if k in Setting._fields})
+        n = len(self.probe.bodies)
+        unknown = np.full(n, np.inf)
+        chosen = Tried(setting, unknown, self.probe.cost(setting))
+        seen = Seen({}, np.arange(n), np.zeros(n, bool))
+        return Found(
+            chosen, {}, None, [], Reference(setting, np.zeros((0, n, 6)), unknown, []), seen, unknown
+        )
+
+    # --- trying ---
+
+    def _errors(self, setting: Setting, sagitta: float | None) -> Array:
+        """(bodies,) What each is off; infinite where that would cost more than is left."""
+        if self.tried and self.probe.spent + self.probe.price(setting) > self.budget:
+            return np.full(len(self.probe.bodies), np.inf)
+        return self.probe.apart(self.probe.track(setting, sagitta), self.fine.track) + self.fine.doubt
+
+    def _attempt(self, setting: Setting) -> Tried:
+        tried = Tried(setting, self._errors(setting, self.sagitta), self.probe.cost(setting))
+        if tried.error < np.inf or not self.tried:
+            self.tried.append(tried)
+        return tried
+
+    def _cheapest(self, native: bool) -> Tried:
+        """The cheapest setting within the tolerance; where none is, the one with the least error that was measured (the
+        finest is there to measure by)."""
+        probe, given, tolerance = self.probe, self.given, self.probe.tolerance
+        for group in self._groups(native):
+            if min(self._attempt(setting).error for setting in group) <= tolerance:
+                break
+        if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
+            self.tried += [Tried(run, errors, probe.cost(run)) for run, errors in self.fine.coarser]
+        within = [each for each in self.tried if each.error <= tolerance]
+        if (
+            not within and self.least is not None
+        ):  # of a plan that was outgrown: better too fine than too coarse
+            return max(self.tried, key=lambda each: each.cost_s)
+        if not within:
+            return min(self.tried, key=lambda each: each.error)
+        chosen = min(within, key=lambda each: (each.cost_s, each.error))
+        setting = chosen.setting
+        if "steps" not in given and setting.steps > max(2, self.least.steps if self.least else 0):
+            between = self._attempt(setting._replace(steps=3 * setting.steps // 4))
+            chosen = between if between.error <= tolerance else chosen
+        if "sweeps" not in given and self.least is None:
+            fewer = self._attempt(chosen.setting._replace(sweeps=FEWER_SWEEPS))
+            chosen = fewer if fewer.error <= tolerance else chosen
+        return chosen
+
+    def _groups(self, native: bool) -> list[list[Setting]]:
+        """Settings to try, the cheapest first; of each number of substeps those of two penetrations together: the
+        default, and the least there is."""
+        given, level = self.given, self.given.get("level")
+        depths = [PENETRATION, LEAST_DEPTH]
+        if "penetration" in given or self.probe.stiffness is not None:
+            depths = [given.get("penetration", PENETRATION)]
+        sweeps, low = given.get("sweeps", SWEEPS), 1
+        if self.least is not None:
+            depths = [p for p in depths if p <= self.least.penetration] or [self.least.penetration]
+            sweeps, low = max(sweeps, self.least.sweeps), self.least.steps
+        out = []
+        if level in (None, "rigid"):
+            numbers = [low * n for n in STEPS if low * n < self.fine.setting.steps] or [low]
+            for n in [given["steps"]] if "steps" in given else numbers:
+                out.append([Setting("rigid", n, sweeps, p) for p in depths])
+        if native:
+            for n in [given["steps"]] if "steps" in given else STEPS:
+                out.append([Setting("pymunk", n, sweeps, depths[0])])
+        return sorted(out, key=lambda group: self.probe.cost(group[0]))
+
+    def _islands(self, chosen: Tried, seen: Seen, states: Array) -> tuple[Tried, dict[int, int], Array]:
+        """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
+        mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
+        probe, tolerance, setting = self.probe, self.probe.tolerance, chosen.setting
+        if chosen.error > tolerance:
+            return chosen, {}, states
+        alike = [chosen] + [
+            each
+            for each in self.tried
+            if each.setting._replace(steps=setting.steps, sweeps=setting.sweeps) == setting
+            and each.setting.steps <= setting.steps
+        ]
+        wanted = {
+            int(group): min(
+                each.setting.steps
+                for each in alike
+                if each.errors[seen.groups == group].max(initial=0.0) <= tolerance
+            )
+            for group in np.unique(seen.groups[probe.free])
+        }
+        base = min(wanted.values(), default=setting.steps)
+        finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
+        if not finer:
+            return chosen, {}, states
+        setting = setting._replace(steps=base)
+        mixed = probe.run(setting, self.sagitta, finer)[0]
+        errors = probe.apart(mixed, self.fine.track) + self.fine.doubt
+        if not errors.max(initial=0.0) <= tolerance:
+            return chosen, {}, states
+        share = {g: float((seen.groups == g).mean()) for g in wanted}
+        parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
+        cost = costs.area_frame(parts, setting.sweeps, probe.points)
+        return Tried(setting, errors, min(cost, chosen.cost_s)), finer, mixed

@@ -32,7 +32,7 @@ START_BODY_S = 12e-6
 #: What a pair that touches does, read (s).
 NOTE_PAIR_S = 35e-6
 #: Places of a copy read, and the call that steps it (s).
-SAMPLE_S = 25e-6
+SAMPLE_S = 12e-6
 #: A step of Chipmunk's own, and a body's share of it; a pair's that touches, and a sweep's over it (s).
 NATIVE_STEP_S, NATIVE_STEP_BODY_S = 0.5e-6, 0.08e-6
 NATIVE_PAIR_S, NATIVE_SWEEP_PAIR_S = 0.3e-6, 0.05e-6

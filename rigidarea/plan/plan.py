@@ -18,7 +18,7 @@ from ..chipmunk import AreaContact, SimulationError, attach, attached
 from ..geometry.gate import positive, truth, whole
 from ..geometry.outline import Outline
 from . import elastic
-from .choose import Found, Tried, bodies_for, budget_of, search
+from .choose import Found, Search, Tried, bodies_for, budget_of
 from .part import part
 from .probe import Probe, Setting
 from .promise import name_of, unpromised
@@ -122,7 +122,7 @@ class Plan:
         native = level == "pymunk" or (
             level is None and not bends and self.stiffness is None and not probe.stands_in
         )
-        found = search(probe, self.tolerance, native, given, self.materials, least, budget)
+        found = Search(probe, given, least, budget).found(native, self.materials)
         self._probe, self._found = probe, found
         self.level, self.steps, self.sweeps, self.penetration = found.chosen.setting
         self.error, self.tried = found.chosen.error, found.tried
@@ -133,11 +133,10 @@ class Plan:
             self.sampling = {**self._sagittas(found), **asked}
         self._frame_cost = found.chosen.cost_s
         self.cost_s_per_s = self._frame_cost / self.frame
-        self.looked, self.planning_s = found.looked * self.frame, clock.thread_time() - started
-        begin = found.begin
-        tried = len(bodies) if found.looked else 0
+        looked, tried = (probe.frames, len(bodies)) if found.tried else (0, 0)
+        self.looked, self.planning_s = looked * self.frame, clock.thread_time() - started
         self.unpromised = unpromised(
-            self.space, self.elastic, found.looked / frames, self.looked, begin, tried
+            self.space, self.elastic, looked / frames, self.looked, probe.begin or 0.0, tried
         )
         sooner = float(found.sooner.max(initial=0.0))
         if self.reachable and sooner > self.tolerance:
@@ -213,9 +212,8 @@ class Plan:
         if self.level == "pymunk":
             if current is not None:
                 current.detach()
-            smallest = float(self._probe.extent[self._probe.free].min(initial=math.inf))
-            if math.isfinite(smallest):
-                space.collision_slop = self.penetration * smallest
+            if self._probe.smallest:
+                space.collision_slop = self.penetration * self._probe.smallest
             return None
         before = self._assembled[1]
         flexible = self._assembly()
@@ -284,19 +282,19 @@ class Plan:
     @property
     def idle_speed(self) -> float:
         """Speed (length/time) below which a body that sleeps half a second is off by no more than the tolerance."""
-        smallest = float(self._probe.extent[self._probe.free].min(initial=math.inf))
-        return self.tolerance * smallest / max(self.seconds, 0.5) if math.isfinite(smallest) else 0.0
+        return self.tolerance * self._probe.smallest / max(self.seconds, 0.5)
 
     @property
     def may_sleep(self) -> list[pymunk.Body]:
         """Bodies that touch something and stood still in what was tried out: `space.sleep_time_threshold` is yours to
         set."""
-        probe, found = self._probe, self._found
-        rim = np.abs(found.end[:, 5]) * np.where(np.isfinite(probe.extent), probe.extent, 0.0)
-        still = (np.hypot(found.end[:, 3], found.end[:, 4]) + rim <= self.idle_speed) & (
-            found.way <= self.tolerance * probe.extent
-        )
-        return [probe.bodies[i] for i in np.flatnonzero(still & found.seen.touched & probe.free)]
+        probe, track = self._probe, self._found.fine.track
+        if not len(track):
+            return []
+        speed = np.hypot(track[-1, :, 3], track[-1, :, 4]) + probe.reach * np.abs(track[-1, :, 5])
+        way = np.hypot(*np.moveaxis(track[:, :, :2] - track[0, :, :2], 2, 0)).max(axis=0)
+        still = (speed <= self.idle_speed) & (way <= self.tolerance * probe.extent)
+        return [probe.bodies[i] for i in np.flatnonzero(still & self._found.seen.touched & probe.free)]
 
 
 def relative(tolerance: float | str) -> float:

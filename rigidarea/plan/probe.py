@@ -10,19 +10,22 @@ from __future__ import annotations
 import io
 import math
 import pickle
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from itertools import repeat, starmap
 from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
 import numpy as np
 import pymunk
 from numpy.typing import NDArray
+from pymunk._chipmunk_cffi import lib
 from pymunk.batch import BodyFields, Buffer, get_space_bodies
 
 from ..chipmunk import AreaContact, SimulationError, attach
 from ..geometry.outline import Outline
 from . import costs
-from .measures import Measured, extent_of, fastest, measure, reach_of, turns_others
+from .measures import Measured, extent_of, measure, reach_of, turns_others
 from .part import join
 
 Array = NDArray[np.float64]
@@ -42,6 +45,9 @@ ENOUGH = 0.01
 """Of the tolerance: a reference that may be off by less needs no finer one."""
 LEAST_DEPTH = 1e-8
 """Penetration of the finest: below, an overlap has lost half its digits (fraction of the smallest extent)."""
+
+
+STATE = BodyFields.POSITION | BodyFields.ANGLE | BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
 
 
 class Setting(NamedTuple):
@@ -171,15 +177,15 @@ class Probe:
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
         self.reach = np.array([reach_of(body, own) or 1.0 for body, own in zip(self.bodies, shapes)])
         self.free = np.array([body.body_type == pymunk.Body.DYNAMIC for body in self.bodies], bool)
+        smallest = float(self.extent[self.free].min(initial=math.inf))
+        self.smallest = smallest if math.isfinite(smallest) else 0.0
         self.drives = np.array([turns_others(body) for body in self.bodies], bool)
         outlines = [o for s in space.shapes if isinstance(o := vars(s).get("outline"), Outline)]
         self.points = sum(len(ring) for outline in outlines for ring in outline.rings)
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
-        self.share = (
-            float(self.free.sum()) / self.moving if self.moving else 1.0
-        )  # of what moves that is copied
+        self.share = self.free.sum() / self.moving if self.moving else 1.0  # of what moves that is copied
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
@@ -188,9 +194,7 @@ class Probe:
         self._asked: set[int] = set()
         self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
-        self.begin: float | None = (
-            None  # depth after the first frame of the first run, over the smallest extent
-        )
+        self.begin: float | None = None  # depth after the first run's first frame, over the smallest extent
 
     # --- cost ---
 
@@ -207,9 +211,10 @@ class Probe:
 
     def look(self, seconds: float, first: Setting) -> None:
         """Look only so far that a run at `first` takes no more than `seconds` of processor time."""
-        left = seconds - costs.START_BODY_S * len(self.bodies)
-        frame = self.share * self.cost(first) + costs.SAMPLE_S
-        self.frames = max(1, min(self.frames, int(left / frame)))
+        left, frame = seconds - costs.START_BODY_S * len(self.bodies), self.share * self.cost(first)
+        all_read = left / (frame + costs.SAMPLE_S)
+        some_read = (left - costs.SAMPLE_S * SAMPLES) / frame
+        self.frames = max(1, min(self.frames, int(max(all_read, some_read))))
 
     # --- runs ---
 
@@ -243,8 +248,7 @@ class Probe:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
         if setting.level == "pymunk":
             space, bodies = self.original.copy()
-            smallest = float(self.extent[self.free].min(initial=math.inf))
-            space.collision_slop = setting.penetration * smallest if math.isfinite(smallest) else 0.0
+            space.collision_slop = setting.penetration * self.smallest
         else:
             if sagitta not in self._spaces:
                 space, bodies = self.original.copy(sagitta)
@@ -258,16 +262,13 @@ class Probe:
             self._asked = set(asked or {})
         space.iterations = setting.sweeps
         even = np.linspace(0, self.frames, min(SAMPLES, self.frames) + 1).astype(int)
-        ends = np.unique(
-            np.append(even, [1, 2, min(4, self.frames)][: self.frames])
-        )  # loads are found at first
+        ends = np.unique([*even, *np.minimum((1, 2, 4), self.frames)])  # loads are found at first
         states = np.zeros((len(ends), len(bodies), 6))
-        names = np.array([body.id for body in bodies], np.uintp)
-        states[0] = read(space, names)
+        read = reader(space, bodies)
+        states[0] = read()
         index = {body: i for i, body in enumerate(bodies)}
         seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
-        twins = {twin: body for twin, body in zip(bodies, self.bodies)}
-        made_of = {twin: (materials or {}).get(body) for twin, body in twins.items()}
+        made_of = {twin: (materials or {}).get(body) for twin, body in zip(bodies, self.bodies)}
         notes = 0
         if materials is not None:
             note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
@@ -277,15 +278,17 @@ class Probe:
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
-                    for _ in range(frames * setting.steps):
-                        space.step(self.frame / setting.steps)
+                    one = repeat((space._space, self.frame / setting.steps), frames * setting.steps)
+                    deque(starmap(lib.cpSpaceStep, one), maxlen=0)  # no callbacks: nothing for Python to do
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
-                states[k + 1] = read(space, names)
+                states[k + 1] = read()
                 if notes and (k == 0 or k % every == every - 1):
                     self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
         except SimulationError:
             states[:] = math.nan
+        speeds = np.hypot(states[:, :, 3], states[:, :, 4]) + self.reach * np.abs(states[:, :, 5])
+        seen.measured["speed"] = float(speeds.max(initial=0.0)), None
         if self._touching:
             self.pairs = sum(self._touching) / len(self._touching) / self.share
             self._touching.clear()
@@ -300,7 +303,6 @@ class Probe:
         seen: Seen,
         materials: Mapping[pymunk.Body, Any],
     ) -> None:
-        fastest(space, seen.measured)
         seen.touched[:] = False
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
@@ -317,13 +319,12 @@ class Probe:
                 join(seen.groups, index[a], index[b])
 
     def apart(self, one: Array, fine: Array, so_far: bool = False) -> Array:
-        """(bodies,) how far each is from where the finer run has it, over its way there, the largest; so_far: over its
-        way up to then.
+        """(bodies,) how far each is from where the finer run has it, the largest: a place over its way or its smallest
+        extent, a turn over what it moves the farthest point, the way, or a radian. What only turns since something
+        drives it is compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
 
-        What does not go its smallest extent is compared over that; where no body of an island ever goes so far,
-        over what the one that moves most goes of it: a tilt over the tilt there is. Below the tolerance that is no
-        motion. A turn counts as what it moves the farthest point. What only turns since something drives it is
-        compared by its spin too, root mean square: a drive's error is in its speed, not in its angle.
+        so_far: over the way up to then; and where no body of an island ever goes its smallest extent, over what the one
+        that moves most goes of it: a tilt over the tilt there is. (Below the tolerance that is no motion.)
         """
         if not len(one) or not len(fine):
             return np.full(len(self.bodies), math.inf)
@@ -331,42 +332,42 @@ class Probe:
         gone = np.cumsum(np.hypot(steps[:, :, 0], steps[:, :, 1]), axis=0)
         turned = self.reach * np.cumsum(steps[:, :, 2], axis=0)
         far = np.maximum(gone, turned)
-        scale = np.zeros(len(self.bodies))
-        np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
-        least = self.extent * np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
-        most = np.maximum(np.hypot(off[:, :, 0], off[:, :, 1]), self.reach * off[:, :, 2])
-        found: Array = (most / np.maximum(far if so_far else far[-1], least)).max(axis=0)
+        small: Any = 1.0
+        if so_far:
+            scale = np.zeros(len(self.bodies))
+            np.maximum.at(scale, self.groups, np.where(self.free, far[-1] / self.extent, 0.0))
+            small = np.where(scale > self.tolerance, np.minimum(scale, 1.0), 1.0)[self.groups]
+        until = slice(None) if so_far else -1
+        places = np.hypot(off[:, :, 0], off[:, :, 1]) / np.maximum(gone[until], small * self.extent)
+        turns = self.reach * off[:, :, 2] / np.maximum(far[until], small * self.reach)
+        found: Array = np.maximum(places, turns).max(axis=0)
         spin = np.sqrt(np.mean(fine[:, :, 5] ** 2, axis=0))
         driven = np.isin(self.groups, self.groups[self.drives])
-        turns = driven & (gone[-1] < self.extent) & (turned[-1] > self.extent)
-        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(turns, spin, 1.0)
-        return np.where(self.free, np.maximum(found, np.where(turns, ripple, 0.0)), 0.0)
+        round_ = driven & (gone[-1] < self.reach) & (turned[-1] > self.reach)
+        ripple = np.sqrt(np.mean(off[:, :, 5] ** 2, axis=0)) / np.where(round_, spin, 1.0)
+        return np.where(self.free, np.maximum(found, np.where(round_, ripple, 0.0)), 0.0)
 
 
 class Reference(NamedTuple):
-    """The finest run, and what it may be off."""
+    """The finest run, what it may be off, and what the coarser ones are, by their own."""
 
     setting: Setting
     track: Array
     doubt: Array  # (bodies,)
+    coarser: list[tuple[Setting, Array]]  # with what the finest may be off: (bodies,)
 
 
-def reference(
-    probe: Probe, tolerance: float, sagitta: float | None, budget: float, least: Setting | None
-) -> tuple[Reference, list[tuple[Setting, Array]]]:
+def reference(probe: Probe, sagitta: float | None, budget: float, least: Setting | None) -> Reference:
     """Runs ever finer, until the last is off by nothing that matters, or the next would cost more than what is left of
-    the budget (s); and what the coarser ones are off. Runs that agree may all have missed what a finer one sees, bodies
-    that are struck in another order, say: so it is not enough that they do.
+    the budget (s). Runs that agree may all have missed what a finer one sees, bodies that are struck in another order,
+    say: so it is not enough that they do.
 
     least: as fine as that at least.
     """
     runs: list[tuple[Setting, Array]] = []
     doubt = np.full(len(probe.bodies), math.inf)
     for j, steps in enumerate(LADDER):
-        depth = max(LEAST_DEPTH, ENOUGH * tolerance * 0.1**j)
-        setting = Setting("rigid", steps, FINE_SWEEPS, depth)
-        if least is not None:
-            setting = setting._replace(steps=least.steps * steps, penetration=min(depth, least.penetration))
+        setting = Setting("rigid", steps * (least.steps if least else 1), FINE_SWEEPS, LEAST_DEPTH)
         if len(runs) > 1 and probe.spent + probe.price(setting) > budget:
             break
         runs.append((setting, probe.track(setting, sagitta)))
@@ -375,20 +376,22 @@ def reference(
             doubt = near[-1] / (RATIO - 1.0)
             if len(near) > 1:
                 doubt = np.maximum(doubt, near[0] / (RATIO**2 - 1.0))
-            if j > 2 and doubt.max(initial=0.0) <= ENOUGH * tolerance:
+            if j > 2 and doubt.max(initial=0.0) <= ENOUGH * probe.tolerance:
                 break
-    setting, track = runs[-1]
-    told = [(each, probe.apart(other, track) + doubt) for each, other in runs[:-1]]
-    return Reference(setting, track, doubt), [*told, (setting, doubt)]
+    fine = runs.pop()
+    return Reference(*fine, doubt, [(each, probe.apart(track, fine[1]) + doubt) for each, track in runs])
 
 
-def read(space: pymunk.Space, names: NDArray[np.uintp]) -> Array:
-    """(bodies, 6) states of the bodies with these ids: place, angle, velocity, spin."""
-    fields = BodyFields.BODY_ID | BodyFields.POSITION | BodyFields.ANGLE
-    fields |= BodyFields.VELOCITY | BodyFields.ANGULAR_VELOCITY
+def reader(space: pymunk.Space, bodies: Sequence[pymunk.Body]) -> Callable[[], Array]:
+    """What reads (bodies, 6) states of these, as long as none comes or goes: place, angle, velocity, spin."""
     buffer = Buffer()
-    get_space_bodies(space, fields, buffer)
-    ids = np.frombuffer(buffer.int_buf(), np.uintp)
-    states = np.frombuffer(buffer.float_buf(), np.float64).reshape(len(ids), 6)
-    order = np.argsort(ids)
-    return states[order[np.searchsorted(ids, names, sorter=order)]]
+    get_space_bodies(space, BodyFields.BODY_ID, buffer)
+    place = {body: i for i, body in enumerate(np.frombuffer(buffer.int_buf(), np.uintp).tolist())}
+    order = [place[body.id] for body in bodies]
+
+    def read() -> Array:
+        buffer.clear()
+        get_space_bodies(space, STATE, buffer)
+        return np.frombuffer(buffer.float_buf()).reshape(-1, 6)[order]
+
+    return read

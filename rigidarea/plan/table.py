@@ -20,83 +20,50 @@ class Line(NamedTuple):
 
     what: str
     choice: str
-    decided_by: str
-    error: float
-    cost_s: float  # a frame
-    target: Any  # what `Plan.override` takes for it; None: the whole space
+    decided_by: str = ""
+    error: float = math.nan
+    cost_s: float = 0.0  # a frame
+    target: Any = None  # what `Plan.override` takes for it; None: the whole space
 
 
 def lines_of(plan: Any) -> list[Line]:
     """The table: the space, the next cheaper and the next finer choice, the worst bodies, substeps of their own, shapes
     that are sampled anew, elastic bodies."""
-    mine = plan.overrides.get(None, {})
-    probe, found = plan._probe, plan._found
-    head = _told(plan, found.chosen.setting)
-    if mine:
-        head += f" (yours: {', '.join(sorted(mine))})"
-    fine = found.fine
+    space, probe, found = plan.space, plan._probe, plan._found
+    chosen, fine = found.chosen, found.fine
+    mine = ", ".join(sorted(plan.overrides.get(None, {})))
+    head = _told(plan, chosen.setting) + (f" (yours: {mine})" if mine else "")
     against = f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
-    if not found.tried:
-        against = "the defaults"
-    out = [Line("space", head, against, plan.error, plan._frame_cost, None)]
-    cheaper = [each for each in found.tried if each.cost_s < found.chosen.cost_s]
-    finer = [each for each in found.tried if each.cost_s > found.chosen.cost_s and each.error < plan.error]
-    for what, each in (("cheaper", cheaper[-1:]), ("finer", finer[:1])):
-        for one in each:
-            text = "tried too"
-            out.append(Line(f"  {what}", _told(plan, one.setting), text, one.error, one.cost_s, None))
-    errors = found.chosen.errors
+    out = [Line("space", head, against if found.tried else "the defaults", plan.error, plan._frame_cost)]
+    cheaper = [each for each in found.tried if each.cost_s < chosen.cost_s][-1:]
+    finer = [each for each in found.tried if each.cost_s > chosen.cost_s and each.error < plan.error][:1]
+    for what, others in (("  cheaper", cheaper), ("  finer", finer)):
+        out += [Line(what, _told(plan, one.setting), "tried too", one.error, one.cost_s) for one in others]
+    errors = chosen.errors
     for i in np.argsort(-errors, kind="stable")[:WORST]:
         if 0.0 < errors[i] < math.inf:
-            where = name_of(plan.space, probe.bodies[i])
+            body = probe.bodies[i]
             text = f"its place or turn is off, of which {fine.doubt[i]:.1e} is the finer run's own"
-            out.append(Line(where, "as the space", text, float(errors[i]), 0.0, probe.bodies[i]))
+            out.append(Line(name_of(space, body), "as the space", text, float(errors[i]), target=body))
     for steps in sorted(set(plan.finer.values())):
-        bodies = [body for body, n in plan.finer.items() if n == steps]
-        names = f"{name_of(plan.space, bodies[0])}" + (f" and {len(bodies) - 1} more" if bodies[1:] else "")
-        text = "with fewer their island is outside"
-        out.append(Line(names, f"{steps} substeps", text, float("nan"), 0.0, bodies[0]))
+        first, *more = [body for body, n in plan.finer.items() if n == steps]
+        names = name_of(space, first) + (f" and {len(more)} more" if more else "")
+        out.append(Line(names, f"{steps} substeps", "with fewer their island is outside", target=first))
     for target, settings in plan.overrides.items():
         if isinstance(target, pymunk.Body) and "steps" in settings:
             text = f"{settings['steps']} substeps for its island (yours)"
-            out.append(Line(name_of(plan.space, target), text, "", float("nan"), 0.0, target))
+            out.append(Line(name_of(space, target), text, target=target))
     for shape, sagitta in plan.sampling.items():
         yours = " (yours)" if "sampling" in plan.overrides.get(shape, {}) else ""
         points = sum(map(len, shape.outline.sample(sagitta).rings))  # type: ignore[attr-defined]
-        out.append(
-            Line(
-                name_of(plan.space, shape),
-                f"sampled to {sagitta:.1e}{yours}",
-                f"{points} corners",
-                float("nan"),
-                0.0,
-                shape,
-            )
-        )
+        text = f"sampled to {sagitta:.1e}{yours}"
+        out.append(Line(name_of(space, shape), text, f"{points} corners", target=shape))
     for choice in plan.elastic:
-        yours = " (yours)" if choice.overridden else ""
-        out.append(
-            Line(
-                name_of(plan.space, choice.body),
-                f"{choice.level}{yours}",
-                choice.reason,
-                choice.error,
-                0.0,
-                choice.body,
-            )
-        )
-    asleep = plan.may_sleep
-    if asleep:
-        out.append(
-            Line(
-                f"{len(asleep)} bodies",
-                "may sleep",
-                f"stood still on something, slower than {plan.idle_speed:.1e}",
-                0.0,
-                0.0,
-                None,
-            )
-        )
+        level = choice.level + (" (yours)" if choice.overridden else "")
+        out.append(Line(name_of(space, choice.body), level, choice.reason, choice.error, target=choice.body))
+    if asleep := plan.may_sleep:
+        text = f"stood still on something, slower than {plan.idle_speed:.1e}"
+        out.append(Line(f"{len(asleep)} bodies", "may sleep", text, 0.0))
     return out
 
 
@@ -104,16 +71,9 @@ def text_of(plan: Any) -> str:
     """The table as text."""
     rows = [("", "choice", "decided by", "error", "ms a frame")]
     for line in plan.lines:
-        error = "" if not math.isfinite(line.error) else f"{line.error:.1e}"
-        rows.append(
-            (
-                line.what,
-                line.choice,
-                line.decided_by,
-                error,
-                f"{1e3 * line.cost_s:.3g}" if line.cost_s else "",
-            )
-        )
+        error = f"{line.error:.1e}" if math.isfinite(line.error) else ""
+        cost = f"{1e3 * line.cost_s:.3g}" if line.cost_s else ""
+        rows.append((line.what, line.choice, line.decided_by, error, cost))
     widths = [max(len(row[i]) for row in rows) for i in range(5)]
     table = "\n".join(
         "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows

@@ -70,7 +70,8 @@ class Watch:
         self._weight = _weight_energy(plan)
         seen = {name: value for name, (value, _) in plan._found.seen.measured.items()}
         promised = {
-            "penetration": seen.get("penetration", plan.penetration),
+            # what is no deeper than the tolerance has outgrown nothing
+            "penetration": max(seen.get("penetration", plan.penetration), plan.tolerance / OUTGROWN),
             "phase": seen.get("phase", math.inf),
             "load": seen.get("load", 1.0 if plan.space.gravity.length else math.inf),
             "speed": seen.get("speed", 0.0),

@@ -55,8 +55,7 @@ def test_a_copy_has_joints_filters_and_outlines():
 
 
 def test_how_far_apart_two_runs_are():
-    """A body that goes 4 and ends 0.02 off: 0.005. At rest, over its smallest extent. Turned, by what its farthest
-    point moves."""
+    """A body that goes 4 and ends 0.02 off: 0.005. At rest, over its smallest extent. Turned, over a radian."""
     space = pymunk.Space()
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Poly.create_box(body, (3.0, 1.0)))
@@ -67,7 +66,10 @@ def test_how_far_apart_two_runs_are():
     assert probe.apart(moved, fine) == pytest.approx([0.02])
     turned = fine.copy()
     turned[2, 0, 2] = -0.02
-    assert probe.apart(turned, fine) == pytest.approx([0.02 * math.hypot(1.5, 0.5)])
+    assert probe.apart(turned, fine) == pytest.approx([0.02])
+    fine[3:, 0, 2] = turned[3:, 0, 2] = 4.0  # or over what it turns in all
+    assert probe.apart(turned, fine) == pytest.approx([0.005])
+    fine[:] = 0.0
     fine[:, 0, 0] = moved[:, 0, 0] = np.arange(5)
     assert probe.apart(moved, fine) == pytest.approx([0.005])
     moved[2, 0, 1] = 0.02  # sooner: over what it has gone by then
@@ -88,7 +90,7 @@ def test_spin_is_compared_of_what_is_driven(driven):
         space.add(pymunk.SimpleMotor(space.static_body, plank, 1.0))
     probe = Probe(space, 0.1, 4, None, {}, 0.1, space.bodies)
     fine = np.zeros((60, 1, 6))
-    fine[30:, 0, 5] = 1.0
+    fine[30:, 0, 5] = 3.0
     fine[:, 0, 2] = np.cumsum(fine[:, 0, 5]) / 60
     late = np.roll(fine, 1, axis=0)
     late[0] = 0.0
@@ -109,14 +111,15 @@ def test_what_moves_little_is_off_by_its_share_of_the_motion():
     fine[:, 0, 0] = 0.0125 * np.arange(5)
     moved = fine.copy()
     moved[-1, 0, 0] += 2e-3
-    assert probe.apart(moved, fine) == pytest.approx([0.04, 0.0])
+    assert probe.apart(moved, fine) == pytest.approx([2e-3, 0.0])  # at the end, of a width
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([0.04, 0.0])
     probe.tolerance = 0.06
-    assert probe.apart(moved, fine) == pytest.approx([2e-3, 0.0])
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([2e-3, 0.0])
     probe.tolerance = 0.01
     fine[:, 1, 1] = moved[:, 1, 1] = np.arange(5)
-    assert probe.apart(moved, fine) == pytest.approx([0.04, 0.0])
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([0.04, 0.0])
     probe.groups[1] = 0
-    assert probe.apart(moved, fine) == pytest.approx([2e-3, 0.0])
+    assert probe.apart(moved, fine, so_far=True) == pytest.approx([2e-3, 0.0])
 
 
 def test_the_ladder_doubts_a_first_order_error_by_what_it_is():
@@ -133,8 +136,8 @@ def test_the_ladder_doubts_a_first_order_error_by_what_it_is():
     body = pymunk.Body(1, 1)
     space.add(body, pymunk.Circle(body, 0.5))
     probe = Known(space, 0.1, 1, None, {}, 1e-6, space.bodies)
-    fine, rungs = reference(probe, 1e-6, None, 3.5, None)
-    assert fine.setting.steps == LADDER[3] and len(rungs) == 4  # as far as the budget goes
+    fine = reference(probe, None, 3.5, None)
+    assert fine.setting.steps == LADDER[3] and len(fine.coarser) == 3  # as far as the budget goes
     assert fine.doubt == pytest.approx(
         [0.3 / LADDER[3]], rel=0.05
     )  # Pell's quotients are within 2 % of the limit
