@@ -20,7 +20,7 @@ moves; δ the unknown changes of frames and hub forces with P what they move at 
 Pᵀ y₀ and Pᵀ S go to the frames' and hubs' rows; the frames' solution δ gives the loads. As C̃ is positive as well, the
 linear system is regular, and this is the semi-smooth Newton method of the obstacle problem (M. Hintermüller, K. Ito,
 K. Kunisch, SIAM J. Optim. 13, 2002, doi:10.1137/S1052623401383558): where a load comes out negative the contact opens
-in the next evaluation. Left out of the tangent are the turns of the directions.
+in the next evaluation. Regions' directions turn as well: ``turns``.
 """
 
 from __future__ import annotations
@@ -31,17 +31,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.compile.jit import kernel
-from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.boundary_places import add_load, clear_nodes
-from rigidarea.flexible.dense import factor, yielded
-from rigidarea.flexible.load_moves import body_compliance, hub_moves
 from rigidarea.flexible.scratch import Loads, Scratch
 from rigidarea.flexible.slabs import GAUSS_W, GAUSS_X, cuts, slab
 
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
+YIELDS, STILL = -1, -2  # sides that have no unknowns of their own: loads on nodes instead; none at all
 TWO = (0.5 - 0.5 / 3.0**0.5, 0.5 + 0.5 / 3.0**0.5)  # Gauss: exact for a product of two linear shape functions
 
 
@@ -51,6 +48,9 @@ def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: floa
     i = s.made[0]
     s.made[0] += 1
     s.side[i], s.node[i], s.force[i], s.region[i] = side, node, 0.0, s.made[1]
+    s.turn[0, i] = s.turn[1, i] = 0.0
+    s.across[i, : i + 1] = 0.0
+    s.across[:i, i] = 0.0
     s.stiffness[i, : i + 1] = 0.0
     s.stiffness[:i, i] = 0.0
     sign = -1.0 if side == 0 else 1.0
@@ -73,22 +73,26 @@ def _at_node(b: Boundary, w: Work, pose: Array, s: Loads, side: int, node: int, 
 
 
 @kernel
-def _flexible(b: Boundary) -> bool:
+def flexible(b: Boundary) -> bool:
+    """Whether a body yields at all."""
     return b.modes.shape[1] > 0 or b.flexibility.shape[0] > 0
 
 
 @kernel
 def _enter(
     b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, t: float, weight: float, ends: int, along: float,
-    nx: float, ny: float, count: int,
+    nx: float, ny: float, count: int, rate: float,
 ) -> int:  # fmt: skip
     """Appends the two unknowns under a place to ``s.entry``, with ``weight`` times their shares; their number so far.
 
-    The place: parameter t of a contact edge; of a rigid side (``ends`` >= 0, the first of its two) ``along`` in [0, 1].
+    ``rate``: of t along the axis across the force, towards what is across the loads. The place: parameter t of a contact edge; of a rigid side (``ends`` >= 0, the first of its two) ``along`` in [0, 1].
     """
+    if ends == STILL:
+        return count
     if ends >= 0:
         s.entry[count], s.share[count] = ends, weight * (1.0 - along)
         s.entry[count + 1], s.share[count + 1] = ends + 1, weight * along
+        s.slide[count] = s.slide[count + 1] = 0.0
         return count + 2
     j = b.following[edge]
     low = b.share[edge]
@@ -99,6 +103,8 @@ def _enter(
     s.share[count] = weight * (1.0 - part)
     s.entry[count + 1] = _at_node(b, w, pose, s, side, other, nx, ny)
     s.share[count + 1] = weight * part
+    rate *= weight * (high - low)
+    s.slide[count], s.slide[count + 1] = -rate, rate
     return count + 2
 
 
@@ -112,6 +118,8 @@ def enter_vector(
     Its forces have many directions: an FE node has two unknowns, along x and y; a rigid side (``rigid`` >= 0, the first
     of its three) has force and moment about its origin.
     """
+    if rigid == STILL:
+        return count
     if rigid >= 0:
         for k in range(3):
             s.entry[count + k] = rigid + k
@@ -136,13 +144,13 @@ def enter_vector(
 
 
 @kernel
-def begin_vectors(a: Boundary, pa: Array, b: Boundary, pb: Array, s: Loads) -> tuple[int, int]:
-    """Starts a region of STS: the first of the three unknowns of each rigid side, -1 for sides that yield."""
+def begin_vectors(a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, s: Loads) -> tuple[int, int]:
+    """Starts a region of STS: the first of the three unknowns of each rigid side, YIELDS or STILL for others."""
     s.made[1] += 1
-    first = (-1, -1)
+    first = (STILL if wa.still[0] else YIELDS, STILL if wb.still[0] else YIELDS)
     for side in range(2):
         body, pose = (a, pa) if side == 0 else (b, pb)
-        if not _flexible(body):
+        if not flexible(body) and first[side] != STILL:
             i = _new(s, side, -1, pose[0], pose[1], 1.0, 0.0, pose)
             _new(s, side, -1, pose[0], pose[1], 0.0, 1.0, pose)
             _new(s, side, -2, pose[0], pose[1], 0.0, 0.0, pose)
@@ -162,16 +170,50 @@ def gather(s: Loads, count: int, force: float, stiff: float) -> None:
 
 
 @kernel
+def lean(
+    s: Loads, first: int, end: int, count: int, weight: float, own: float, other: float, stiff: float, press: float
+) -> None:  # fmt: skip
+    """One Gauss point of a region: what displacements of the loads entered on one side do, across them too.
+
+    Slopes b', t' of the arcs of A and B over the axis across the force: a boundary's height there grows by the
+    displacement along the force less its ``own`` slope times that across. With d = t - b the direction leans by
+    ∫ d^q (b' + t')/2 dx / ∫ d^q dx. As d is zero at both ends, by parts, it leans more by
+
+        q ∫ d^(q-1) (b' δt - t' δb) dx / ∫ d^q dx,
+
+    and loads on A push along the heights, those on B against them. What moves across under a pressure also has its
+    loads shifted.
+    """
+    for p in range(first, end):
+        i, v = s.entry[p], s.share[p]
+        g = v * weight * other
+        s.turn[0, i] -= g
+        s.turn[1, i] -= g * own
+        for q in range(count):
+            s.across[s.entry[q], i] += stiff * own * v * s.share[q]
+        for q in range(first, end):
+            s.across[s.entry[q], i] -= press * s.slide[q] * v
+
+
+@kernel
+def _mean(s: Loads, first: int, total: float) -> None:
+    """Ends a region with ∫ d^q dx = ``total``, of loads from ``first`` on."""
+    for i in range(first, s.made[0]):
+        for k in range(2):
+            s.turn[k, i] = s.turn[k, i] / total if total > 0.0 else 0.0
+
+
+@kernel
 def _begin(
-    a: Boundary, pa: Array, b: Boundary, pb: Array, r: Any, s: Loads, x0: float, x1: float
+    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, s: Loads, x0: float, x1: float
 ) -> tuple[int, int]:
-    """Starts a region: the first of the two unknowns of each rigid side, -1 for sides that yield."""
+    """Starts a region: the first of the two unknowns of each rigid side, YIELDS or STILL for others."""
     s.made[1] += 1
     nx, ny = r["nx"], r["ny"]
-    first = (-1, -1)
+    first = (STILL if wa.still[0] else YIELDS, STILL if wb.still[0] else YIELDS)
     for side in range(2):
         body, pose = (a, pa) if side == 0 else (b, pb)
-        if not _flexible(body):
+        if not flexible(body) and first[side] != STILL:
             i = s.made[0]
             for x in (x0, x1):  # along the axis across the force, from the entry
                 _new(s, side, -1, r["enter_x"] - x * ny, r["enter_y"] + x * nx, nx, ny, pose)
@@ -194,7 +236,8 @@ def couple(
     x, y, edge, t, s = scratch.x, scratch.y, scratch.edge, scratch.t, scratch.load
     chord = x[0, n_a]
     nx, ny = r["nx"], r["ny"]
-    rigid_a, rigid_b = _begin(a, pa, b, pb, r, s, 0.0, chord)
+    start = s.made[0]
+    rigid_a, rigid_b = _begin(a, wa, pa, b, wb, pb, r, s, 0.0, chord)
     i = j = 0
     lo = 0.0
     while i < n_a and j < n_b:
@@ -207,15 +250,21 @@ def couple(
                 d = y[1, j] + rb * (y[1, j + 1] - y[1, j]) - y[0, i] - ra * (y[0, i + 1] - y[0, i])
                 ta = t[0, i, 0] + ra * (t[0, i, 1] - t[0, i, 0])
                 tb = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])
-                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, z / chord, nx, ny, 0)
-                n = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, z / chord, nx, ny, n)
+                rate_a = inverse_a * (t[0, i, 1] - t[0, i, 0])
+                rate_b = -inverse_b * (t[1, j, 1] - t[1, j, 0])
+                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, z / chord, nx, ny, 0, rate_a)
+                m = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, z / chord, nx, ny, n, rate_b)
                 w = 0.5 * (hi - lo)
-                gather(s, n, w * k * d, w * k)
+                gather(s, m, w * k * d, w * k)
+                slope_a, slope_b = inverse_a * (y[0, i + 1] - y[0, i]), inverse_b * (y[1, j + 1] - y[1, j])
+                lean(s, 0, n, m, w, slope_a, slope_b, w * k, w * k * d)
+                lean(s, n, m, m, w, slope_b, slope_a, w * k, w * k * d)
             lo = hi
         if x[0, i + 1] <= lo:
             i += 1
         else:
             j += 1
+    _mean(s, start, r["area"])
 
 
 @kernel
@@ -231,18 +280,20 @@ def couple_slabs(
     nx, ny = r["nx"], r["ny"]
     n = cuts(x, n_a, n_b, cut)
     x0, x1 = cut[0], cut[n - 1]
-    rigid_a, rigid_b = _begin(a, pa, b, pb, r, s, x0, x1)
+    start, total = s.made[0], 0.0
+    rigid_a, rigid_b = _begin(a, wa, pa, b, wb, pb, r, s, x0, x1)
     for m in range(n - 1):
         lo, hi = cut[m], cut[m + 1]
         if hi <= lo:
             continue
-        d0, d1, _middle, net, right_a, right_b = slab(x, y, t, n_a, n_b, lo, hi)
+        d0, d1, middle, net, right_a, right_b = slab(x, y, t, n_a, n_b, lo, hi)
         if net <= 0:
             continue
+        half = 0.5 * (d1 - d0) / (hi - lo)
         for g in range(3):
             z = lo + GAUSS_X[g] * (hi - lo)
             d = d0 + (d1 - d0) * GAUSS_X[g]
-            count = 0
+            count = ends_a = 0
             for side in range(2):
                 body, work, pose = (a, wa, pa) if side == 0 else (b, wb, pb)
                 ends = rigid_a if side == 0 else rigid_b
@@ -251,118 +302,20 @@ def couple_slabs(
                     u0, u1 = x[side, i], x[side, i + 1]
                     if u0 > lo or u1 < hi or t[side, i, 0] == t[side, i, 1]:
                         continue
-                    at = t[side, i, 0] + (t[side, i, 1] - t[side, i, 0]) * (z - u0) / (u1 - u0)
+                    rate = (t[side, i, 1] - t[side, i, 0]) / (u1 - u0)
+                    at = t[side, i, 0] + rate * (z - u0)
+                    rate = rate if side == 0 else -rate
                     along = (z - x0) / (x1 - x0)
                     count = _enter(
-                        body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count
+                        body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count, rate
                     )
+                ends_a = count if side == 0 else ends_a
             w = net * GAUSS_W[g] * (hi - lo)
-            gather(s, count, w * (alpha + beta * (z - xc)) * d**q, w * k)
-
-
-@kernel
-def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads) -> float:
-    """Takes the loads out of Newton's system: ``buf.tangent`` gets Pᵀ S, ``buf.push`` Pᵀ y₀.
-
-    ``s.side`` holds bodies by now, ``buf.modal_residual`` the modes' residual under the new loads. Returns the sum
-    of |y₀|: by how much the loads are off from what belongs to the present frames.
-    """
-    n, count = s.made[0], len(sy.mass)
-    buf.push[:] = 0.0
-    if n == 0:
-        return 0.0
-    for b in range(count):
-        buf.touched[b] = 0
-    for i in range(n):
-        buf.stale[i] = buf.shift[i] = buf.lag[i] = 0.0
-        buf.touched[s.side[i]] = 1
-        for j in range(i + 1):
-            buf.compliance[i, j] = buf.compliance[j, i] = 0.0
-    columns = 0
-    for b in range(count):
-        if buf.touched[b] == 0:
-            continue
-        bd, w = boundary_at(bodies, b), work_at(bodies, b)
-        lo, hi = sy.first[b], sy.first[b + 1]
-        if _flexible(bd):
-            body_compliance(bd, w, s, buf, b, lo, hi, state.q[lo:hi], n)
-        held = _flexible(bd) and (sy.pinned[b] == 1 or sy.driven[b] == 1 or sy.damper[b] > 0.0)
-        if sy.fixed[b] == 1 and not held:
-            continue
-        for k in range(6 if held else 3):
-            buf.active[columns + k] = 3 * b + k if k < 3 else 3 * count + 3 * b + k - 3
-        for i in range(n):
-            moves = buf.moves[i, columns : columns + 6]
-            moves[:] = 0.0
-            if s.side[i] != b:
-                continue
-            ex, ey = s.world[i, 0], s.world[i, 1]
-            moves[0], moves[1] = ex, ey
-            moves[2] = (s.at[i, 0] - buf.pose[b, 0]) * ey - (s.at[i, 1] - buf.pose[b, 1]) * ex
-            if s.node[i] == -2:
-                moves[2] = s.local[i, 0]
-            moves[2] += buf.lag[i]
-            if held:
-                ex, ey = s.local[i, 0], s.local[i, 1]
-                hub_moves(
-                    bd, w, s.node[i], ex, ey, buf.pose[b], buf.modal[i], buf.modes[0, : hi - lo], moves[3:]
-                )
-        columns += 6 if held else 3
-    # (I + K C̃) y = −K (a + P δ)
-    for i in range(n):
-        buf.right[0, i] = buf.stale[i] + buf.shift[i]
-        for c in range(columns):
-            buf.right[c + 1, i] = buf.moves[i, c]
-    factor(s.stiffness, buf.compliance, n, buf.system, buf.last)
-    yielded(buf.right, n, columns + 1, buf.system, buf.last)
-    off = 0.0
-    for i in range(n):
-        off += abs(buf.right[0, i])
-    for c in range(columns):
-        to = buf.active[c]
-        for i in range(n):
-            p = buf.moves[i, c]
-            if p == 0.0:
-                continue
-            buf.push[to] += p * buf.right[0, i]
-            for d in range(columns):
-                buf.tangent[to, buf.active[d]] -= p * buf.right[d + 1, i]
-    buf.counts[2] = columns
-    return off
-
-
-@kernel
-def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float, part: float) -> None:
-    """The loads that belong to the solution in ``buf.rhs``: y = y₀ − S δ in ``buf.answer``, and the nodes' loads.
-
-    Of these, ``part``: the rest is what the nodes were given in the iteration before.
-    """
-    n, columns, count = s.made[0], buf.counts[2], 3 * len(sy.mass)
-    for b in range(len(sy.mass)):
-        w = work_at(bodies, b)
-        clear_nodes(w)
-        if part != 1.0:
-            for j in range(w.given[-1]):
-                node, rest = w.given[j], 1.0 - part
-                x, y = w.given_load[j, 0], w.given_load[j, 1]
-                add_load(w.node_load, w.node_flag, w.loaded, node, rest * x, rest * y)
-    for i in range(n):
-        y = buf.right[0, i]
-        for c in range(columns):
-            to = buf.active[c]
-            if to < count:
-                y += buf.right[c + 1, i] * buf.rhs[to]
-            elif buf.column[to - count] >= 0:
-                y += buf.right[c + 1, i] * buf.rhs[buf.column[to - count]] / scale
-        buf.answer[i] = y
-        if s.node[i] >= 0:
-            w = work_at(bodies, s.side[i])
-            f = part * (s.force[i] + y)
-            add_load(w.node_load, w.node_flag, w.loaded, s.node[i], f * s.local[i, 0], f * s.local[i, 1])
-    for b in range(len(sy.mass)):
-        w = work_at(bodies, b)
-        w.given[-1] = w.loaded[-1]
-        for j in range(w.loaded[-1]):
-            node = w.loaded[j]
-            w.given[j] = node
-            w.given_load[j, 0], w.given_load[j, 1] = w.node_load[node, 0], w.node_load[node, 1]
+            press = w * (alpha + beta * (z - xc)) * d**q
+            gather(s, count, press, w * k)
+            if d > 0.0:
+                total += w * d**q
+                v = w * q * d ** (q - 1.0)
+                lean(s, 0, ends_a, count, v, middle - half, middle + half, w * k, press)
+                lean(s, ends_a, count, count, v, middle + half, middle - half, w * k, press)
+    _mean(s, start, total)

@@ -179,7 +179,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
 
 
 @kernel
-def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
+def correct_forces(bodies, sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
     """The forces kept, after Newton's last correction, whose change of the frames is in ``buf.rhs``.
 
     A region's force is that of its loads on the second body, or changes by its stiffness; as the tangent has it. It
@@ -193,10 +193,12 @@ def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
         change = 0.0
         if st.spread:
             fx = fy = 0.0
+            still = work_at(bodies, pairs[p, 1]).still[0]
+            side, sign = (pairs[p, 0], -1.0) if still else (pairs[p, 1], 1.0)
             for n in range(s.load.made[0]):
-                if s.load.region[n] == int(r[9]) and s.load.side[n] == pairs[p, 1]:
-                    fx += buf.answer[n] * s.load.world[n, 0]
-                    fy += buf.answer[n] * s.load.world[n, 1]
+                if s.load.region[n] == int(r[9]) and s.load.side[n] == side:
+                    fx += sign * buf.answer[0, n] * s.load.world[n, 0]
+                    fy += sign * buf.answer[0, n] * s.load.world[n, 1]
             if st.sts:
                 x, y = buf.force[p, 0], buf.force[p, 1]
                 change = r[1] * (x * fx + y * fy) / (x * x + y * y)

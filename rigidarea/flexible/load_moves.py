@@ -17,62 +17,92 @@ Array = NDArray[np.float64]
 
 
 @kernel
-def body_compliance(
-    b: Boundary, w: Work, s: Loads, buf: Any, body: int, lo: int, hi: int, q: Array, n: int
-) -> None:
-    """One body's part of C̃ and a: modes, static flexibility, and what the loads of the iteration before moved."""
+def note_loads(
+    b: Boundary, w: Work, s: Loads, buf: Any, body: int, lo: int, hi: int, q: Array, column: int, wide: bool
+) -> int:
+    """Lists one body's loads in ``buf.own``: how many. Of each, along and, if ``wide``, across it: the modes, what
+    they move as their frame turns, and, in ``column`` of ``buf.along`` and ``buf.across``, a of ``condense`` but for what
+    the loads of this iteration move.
+    """
     m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
-    free, give, residual, swing = (
-        buf.modes[0, :m],
-        buf.modes[1, :m],
-        buf.modal_residual[lo:hi],
-        buf.swing[lo:hi],
-    )
+    free, give = buf.modes[0, :m], buf.modes[1, :m]
+    residual, swing = buf.modal_residual[lo:hi], buf.swing[lo:hi]
     for c in range(m):
         free[c], give[c] = w.mobility[c] * residual[c], w.mobility[c] * swing[c]
-    for i in range(n):
+    count = 0
+    for i in range(s.made[0]):
         if s.side[i] != body:
             continue
-        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
-        along = buf.modal[i, :m]
-        old = ex * w.displacement[s.node[i], 0] + ey * w.displacement[s.node[i], 1]
-        for c in range(m):
-            along[c] = ex * b.modes[row, c] + ey * b.modes[row + 1, c]
-        old -= dot(along, q)
-        if static:
-            for c in range(3):
-                old -= w.hub_load[c] * (ex * b.flexibility[row, h + c] + ey * b.flexibility[row + 1, h + c])
-        if len(b.swell) > 0:
-            old -= w.spin[0] * (ex * b.swell[row] + ey * b.swell[row + 1])
-        if w.tight[0]:
-            old -= follow(b, w, 1, row, ex, ey)
-        buf.stale[i] = -old if static else 0.0
-        buf.shift[i], buf.lag[i] = -dot(along, free), -dot(along, give)
-    for i in range(n):
-        if s.side[i] != body:
-            continue
-        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
-        for c in range(m):
-            give[c] = buf.modal[i, c] * w.mobility[c]
-        if w.tight[0]:
-            pull(b, w, row, ex, ey)
-        for j in range(i + 1):
-            if s.side[j] != body:
-                continue
-            moved = 0.0
+        buf.own[count] = i
+        count += 1
+        row, ex, ey, u = 2 * s.node[i], s.local[i, 0], s.local[i, 1], w.displacement[s.node[i]]
+        for k in range(2 if wide else 1):
+            modal, moved = (buf.modal[i, :m], buf.along[i]) if k == 0 else (buf.gauge[i, :m], buf.across[i])
+            for c in range(m):
+                modal[c] = ex * b.modes[row, c] + ey * b.modes[row + 1, c]
+            buf.lag[k, i] = -dot(modal, give)
+            moved[column] = -dot(modal, free)
             if static:
-                if len(b.ready) > 0:
-                    make_ready(b, s.node[i], s.node[j], s.node[j] + 1)
-                u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
-                top, low = b.flexibility[row], b.flexibility[row + 1]
-                moved = ex * (top[u] * ux + top[u + 1] * uy) + ey * (low[u] * ux + low[u + 1] * uy)
+                old = ex * u[0] + ey * u[1] - dot(modal, q)
+                for c in range(3):
+                    old -= w.hub_load[c] * (
+                        ex * b.flexibility[row, h + c] + ey * b.flexibility[row + 1, h + c]
+                    )
+                if len(b.swell) > 0:
+                    old -= w.spin[0] * (ex * b.swell[row] + ey * b.swell[row + 1])
                 if w.tight[0]:
-                    moved += follow(b, w, 2, u, ux, uy)
-                buf.stale[i] += moved * s.force[j]
-                if j != i:
-                    buf.stale[j] += moved * s.force[i]
-            moved += dot(give, buf.modal[j, :m])
-            buf.compliance[i, j] = buf.compliance[j, i] = moved
+                    old -= follow(b, w, 1, row, ex, ey)
+                moved[column] -= old
+            ex, ey = -ey, ex
+    return count
+
+
+@kernel
+def _static(
+    b: Boundary, w: Work, row: int, u: int, ex: float, ey: float, ux: float, uy: float
+) -> tuple[float, float]:
+    """Static displacement along (ex, ey) at the node of ``row`` by unit forces at that of ``u``: along (ux, uy), and a
+    quarter of a turn further. A tight body: after ``pull`` of the former."""
+    top, low = b.flexibility[row], b.flexibility[row + 1]
+    x, y = ex * top[u] + ey * low[u], ex * top[u + 1] + ey * low[u + 1]
+    along, across = x * ux + y * uy, y * ux - x * uy
+    if w.tight[0]:
+        along += follow(b, w, 2, u, ux, uy)
+        across += follow(b, w, 2, u, -uy, ux)
+    return along, across
+
+
+@kernel
+def body_compliance(b: Boundary, w: Work, s: Loads, buf: Any, count: int, column: int, wide: bool) -> None:
+    """One body's part of C̃, by the ``count`` loads in ``buf.own``, of ``turning`` directions too: columns of
+    ``buf.along`` and ``buf.across``. What the loads of this iteration move statically goes to a, in ``column``."""
+    m, static = b.modes.shape[1], b.flexibility.shape[0] > 0
+    give = buf.modes[1, :m]
+    for p in range(count):
+        i = buf.own[p]
+        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
+        for k in range(2 if wide else 1):
+            moved, modal = (buf.along[i], buf.modal[i]) if k == 0 else (buf.across[i], buf.gauge[i])
+            for c in range(m):
+                give[c] = modal[c] * w.mobility[c]
+            if w.tight[0]:
+                pull(b, w, row, ex, ey)
+            for o in range(count):
+                j = buf.own[o]
+                along = turn = 0.0
+                if static:
+                    if len(b.ready) > 0:
+                        make_ready(b, s.node[i], s.node[j], s.node[j] + 1)
+                    along, turn = _static(b, w, row, 2 * s.node[j], ex, ey, s.local[j, 0], s.local[j, 1])
+                    moved[column] += along * s.force[j]
+                if m > 0:
+                    along += dot(give, buf.modal[j, :m])
+                moved[j] = along
+                if buf.turning[j] >= 0:
+                    if m > 0:
+                        turn += dot(give, buf.gauge[j, :m])
+                    moved[buf.turning[j]] += s.force[j] * turn
+            ex, ey = -ey, ex
 
 
 @kernel

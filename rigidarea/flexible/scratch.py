@@ -40,9 +40,12 @@ class Loads(NamedTuple):
     world: Array  # (c, 2) direction of the load, world
     local: Array  # (c, 2) and in the body frame
     force: Array  # (c,)
+    turn: Array  # (2, c) turn of its region's direction by displacement along and across the load, counter-clockwise
     stiffness: Array  # (c, c) force by displacements along the loads, changed sign
+    across: Array  # (c, c) the same by displacements across them
     entry: Ints  # (p,) unknowns under one point of a region, and their shares
     share: Array  # (p,)
+    slide: Array  # (p,) of these, by displacement across
 
 
 class Scratch(NamedTuple):
@@ -70,8 +73,8 @@ def loads(room: int, points: int) -> Loads:
     return Loads(
         np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
         np.zeros((room, 2)),
-        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((room, room)), np.zeros(m, np.int64),
-        np.zeros(m),
+        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((2, room)),
+        np.zeros((room, room)), np.zeros((room, room)), np.zeros(m, np.int64), np.zeros(m), np.zeros(m),
     )  # fmt: skip
 
 

@@ -65,7 +65,7 @@ def contact(
     if answers:
         if s.load.made[0] + 6 > len(s.load.force):
             return FULL
-        rigid_a, rigid_b = begin_vectors(a, pose_a, b, pose_b, s.load)
+        rigid_a, rigid_b = begin_vectors(a, wa, pose_a, b, wb, pose_b, s.load)
     while end < n_pairs:
         # a group of pairs with one leaf of the slave
         start, leaf_a = end, pairs[end, 0]

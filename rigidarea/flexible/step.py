@@ -19,9 +19,9 @@ from rigidarea.compile.jit import kernel
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.boundary_places import clear_loads, clear_nodes
-from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
+from rigidarea.flexible.eliminate_loads import eliminate_loads, renew_loads
 from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
@@ -121,9 +121,13 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         d[j], moved[j] = f - buf.modal_residual[lo + j] - buf.swing[lo + j] * rhs[k + 2], 0.0
     for i in range(s_load.made[0] if hi > lo else 0):
         if s_load.side[i] == b:
-            along, more = buf.modal[i], buf.answer[i]
+            along, more = buf.modal[i], buf.answer[0, i]
             for j in range(hi - lo):
                 d[j] += along[j] * more
+            if buf.turning[i] >= 0:
+                along, more = buf.gauge[i], buf.answer[1, i]
+                for j in range(hi - lo):
+                    d[j] += along[j] * more
     for j in range(hi - lo):
         d[j] *= w.mobility[j]
     # what these do to each other as the frame turns (G is antisymmetric)
@@ -286,7 +290,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
             force, left = mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
-        off = eliminate_loads(bodies, sy, buf, state, s.load)
+        off = eliminate_loads(bodies, sy, buf, state, s.load, not st.sts)
         worst = max(worst, off)
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)
@@ -353,7 +357,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             )
         correct_joints(sy, buf, state, end, scheme.scale / part)
         if sure:
-            correct_forces(sy, buf, st, s, pairs)
+            correct_forces(bodies, sy, buf, st, s, pairs)
             _turn_hubs(bodies, sy, state, scheme)
             return iteration
         buf.rhs[-2], buf.rhs[-1] = worst, reference
