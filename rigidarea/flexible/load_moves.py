@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.compile.jit import kernel
+from rigidarea.compile.jit import kernel, vectorized
 from rigidarea.flexible.boundary import Boundary, Work, make_ready
-from rigidarea.flexible.dense import dot
+from rigidarea.flexible.dense import SUMS, dot
 from rigidarea.flexible.scratch import Loads
 from rigidarea.flexible.tension import follow, pull
 
 Array = NDArray[np.float64]
+Ints = NDArray[np.int64]
 
 
 @kernel
@@ -58,51 +59,91 @@ def note_loads(
 
 
 @kernel
-def _static(
-    b: Boundary, w: Work, row: int, u: int, ex: float, ey: float, ux: float, uy: float
-) -> tuple[float, float]:
-    """Static displacement along (ex, ey) at the node of ``row`` by unit forces at that of ``u``: along (ux, uy), and a
-    quarter of a turn further. A tight body: after ``pull`` of the former."""
-    top, low = b.flexibility[row], b.flexibility[row + 1]
-    x, y = ex * top[u] + ey * low[u], ex * top[u + 1] + ey * low[u + 1]
-    along, across = x * ux + y * uy, y * ux - x * uy
-    if w.tight[0]:
-        along += follow(b, w, 2, u, ux, uy)
-        across += follow(b, w, 2, u, -uy, ux)
-    return along, across
+def _static(b: Boundary, w: Work, s: Loads, buf: Any, count: int) -> None:
+    """Static displacements along, then across, the ``count`` loads in ``buf.own``, by unit forces along and across them:
+    into ``buf.local``."""
+    local, lazy = buf.local, len(b.ready) > 0
+    for p in range(count):
+        i = buf.own[p]
+        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
+        top, low, out, beside = b.flexibility[row], b.flexibility[row + 1], local[p], local[count + p]
+        for o in range(p + 1):
+            j = buf.own[o]
+            if lazy:
+                make_ready(b, s.node[i], s.node[j], s.node[j] + 1)
+            u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
+            xx, xy, yx, yy = top[u], top[u + 1], low[u], low[u + 1]
+            x, y = ex * xx + ey * yx, ex * xy + ey * yy
+            out[o] = local[o, p] = x * ux + y * uy
+            out[count + o] = local[count + o, p] = y * ux - x * uy
+            x, y = ex * yx - ey * xx, ex * yy - ey * xy
+            beside[o] = local[o, count + p] = x * ux + y * uy
+            beside[count + o] = local[count + o, count + p] = y * ux - x * uy
+    for p in range(count if w.tight[0] else 0):
+        i = buf.own[p]
+        ex, ey = s.local[i, 0], s.local[i, 1]
+        for k in range(2):
+            pull(b, w, 2 * s.node[i], ex, ey)
+            out = local[p + k * count]
+            for o in range(count):
+                j = buf.own[o]
+                u, ux, uy = 2 * s.node[j], s.local[j, 0], s.local[j, 1]
+                out[o] += follow(b, w, 2, u, ux, uy)
+                out[count + o] += follow(b, w, 2, u, -uy, ux)
+            ex, ey = -ey, ex
+
+
+@vectorized(
+    "void(f8[:, ::1], f8[:, ::1], f8[::1], i8[::1], i8, i8, f8[:, ::1], f8[:, ::1], b1)",
+    fastmath=SUMS,
+)
+def _modal(
+    modal: Array, gauge: Array, mobility: Array, own: Ints, count: int, m: int, turned: Array, local: Array, wide: bool
+) -> None:
+    """Adds what the m modes give to ``local``; ``turned`` (m, 2 count) is scratch: them along and across the loads."""
+    sides = 2 if wide else 1
+    for p in range(count):
+        i = own[p]
+        for c in range(m):
+            turned[c, p] = modal[i, c]
+            if wide:
+                turned[c, count + p] = gauge[i, c]
+    for k in range(sides):
+        for p in range(count):
+            i, out = own[p], local[p + k * count, : sides * count]
+            for c in range(m):
+                f, row = (modal[i, c] if k == 0 else gauge[i, c]) * mobility[c], turned[c]
+                for o in range(len(out)):
+                    out[o] += f * row[o]
 
 
 @kernel
 def body_compliance(b: Boundary, w: Work, s: Loads, buf: Any, count: int, column: int, wide: bool) -> None:
     """One body's part of C̃, by the ``count`` loads in ``buf.own``, of ``turning`` directions too: columns of
     ``buf.along`` and ``buf.across``. What the loads of this iteration move statically goes to a, in ``column``."""
-    m, static = b.modes.shape[1], b.flexibility.shape[0] > 0
-    give = buf.modes[1, :m]
+    m, local, sides = b.modes.shape[1], buf.local, 2 if wide else 1
+    if b.flexibility.shape[0] > 0:
+        _static(b, w, s, buf, count)
+        for p in range(count):
+            i = buf.own[p]
+            for o in range(count):
+                f = s.force[buf.own[o]]
+                buf.along[i, column] += local[p, o] * f
+                buf.across[i, column] += local[count + p, o] * f
+    else:
+        for p in range(sides * count):
+            local[p, : sides * count] = 0.0
+    if m > 0:
+        _modal(buf.modal, buf.gauge, w.mobility, buf.own, count, m, buf.turned, local, wide)
     for p in range(count):
         i = buf.own[p]
-        row, ex, ey = 2 * s.node[i], s.local[i, 0], s.local[i, 1]
-        for k in range(2 if wide else 1):
-            moved, modal = (buf.along[i], buf.modal[i]) if k == 0 else (buf.across[i], buf.gauge[i])
-            for c in range(m):
-                give[c] = modal[c] * w.mobility[c]
-            if w.tight[0]:
-                pull(b, w, row, ex, ey)
+        for k in range(sides):
+            moved, row = (buf.along[i] if k == 0 else buf.across[i]), local[p + k * count]
             for o in range(count):
                 j = buf.own[o]
-                along = turn = 0.0
-                if static:
-                    if len(b.ready) > 0:
-                        make_ready(b, s.node[i], s.node[j], s.node[j] + 1)
-                    along, turn = _static(b, w, row, 2 * s.node[j], ex, ey, s.local[j, 0], s.local[j, 1])
-                    moved[column] += along * s.force[j]
-                if m > 0:
-                    along += dot(give, buf.modal[j, :m])
-                moved[j] = along
+                moved[j] = row[o]
                 if buf.turning[j] >= 0:
-                    if m > 0:
-                        turn += dot(give, buf.gauge[j, :m])
-                    moved[buf.turning[j]] += s.force[j] * turn
-            ex, ey = -ey, ex
+                    moved[buf.turning[j]] += s.force[j] * row[count + o]
 
 
 @kernel

@@ -38,6 +38,9 @@ NEWTON_LIMIT = (
 )
 HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn where the contact seems lost
 TOLERANCE = 1e-7  # residual force over the largest force of the step
+CYCLE = 4  # iterations; then a region that parts and merges again, to and fro, may end them: the directions of its loads
+# jump there, and no loads are those of their own displacements
+PARTED = 1e-2  # and then all loads together are off by no more than this part of the largest force
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
 UNSEEN = 3e-6  # of the largest force: what the step before says is less is not looked at again
@@ -246,6 +249,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     part = 1.0  # of a correction that is taken
     first = slowest = 0.0
     full = stamp = 0
+    earlier = np.inf
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
@@ -317,6 +321,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         rounded = change < ROUNDING and off <= SETTLED * reference
         if (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE:
             return iteration
+        parted = iteration > CYCLE and worst > 0.5 * earlier and buf.counts[0] != regions
+        if parted and worst <= PARTED * reference and open_most <= CLOSURE:
+            return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
         left = (
             SURE * rate * worst <= TOLERANCE * reference
@@ -330,7 +337,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
         if sure and before == 0.0:
             buf.pace[3] += 1.0
-        before = worst
+        earlier, before = before, worst
         for i in range(total):
             buf.matrix[i, total] = buf.rhs[i]
         eliminate(buf.matrix, total, 1)

@@ -109,6 +109,8 @@ class Buffers(NamedTuple):
     modal: Array  # (c, most modes of a body) of the modes along each load
     gauge: Array  # (c, most modes of a body) and across it, a quarter of a turn counter-clockwise
     lag: Array  # (2, c) what modes move a load along and across as their frame turns by 1
+    local: Array  # (2 c, 2 c) what the loads on one body move each other, along and across
+    turned: Array  # (most modes of a body, 2 c) scratch of that
     along: Array  # (c, c + t + 1 + 6 b) what loads and turns move loads along their directions; a; P
     across: Array  # the same across them
     system: Array  # (c + t, c + t + 1 + 6 b) for ``dense.factor``
@@ -138,7 +140,8 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(m),
         np.zeros(3 * n, np.int64), np.zeros(5, np.int64), np.zeros(n), np.zeros(n),
         np.zeros(n, np.int64), np.zeros(6 * n, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
-        np.zeros((room, most)), np.zeros((room, most)), np.zeros((2, room)), np.zeros((room, wide)),
+        np.zeros((room, most)), np.zeros((room, most)), np.zeros((2, room)),
+        np.zeros((2 * room, 2 * room)), np.zeros((most, 2 * room)), np.zeros((room, wide)),
         np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros(unknowns),
         np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
