@@ -49,10 +49,8 @@ def _new(s: Loads, side: int, node: int, x: float, y: float, nx: float, ny: floa
     s.made[0] += 1
     s.side[i], s.node[i], s.force[i], s.region[i] = side, node, 0.0, s.made[1]
     s.turn[0, i] = s.turn[1, i] = 0.0
-    s.across[i, : i + 1] = 0.0
-    s.across[:i, i] = 0.0
-    s.stiffness[i, : i + 1] = 0.0
-    s.stiffness[:i, i] = 0.0
+    for j in range(s.made[2], i + 1):
+        s.across[i, j] = s.across[j, i] = s.stiffness[i, j] = s.stiffness[j, i] = 0.0
     sign = -1.0 if side == 0 else 1.0
     s.at[i, 0], s.at[i, 1] = x, y
     s.world[i, 0], s.world[i, 1] = sign * nx, sign * ny
@@ -85,7 +83,8 @@ def _enter(
 ) -> int:  # fmt: skip
     """Appends the two unknowns under a place to ``s.entry``, with ``weight`` times their shares; their number so far.
 
-    ``rate``: of t along the axis across the force, towards what is across the loads. The place: parameter t of a contact edge; of a rigid side (``ends`` >= 0, the first of its two) ``along`` in [0, 1].
+    The place: parameter t of a contact edge, its ``rate`` towards what is across the loads; of a rigid side (``ends``
+    >= 0, the first of its two) ``along``, 0 and 1 at its ends.
     """
     if ends == STILL:
         return count
@@ -147,6 +146,7 @@ def enter_vector(
 def begin_vectors(a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, s: Loads) -> tuple[int, int]:
     """Starts a region of STS: the first of the three unknowns of each rigid side, YIELDS or STILL for others."""
     s.made[1] += 1
+    s.made[2] = s.made[0]
     first = (STILL if wa.still[0] else YIELDS, STILL if wb.still[0] else YIELDS)
     for side in range(2):
         body, pose = (a, pa) if side == 0 else (b, pb)
@@ -196,29 +196,48 @@ def lean(
 
 
 @kernel
-def _mean(s: Loads, first: int, total: float) -> None:
-    """Ends a region with ∫ d^q dx = ``total``, of loads from ``first`` on."""
-    for i in range(first, s.made[0]):
+def _begin(
+    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, s: Loads, x0: float, x1: float,
+    flat: int,
+) -> tuple[int, int, bool]:  # fmt: skip
+    """Starts a region: the first of the two unknowns of each rigid side, YIELDS or STILL for others; whether it shares
+    the loads of the region before.
+
+    They do on one ``flat``, the number of a rigid body's edge, or -1: one direction is all theirs.
+    """
+    if flat >= 0 and flat == s.made[3]:
+        return s.made[4], s.made[5], True
+    s.made[1] += 1
+    s.made[2], s.made[3] = s.made[0], flat
+    nx, ny = r["nx"], r["ny"]
+    for side in range(2):
+        body, pose = (a, pa) if side == 0 else (b, pb)
+        s.made[4 + side] = STILL if (wa if side == 0 else wb).still[0] else YIELDS
+        if not flexible(body) and s.made[4 + side] != STILL:
+            s.made[4 + side] = s.made[0]
+            for x in (x0, x1):  # along the axis across the force, from the entry
+                _new(s, side, -1, r["enter_x"] - x * ny, r["enter_y"] + x * nx, nx, ny, pose)
+    return s.made[4], s.made[5], False
+
+
+@kernel
+def _mean(s: Loads, total: float) -> None:
+    """Ends a region with ∫ d^q dx = ``total``."""
+    for i in range(s.made[2], s.made[0]):
         for k in range(2):
             s.turn[k, i] = s.turn[k, i] / total if total > 0.0 else 0.0
 
 
 @kernel
-def _begin(
-    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, r: Any, s: Loads, x0: float, x1: float
-) -> tuple[int, int]:
-    """Starts a region: the first of the two unknowns of each rigid side, YIELDS or STILL for others."""
-    s.made[1] += 1
-    nx, ny = r["nx"], r["ny"]
-    first = (STILL if wa.still[0] else YIELDS, STILL if wb.still[0] else YIELDS)
-    for side in range(2):
-        body, pose = (a, pa) if side == 0 else (b, pb)
-        if not flexible(body) and first[side] != STILL:
-            i = s.made[0]
-            for x in (x0, x1):  # along the axis across the force, from the entry
-                _new(s, side, -1, r["enter_x"] - x * ny, r["enter_y"] + x * nx, nx, ny, pose)
-            first = (i, first[1]) if side == 0 else (first[0], i)
-    return first
+def _ends(r: Any, s: Loads, rigid: int) -> tuple[float, float]:
+    """Where the region's entry is, from one end of a rigid side's loads to the other (0 to 1), and 1 over their
+    distance; ``rigid``: the first of them."""
+    if rigid < 0:
+        return 0.0, 0.0
+    ux, uy = -r["ny"], r["nx"]
+    x, y = s.at[rigid, 0], s.at[rigid, 1]
+    inverse = 1.0 / ((s.at[rigid + 1, 0] - x) * ux + (s.at[rigid + 1, 1] - y) * uy)
+    return ((r["enter_x"] - x) * ux + (r["enter_y"] - y) * uy) * inverse, inverse
 
 
 @kernel
@@ -234,10 +253,12 @@ def couple(
 ) -> None:  # fmt: skip
     """Loads and stiffness of a region under p = k d, its arcs graphs in axes across and along the force."""
     x, y, edge, t, s = scratch.x, scratch.y, scratch.edge, scratch.t, scratch.load
-    chord = x[0, n_a]
     nx, ny = r["nx"], r["ny"]
-    start = s.made[0]
-    rigid_a, rigid_b = _begin(a, wa, pa, b, wb, pb, r, s, 0.0, chord)
+    level_a, level_b = n_a == 1 and not flexible(a), n_b == 1 and not flexible(b)
+    flat = 2 * edge[1, 0] + 1 if level_b else (2 * edge[0, 0] if level_a else -1)
+    rigid_a, rigid_b, joins = _begin(a, wa, pa, b, wb, pb, r, s, 0.0, x[0, n_a], flat)
+    origin, pace = _ends(r, s, max(rigid_a, rigid_b))
+    leans = 0.0 if joins else 1.0  # all regions of a flat turn as the first does
     i = j = 0
     lo = 0.0
     while i < n_a and j < n_b:
@@ -252,19 +273,23 @@ def couple(
                 tb = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])
                 rate_a = inverse_a * (t[0, i, 1] - t[0, i, 0])
                 rate_b = -inverse_b * (t[1, j, 1] - t[1, j, 0])
-                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, z / chord, nx, ny, 0, rate_a)
-                m = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, z / chord, nx, ny, n, rate_b)
+                along = origin + z * pace
+                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, along, nx, ny, 0, rate_a)
+                m = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, along, nx, ny, n, rate_b)
                 w = 0.5 * (hi - lo)
                 gather(s, m, w * k * d, w * k)
-                slope_a, slope_b = inverse_a * (y[0, i + 1] - y[0, i]), inverse_b * (y[1, j + 1] - y[1, j])
-                lean(s, 0, n, m, w, slope_a, slope_b, w * k, w * k * d)
-                lean(s, n, m, m, w, slope_b, slope_a, w * k, w * k * d)
+                # a flat is across the force
+                slope_a = 0.0 if level_a else inverse_a * (y[0, i + 1] - y[0, i])
+                slope_b = 0.0 if level_b else inverse_b * (y[1, j + 1] - y[1, j])
+                lean(s, 0, n, m, w * leans, slope_a, slope_b, w * k, w * k * d)
+                lean(s, n, m, m, w * leans, slope_b, slope_a, w * k, w * k * d)
             lo = hi
         if x[0, i + 1] <= lo:
             i += 1
         else:
             j += 1
-    _mean(s, start, r["area"])
+    if not joins:
+        _mean(s, r["area"])
 
 
 @kernel
@@ -280,8 +305,9 @@ def couple_slabs(
     nx, ny = r["nx"], r["ny"]
     n = cuts(x, n_a, n_b, cut)
     x0, x1 = cut[0], cut[n - 1]
-    start, total = s.made[0], 0.0
-    rigid_a, rigid_b = _begin(a, wa, pa, b, wb, pb, r, s, x0, x1)
+    rigid_a, rigid_b, _joins = _begin(a, wa, pa, b, wb, pb, r, s, x0, x1, -1)
+    origin, pace = _ends(r, s, max(rigid_a, rigid_b))
+    total = 0.0
     for m in range(n - 1):
         lo, hi = cut[m], cut[m + 1]
         if hi <= lo:
@@ -305,7 +331,7 @@ def couple_slabs(
                     rate = (t[side, i, 1] - t[side, i, 0]) / (u1 - u0)
                     at = t[side, i, 0] + rate * (z - u0)
                     rate = rate if side == 0 else -rate
-                    along = (z - x0) / (x1 - x0)
+                    along = origin + z * pace
                     count = _enter(
                         body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count, rate
                     )
@@ -318,4 +344,4 @@ def couple_slabs(
                 v = w * q * d ** (q - 1.0)
                 lean(s, 0, ends_a, count, v, middle - half, middle + half, w * k, press)
                 lean(s, ends_a, count, count, v, middle + half, middle - half, w * k, press)
-    _mean(s, start, total)
+    _mean(s, total)

@@ -19,8 +19,6 @@ from rigidarea.flexible.scratch import Loads
 Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
-STRAIGHT = 1e-9  # a region's turn by displacements of its chord over that chord: less is rounding's, on a flat
-
 
 @kernel
 def _number_turns(buf: Any, s: Loads) -> int:
@@ -28,19 +26,14 @@ def _number_turns(buf: Any, s: Loads) -> int:
     of unknowns."""
     n = s.made[0]
     end, first = n, 0
+    turns = False
     for i in range(n):
+        turns = turns or s.turn[0, i] != 0.0 or s.turn[1, i] != 0.0
         if i + 1 < n and s.region[i + 1] == s.region[i]:
             continue
-        most = span = 0.0
         for j in range(first, i + 1):
-            most = max(most, abs(s.turn[0, j]), abs(s.turn[1, j]))
-            span = max(span, np.hypot(s.at[j, 0] - s.at[first, 0], s.at[j, 1] - s.at[first, 1]))
-        unknown = -1
-        if most * span > STRAIGHT:
-            unknown, end = end, end + 1
-        for j in range(first, i + 1):
-            buf.turning[j] = unknown
-        first = i + 1
+            buf.turning[j] = end if turns else -1
+        end, first, turns = end + 1 if turns else end, i + 1, False
     return end
 
 

@@ -32,7 +32,8 @@ FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: 
 class Loads(NamedTuple):
     """The loads of all regions as unknowns, and how they answer to displacements; see ``condense``. Room for c."""
 
-    made: Ints  # (2,) unknowns so far, serial number of the region
+    # (6,) unknowns so far; of the present region: serial number, first unknown, flat, first unknowns of its rigid sides
+    made: Ints
     region: Ints  # (c,) that number
     side: Ints  # (c,) 0: on A, 1: on B; then the body
     node: Ints  # (c,) FE boundary node, -1: on a rigid body's side; -2: a moment there, its sign ``local[i, 0]``
@@ -71,7 +72,7 @@ def loads(room: int, points: int) -> Loads:
     """Room for ``room`` loads of boundaries of ``points`` points; 0: no answer to displacements is wanted."""
     m = 4 * (points + 4) if room else 0
     return Loads(
-        np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
+        np.zeros(6, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
         np.zeros((room, 2)),
         np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((2, room)),
         np.zeros((room, room)), np.zeros((room, room)), np.zeros(m, np.int64), np.zeros(m), np.zeros(m),
