@@ -20,7 +20,7 @@ moves; δ the unknown changes of frames and hub forces with P what they move at 
 Pᵀ y₀ and Pᵀ S go to the frames' and hubs' rows; the frames' solution δ gives the loads. As C̃ is positive as well, the
 linear system is regular, and this is the semi-smooth Newton method of the obstacle problem (M. Hintermüller, K. Ito,
 K. Kunisch, SIAM J. Optim. 13, 2002, doi:10.1137/S1052623401383558): where a load comes out negative the contact opens
-in the next evaluation. Regions' directions turn as well: ``turns``.
+XX
 """
 
 from __future__ import annotations
@@ -78,30 +78,32 @@ def flexible(b: Boundary) -> bool:
 
 @kernel
 def _enter(
-    b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, t: float, weight: float, ends: int, along: float,
-    nx: float, ny: float, count: int, rate: float,
+    b: Boundary, w: Work, pose: Array, s: Loads, side: int, edge: int, points: int, weight: float, ends: int,
+    nx: float, ny: float, rate: float, count: int,
 ) -> int:  # fmt: skip
-    """Appends the two unknowns under a place to ``s.entry``, with ``weight`` times their shares; their number so far.
+    """Appends the two unknowns under a piece of a contact edge to ``s.entry``, with ``weight`` times their shares at
+    so many Gauss points; their number so far.
 
-    The place: parameter t of a contact edge, its ``rate`` towards what is across the loads; of a rigid side (``ends``
-    >= 0, the first of its two) ``along``, 0 and 1 at its ends.
+    The places: parameters ``s.place[side]`` of the edge, which grow at ``rate`` towards what is across the loads; of a
+    rigid side (``ends`` >= 0, the first of its two) ``s.place[2]``, 0 and 1 at its ends.
     """
     if ends == STILL:
         return count
     if ends >= 0:
-        s.entry[count], s.share[count] = ends, weight * (1.0 - along)
-        s.entry[count + 1], s.share[count + 1] = ends + 1, weight * along
+        s.entry[count], s.entry[count + 1] = ends, ends + 1
         s.slide[count] = s.slide[count + 1] = 0.0
+        for g in range(points):
+            s.share[g, count], s.share[g, count + 1] = weight * (1.0 - s.place[2, g]), weight * s.place[2, g]
         return count + 2
     j = b.following[edge]
     low = b.share[edge]
     high = b.share[j] if b.share[j] > 0.0 else 1.0  # within one finite-element edge, or to its end
     other = b.high[j] if b.share[j] > 0.0 else b.low[j]
-    part = low + t * (high - low)
     s.entry[count] = _at_node(b, w, pose, s, side, b.low[edge], nx, ny)
-    s.share[count] = weight * (1.0 - part)
     s.entry[count + 1] = _at_node(b, w, pose, s, side, other, nx, ny)
-    s.share[count + 1] = weight * part
+    for g in range(points):
+        part = low + s.place[side, g] * (high - low)
+        s.share[g, count], s.share[g, count + 1] = weight * (1.0 - part), weight * part
     rate *= weight * (high - low)
     s.slide[count], s.slide[count + 1] = -rate, rate
     return count + 2
@@ -122,8 +124,8 @@ def enter_vector(
     if rigid >= 0:
         for k in range(3):
             s.entry[count + k] = rigid + k
-        s.share[count], s.share[count + 1] = nx, ny
-        s.share[count + 2] = (x - pose[0]) * ny - (y - pose[1]) * nx
+        s.share[0, count], s.share[0, count + 1] = nx, ny
+        s.share[0, count + 2] = (x - pose[0]) * ny - (y - pose[1]) * nx
         return count + 3
     j = b.following[edge]
     low = b.share[edge]
@@ -137,7 +139,7 @@ def enter_vector(
             _new(s, side, node, s.at[i, 0], s.at[i, 1], 0.0, 1.0, pose)
         i = w.slot[node]
         s.entry[count], s.entry[count + 1] = i, i + 1
-        s.share[count], s.share[count + 1] = v * nx, v * ny
+        s.share[0, count], s.share[0, count + 1] = v * nx, v * ny
         count += 2
     return count
 
@@ -160,23 +162,24 @@ def begin_vectors(a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: A
 
 
 @kernel
-def gather(s: Loads, count: int, force: float, stiff: float) -> None:
-    """One Gauss point: adds its force, and its stiffness, to the unknowns entered."""
+def gather_vectors(s: Loads, count: int, force: float, stiff: float) -> None:
+    """One Gauss point of STS: adds its force, and its stiffness, to the unknowns entered."""
+    share = s.share[0]
     for p in range(count):
-        i, v = s.entry[p], s.share[p]
+        i, v = s.entry[p], share[p]
         s.force[i] += force * v
         for q in range(count):
-            s.stiffness[i, s.entry[q]] += stiff * v * s.share[q]
+            s.stiffness[i, s.entry[q]] += stiff * v * share[q]
 
 
 @kernel
-def lean(
-    s: Loads, first: int, end: int, count: int, weight: float, own: float, other: float, stiff: float, press: float
-) -> None:  # fmt: skip
-    """One Gauss point of a region: what displacements of the loads entered on one side do, across them too.
+def _gather(s: Loads, points: int, of_a: int, count: int, slope_a: float, slope_b: float) -> None:
+    """Adds the Gauss points of one piece to the unknowns entered, of which ``of_a`` are on A: forces, and what
+    displacements along and across the loads do to them and to the region's direction. ``s.point`` (points, 3): force,
+    stiffness, weight in the direction's turn.
 
     Slopes b', t' of the arcs of A and B over the axis across the force: a boundary's height there grows by the
-    displacement along the force less its ``own`` slope times that across. With d = t - b the direction leans by
+    displacement along the force less its own slope times that across. With d = t - b the direction leans by
     ∫ d^q (b' + t')/2 dx / ∫ d^q dx. As d is zero at both ends, by parts, it leans more by
 
         q ∫ d^(q-1) (b' δt - t' δb) dx / ∫ d^q dx,
@@ -184,15 +187,24 @@ def lean(
     and loads on A push along the heights, those on B against them. What moves across under a pressure also has its
     loads shifted.
     """
-    for p in range(first, end):
-        i, v = s.entry[p], s.share[p]
-        g = v * weight * other
-        s.turn[0, i] -= g
-        s.turn[1, i] -= g * own
+    for p in range(count):
+        i, on_a = s.entry[p], p < of_a
+        own, other = (slope_a, slope_b) if on_a else (slope_b, slope_a)
+        force = turn = 0.0
+        for g in range(points):
+            force += s.point[g, 0] * s.share[g, p]
+            turn += s.point[g, 2] * s.share[g, p]
+        s.force[i] += force
+        s.turn[0, i] -= turn * other
+        s.turn[1, i] -= turn * other * own
         for q in range(count):
-            s.across[s.entry[q], i] += stiff * own * v * s.share[q]
-        for q in range(first, end):
-            s.across[s.entry[q], i] -= press * s.slide[q] * v
+            j, stiff = s.entry[q], 0.0
+            for g in range(points):
+                stiff += s.point[g, 1] * s.share[g, p] * s.share[g, q]
+            s.stiffness[j, i] += stiff
+            s.across[j, i] += stiff * own
+            if (q < of_a) == on_a:
+                s.across[j, i] -= s.slide[q] * force
 
 
 @kernel
@@ -265,24 +277,22 @@ def couple(
         hi = min(x[0, i + 1], x[1, j + 1])
         if hi > lo:
             inverse_a, inverse_b = 1.0 / (x[0, i + 1] - x[0, i]), 1.0 / (x[1, j + 1] - x[1, j])
+            # a flat is across the force
+            slope_a = 0.0 if level_a else inverse_a * (y[0, i + 1] - y[0, i])
+            slope_b = 0.0 if level_b else inverse_b * (y[1, j + 1] - y[1, j])
+            rate_a, rate_b = inverse_a * (t[0, i, 1] - t[0, i, 0]), inverse_b * (t[1, j, 1] - t[1, j, 0])
+            w = 0.5 * (hi - lo)
             for g in range(2):
                 z = lo + TWO[g] * (hi - lo)
-                ra, rb = (z - x[0, i]) * inverse_a, (z - x[1, j]) * inverse_b
-                d = y[1, j] + rb * (y[1, j + 1] - y[1, j]) - y[0, i] - ra * (y[0, i + 1] - y[0, i])
-                ta = t[0, i, 0] + ra * (t[0, i, 1] - t[0, i, 0])
-                tb = t[1, j, 0] + rb * (t[1, j, 1] - t[1, j, 0])
-                rate_a = inverse_a * (t[0, i, 1] - t[0, i, 0])
-                rate_b = -inverse_b * (t[1, j, 1] - t[1, j, 0])
-                along = origin + z * pace
-                n = _enter(a, wa, pa, s, 0, edge[0, i], ta, 1.0, rigid_a, along, nx, ny, 0, rate_a)
-                m = _enter(b, wb, pb, s, 1, edge[1, j], tb, 1.0, rigid_b, along, nx, ny, n, rate_b)
-                w = 0.5 * (hi - lo)
-                gather(s, m, w * k * d, w * k)
-                # a flat is across the force
-                slope_a = 0.0 if level_a else inverse_a * (y[0, i + 1] - y[0, i])
-                slope_b = 0.0 if level_b else inverse_b * (y[1, j + 1] - y[1, j])
-                lean(s, 0, n, m, w * leans, slope_a, slope_b, w * k, w * k * d)
-                lean(s, n, m, m, w * leans, slope_b, slope_a, w * k, w * k * d)
+                za, zb = z - x[0, i], z - x[1, j]
+                d = y[1, j] + zb * inverse_b * (y[1, j + 1] - y[1, j]) - y[0, i]
+                d -= za * inverse_a * (y[0, i + 1] - y[0, i])
+                s.place[0, g], s.place[1, g] = t[0, i, 0] + za * rate_a, t[1, j, 0] + zb * rate_b
+                s.place[2, g] = origin + z * pace
+                s.point[g, 0], s.point[g, 1], s.point[g, 2] = w * k * d, w * k, w * leans
+            n = _enter(a, wa, pa, s, 0, edge[0, i], 2, 1.0, rigid_a, nx, ny, rate_a, 0)
+            m = _enter(b, wb, pb, s, 1, edge[1, j], 2, 1.0, rigid_b, nx, ny, -rate_b, n)
+            _gather(s, 2, n, m, slope_a, slope_b)
             lo = hi
         if x[0, i + 1] <= lo:
             i += 1
@@ -317,31 +327,27 @@ def couple_slabs(
             continue
         half = 0.5 * (d1 - d0) / (hi - lo)
         for g in range(3):
-            z = lo + GAUSS_X[g] * (hi - lo)
-            d = d0 + (d1 - d0) * GAUSS_X[g]
-            count = ends_a = 0
-            for side in range(2):
-                body, work, pose = (a, wa, pa) if side == 0 else (b, wb, pb)
-                ends = rigid_a if side == 0 else rigid_b
-                part = 1.0 / (right_a if side == 0 else right_b)
-                for i in range(n_a if side == 0 else n_b):
-                    u0, u1 = x[side, i], x[side, i + 1]
-                    if u0 > lo or u1 < hi or t[side, i, 0] == t[side, i, 1]:
-                        continue
-                    rate = (t[side, i, 1] - t[side, i, 0]) / (u1 - u0)
-                    at = t[side, i, 0] + rate * (z - u0)
-                    rate = rate if side == 0 else -rate
-                    along = origin + z * pace
-                    count = _enter(
-                        body, work, pose, s, side, edge[side, i], at, part, ends, along, nx, ny, count, rate
-                    )
-                ends_a = count if side == 0 else ends_a
-            w = net * GAUSS_W[g] * (hi - lo)
-            press = w * (alpha + beta * (z - xc)) * d**q
-            gather(s, count, press, w * k)
+            z, d, w = lo + GAUSS_X[g] * (hi - lo), d0 + (d1 - d0) * GAUSS_X[g], net * GAUSS_W[g] * (hi - lo)
+            s.place[2, g] = origin + z * pace
+            s.point[g, 0], s.point[g, 1], s.point[g, 2] = w * (alpha + beta * (z - xc)) * d**q, w * k, 0.0
             if d > 0.0:
                 total += w * d**q
-                v = w * q * d ** (q - 1.0)
-                lean(s, 0, ends_a, count, v, middle - half, middle + half, w * k, press)
-                lean(s, ends_a, count, count, v, middle + half, middle - half, w * k, press)
+                s.point[g, 2] = w * q * d ** (q - 1.0)
+        count = of_a = 0
+        for side in range(2):
+            body, work, pose = (a, wa, pa) if side == 0 else (b, wb, pb)
+            ends = rigid_a if side == 0 else rigid_b
+            part = 1.0 / (right_a if side == 0 else right_b)
+            for i in range(n_a if side == 0 else n_b):
+                u0, u1 = x[side, i], x[side, i + 1]
+                if u0 > lo or u1 < hi or t[side, i, 0] == t[side, i, 1]:
+                    continue
+                rate = (t[side, i, 1] - t[side, i, 0]) / (u1 - u0)
+                for g in range(3):
+                    s.place[side, g] = t[side, i, 0] + rate * (lo + GAUSS_X[g] * (hi - lo) - u0)
+                rate = rate if side == 0 else -rate
+                count = _enter(body, work, pose, s, side, edge[side, i], 3, part, ends, nx, ny, rate, count)
+            of_a = count if side == 0 else of_a
+        half = 0.5 * (d1 - d0) / (hi - lo)
+        _gather(s, 3, of_a, count, middle - half, middle + half)
     _mean(s, total)

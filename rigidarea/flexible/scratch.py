@@ -44,9 +44,11 @@ class Loads(NamedTuple):
     turn: Array  # (2, c) turn of its region's direction by displacement along and across the load, counter-clockwise
     stiffness: Array  # (c, c) force by displacements along the loads, changed sign
     across: Array  # (c, c) the same by displacements across them
-    entry: Ints  # (p,) unknowns under one point of a region, and their shares
-    share: Array  # (p,)
-    slide: Array  # (p,) of these, by displacement across
+    entry: Ints  # (p,) unknowns under one piece of a region, and their shares at its Gauss points
+    share: Array  # (3, p)
+    slide: Array  # (p,) change of these by displacement across
+    place: Array  # (3, 3) parameters of the points on the edges of A, of B, and between the ends of a rigid side
+    point: Array  # (3, 3) of each point force, stiffness, and weight in the direction's turn
 
 
 class Scratch(NamedTuple):
@@ -75,7 +77,8 @@ def loads(room: int, points: int) -> Loads:
         np.zeros(6, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
         np.zeros((room, 2)),
         np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((2, room)),
-        np.zeros((room, room)), np.zeros((room, room)), np.zeros(m, np.int64), np.zeros(m), np.zeros(m),
+        np.zeros((room, room)), np.zeros((room, room)), np.zeros(m, np.int64),
+        np.zeros((3, m)), np.zeros(m), np.zeros((3, 3)), np.zeros((3, 3)),
     )  # fmt: skip
 
 
