@@ -80,6 +80,8 @@ def _answers(
             row[c] = 0.0
         for j in range(start, stop):
             f, g = k[i, j], across[i, j]
+            if f == 0.0 and (g == 0.0 or not wide):
+                continue
             if wide:
                 for c in range(first, end):
                     row[c] += f * along[j, c] + g * beside[j, c]
@@ -91,6 +93,30 @@ def _answers(
             f, g = turn[0, i], turn[1, i]
             for c in range(first, end):
                 row[c] -= f * along[i, c] + g * beside[i, c]
+
+
+@vectorized(
+    "void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], i8[::1], f8[:, ::1], i8, i8, i8)", fastmath=SUMS
+)
+def _transfer(
+    along: Array, beside: Array, system: Array, force: Array, turning: Ints, out: Array, n: int, unknowns: int, columns: int
+) -> None:  # fmt: skip
+    """Forces on frames and hubs, a row each, by the solutions in ``system``: those of a, and of each unit motion."""
+    for c in range(columns):
+        row = out[c]
+        for d in range(columns + 1):
+            row[d] = 0.0
+        for i in range(n):
+            p, t = along[i, unknowns + 1 + c], turning[i]
+            if p != 0.0:
+                y = system[i, unknowns:]
+                for d in range(columns + 1):
+                    row[d] += p * y[d]
+            p = force[i] * beside[i, unknowns + 1 + c] if t >= 0 else 0.0
+            if p != 0.0:
+                y = system[t, unknowns:]
+                for d in range(columns + 1):
+                    row[d] += p * y[d]
 
 
 @kernel
@@ -159,20 +185,15 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads, wide:
     factor(system, unknowns, end, buf.pivot)
     off = 0.0
     for i in range(n):
-        t = buf.turning[i]
         off += abs(system[i, unknowns])
-        if t >= 0:
-            off += abs(s.force[i] * system[t, unknowns])
-        for c in range(columns):
-            to, p, turned = buf.active[c], buf.along[i, first + c], s.force[i] * buf.across[i, first + c]
-            if p != 0.0:
-                buf.push[to] -= p * system[i, unknowns]
-                for d in range(columns):
-                    buf.tangent[to, buf.active[d]] += p * system[i, first + d]
-            if t >= 0 and turned != 0.0:
-                buf.push[to] -= turned * system[t, unknowns]
-                for d in range(columns):
-                    buf.tangent[to, buf.active[d]] += turned * system[t, first + d]
+        if buf.turning[i] >= 0:
+            off += abs(s.force[i] * system[buf.turning[i], unknowns])
+    _transfer(buf.along, buf.across, system, s.force, buf.turning, buf.grip, n, unknowns, columns)
+    for c in range(columns):
+        to = buf.active[c]
+        buf.push[to] -= buf.grip[c, 0]
+        for d in range(columns):
+            buf.tangent[to, buf.active[d]] += buf.grip[c, 1 + d]
     buf.counts[2], buf.counts[3], buf.counts[4] = columns, unknowns, 1 if wide else 0
     return off
 

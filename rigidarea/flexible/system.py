@@ -115,6 +115,7 @@ class Buffers(NamedTuple):
     across: Array  # the same across them
     system: Array  # (c + t, c + t + 1 + 6 b) for ``dense.factor``
     pivot: Ints  # (c + t,)
+    grip: Array  # (6 b, 6 b + 1) forces on what is ``active``, by a and by unit motions of it
     single: Array  # (c + t,) solution
     answer: Array  # (2, c) change of each load, along it and across
     # friction and damping, see ``resist``
@@ -142,7 +143,8 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(n, np.int64), np.zeros(6 * n, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
         np.zeros((room, most)), np.zeros((room, most)), np.zeros((2, room)),
         np.zeros((2 * room, 2 * room)), np.zeros((most, 2 * room)), np.zeros((room, wide)),
-        np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros(unknowns),
+        np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros((6 * n, 6 * n + 1)),
+        np.zeros(unknowns),
         np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
         np.zeros((4, most)), np.zeros(4), np.zeros((2, REGIONS)),
