@@ -20,7 +20,16 @@ moves; δ the unknown changes of frames and hub forces with P what they move at 
 Pᵀ y₀ and Pᵀ S go to the frames' and hubs' rows; the frames' solution δ gives the loads. As C̃ is positive as well, the
 linear system is regular, and this is the semi-smooth Newton method of the obstacle problem (M. Hintermüller, K. Ito,
 K. Kunisch, SIAM J. Optim. 13, 2002, doi:10.1137/S1052623401383558): where a load comes out negative the contact opens
-XX
+in the next evaluation.
+
+Two more things move under soft bodies, and without them an iteration takes off a decimal digit at the most. Boundaries
+slope against the force, so displacements v across the loads change them too, by −X v. And each region's direction turns
+by φ = G (w, v): a load f e becomes (f + y) e + f φ e⊥. A turn is one more unknown, of a load pattern f e⊥ and with −G
+for its row of K, so with K' = (K, X; −G) and C' what unit loads and turns move along and across,
+
+    (I + K' C') z = −K' (a + P δ),      z = (y, φ).
+
+Regions on one flat of a rigid body have one direction, and share their loads. What neither moves nor yields has none.
 """
 
 from __future__ import annotations
@@ -145,7 +154,9 @@ def enter_vector(
 
 
 @kernel
-def begin_vectors(a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, s: Loads) -> tuple[int, int]:
+def begin_vectors(
+    a: Boundary, wa: Work, pa: Array, b: Boundary, wb: Work, pb: Array, s: Loads
+) -> tuple[int, int]:
     """Starts a region of STS: the first of the three unknowns of each rigid side, YIELDS or STILL for others."""
     s.made[1] += 1
     s.made[2] = s.made[0]

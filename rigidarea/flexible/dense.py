@@ -61,7 +61,7 @@ def eliminate(a: Array, n: int, columns: int) -> None:
 
 @vectorized("void(f8[:, ::1], i8, i8, i8[::1])", fastmath=SUMS)
 def factor(a: Array, n: int, end: int, pivot: NDArray[np.int64]) -> None:
-    """``eliminate`` of columns n … ``end`` - 1, of a regular matrix, with what ``again`` needs left in ``a`` and ``pivot``."""
+    """``eliminate`` of columns n … ``end`` - 1, of a regular matrix; leaves what ``again`` needs."""
     for i in range(n):
         p, most = i, abs(a[i, i])
         for r in range(i + 1, n):

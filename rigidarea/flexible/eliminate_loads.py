@@ -38,7 +38,9 @@ def _number_turns(buf: Any, s: Loads) -> int:
 
 
 @kernel
-def _moved(b: Boundary, w: Work, s: Loads, buf: Any, body: int, i: int, k: int, m: int, held: bool, out: Array) -> None:
+def _moved(
+    b: Boundary, w: Work, s: Loads, buf: Any, body: int, i: int, k: int, m: int, held: bool, out: Array
+) -> None:
     """What motions of one body's frame, and forces on its hub, move load i along (k: 0) or across (1) its direction."""
     ex, ey = s.world[i, 0], s.world[i, 1]
     if k == 1:
@@ -57,7 +59,8 @@ def _moved(b: Boundary, w: Work, s: Loads, buf: Any, body: int, i: int, k: int, 
 
 
 @vectorized(
-    "void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1], i8[::1], f8[:, ::1], i8, i8, i8, i8, b1)",
+    "void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[:, ::1], i8[::1], i8[::1], f8[:, ::1], i8, i8, i8, i8,"
+    " b1)",
     fastmath=SUMS,
 )
 def _answers(
@@ -99,7 +102,8 @@ def _answers(
     "void(f8[:, ::1], f8[:, ::1], f8[:, ::1], f8[::1], i8[::1], f8[:, ::1], i8, i8, i8)", fastmath=SUMS
 )
 def _transfer(
-    along: Array, beside: Array, system: Array, force: Array, turning: Ints, out: Array, n: int, unknowns: int, columns: int
+    along: Array, beside: Array, system: Array, force: Array, turning: Ints, out: Array, n: int, unknowns: int,
+    columns: int,
 ) -> None:  # fmt: skip
     """Forces on frames and hubs, a row each, by the solutions in ``system``: those of a, and of each unit motion."""
     for c in range(columns):
@@ -124,7 +128,10 @@ def answer_to(buf: Any, s: Loads, n: int) -> None:
     """With the last tangent, the answer of loads and turns to displacements in column ``buf.counts[3]`` of
     ``buf.along`` and ``buf.across``: changed sign, into ``buf.single``."""
     end = buf.counts[3]
-    _answers(s.stiffness, s.across, s.turn, buf.along, buf.across, s.region, buf.turning, buf.system, n, end, end, end + 1, buf.counts[4] > 0)  # fmt: skip
+    _answers(
+        s.stiffness, s.across, s.turn, buf.along, buf.across, s.region, buf.turning, buf.system, n, end, end, end + 1,
+        buf.counts[4] > 0,
+    )  # fmt: skip
     for i in range(end):
         buf.single[i] = buf.system[i, end]
     again(buf.system, end, buf.pivot, buf.single)
@@ -179,7 +186,9 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads, wide:
     # (I + K' C') y = −K' (a + P δ)
     end = first + columns
     system = buf.system
-    _answers(s.stiffness, s.across, s.turn, buf.along, buf.across, s.region, buf.turning, system, n, unknowns, 0, end, wide)  # fmt: skip
+    _answers(
+        s.stiffness, s.across, s.turn, buf.along, buf.across, s.region, buf.turning, system, n, unknowns, 0, end, wide
+    )  # fmt: skip
     for i in range(unknowns):
         system[i, i] += 1.0
     factor(system, unknowns, end, buf.pivot)

@@ -22,8 +22,8 @@ def note_loads(
     b: Boundary, w: Work, s: Loads, buf: Any, body: int, lo: int, hi: int, q: Array, column: int, wide: bool
 ) -> int:
     """Lists one body's loads in ``buf.own``: how many. Of each, along and, if ``wide``, across it: the modes, what
-    they move as their frame turns, and, in ``column`` of ``buf.along`` and ``buf.across``, a of ``condense`` but for what
-    the loads of this iteration move.
+    they move as their frame turns, and, in ``column`` of ``buf.along`` and ``buf.across``, a of ``condense`` but for
+    what the loads of this iteration move.
     """
     m, static, h = b.modes.shape[1], b.flexibility.shape[0] > 0, len(b.modes) - 3
     free, give = buf.modes[0, :m], buf.modes[1, :m]
@@ -60,8 +60,8 @@ def note_loads(
 
 @kernel
 def _static(b: Boundary, w: Work, s: Loads, buf: Any, count: int) -> None:
-    """Static displacements along, then across, the ``count`` loads in ``buf.own``, by unit forces along and across them:
-    into ``buf.local``."""
+    """Static displacements along, then across, the ``count`` loads in ``buf.own``, by unit forces along and across
+    them: into ``buf.local``."""
     local, lazy = buf.local, len(b.ready) > 0
     for p in range(count):
         i = buf.own[p]
@@ -98,7 +98,15 @@ def _static(b: Boundary, w: Work, s: Loads, buf: Any, count: int) -> None:
     fastmath=SUMS,
 )
 def _modal(
-    modal: Array, gauge: Array, mobility: Array, own: Ints, count: int, m: int, turned: Array, local: Array, wide: bool
+    modal: Array,
+    gauge: Array,
+    mobility: Array,
+    own: Ints,
+    count: int,
+    m: int,
+    turned: Array,
+    local: Array,
+    wide: bool,
 ) -> None:
     """Adds what the m modes give to ``local``; ``turned`` (m, 2 count) is scratch: them along and across the loads."""
     sides = 2 if wide else 1

@@ -47,7 +47,9 @@ class Loads(NamedTuple):
     entry: Ints  # (p,) unknowns under one piece of a region, and their shares at its Gauss points
     share: Array  # (3, p)
     slide: Array  # (p,) change of these by displacement across
-    place: Array  # (3, 3) parameters of the points on the edges of A, of B, and between the ends of a rigid side
+    place: (
+        Array  # (3, 3) parameters of the points on the edges of A, of B, and between the ends of a rigid side
+    )
     point: Array  # (3, 3) of each point force, stiffness, and weight in the direction's turn
 
 

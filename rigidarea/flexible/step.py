@@ -38,8 +38,8 @@ NEWTON_LIMIT = (
 )
 HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn where the contact seems lost
 TOLERANCE = 1e-7  # residual force over the largest force of the step
-CYCLE = 4  # iterations; then a region that parts and merges again, to and fro, may end them: the directions of its loads
-# jump there, and no loads are those of their own displacements
+CYCLE = 4  # iterations; then a region that parts and merges again, to and fro, may end them: the directions of its
+# loads jump there, and no loads are those of their own displacements
 PARTED = 1e-2  # and then all loads together are off by no more than this part of the largest force
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
