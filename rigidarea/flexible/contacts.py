@@ -195,7 +195,8 @@ def _growth(bodies, buf, s, pairs, first):  # type: ignore[no-untyped-def]
             break
         x += r[1] * r[2]
         y += r[1] * r[3]
-    return (x * fx + y * fy) / (x * x + y * y)
+    square = x * x + y * y
+    return (x * fx + y * fy) / square if square > 0.0 else 0.0
 
 
 @kernel
