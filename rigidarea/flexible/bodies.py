@@ -109,6 +109,7 @@ def work_at(bodies: Ints, i: int) -> Work:
         array_at(row[WORK + 18], (2,), np.bool_),
         array_at(row[WORK + 19], (r, 2 * r), np.float64),
         array_at(row[WORK + 20], (3, r), np.float64),
+        array_at(row[WORK + 21], (1,), np.bool_),
     )
 
 

@@ -82,6 +82,7 @@ class Work(NamedTuple):
     tight: NDArray[np.bool_]
     yielding: Array  # (r, 2 r) D in its right half
     drawn: Array  # (3, r) coordinates of what that moves: by all loads, by hub and spin alone; scratch
+    still: NDArray[np.bool_]  # (1,) whether it neither moves nor yields: no load on it is an unknown
 
 
 def build(
@@ -190,5 +191,5 @@ def workspace(b: Boundary) -> Work:
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
         np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(2, bool), np.zeros((r, 2 * r)),
-        np.zeros((3, r)),
+        np.zeros((3, r)), np.zeros(1, bool),
     )  # fmt: skip

@@ -179,29 +179,44 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
 
 
 @kernel
-def correct_forces(sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
+def _growth(bodies, buf, s, pairs, first):  # type: ignore[no-untyped-def]
+    """By what part of itself the force of the regions grows that share loads, from number ``first`` on."""
+    one = buf.regions[first]
+    a, b, serial = pairs[int(one[0]), 0], pairs[int(one[0]), 1], int(one[9])
+    side, sign = (a, -1.0) if work_at(bodies, b).still[0] else (b, 1.0)
+    fx = fy = x = y = 0.0
+    for n in range(s.made[0]):
+        if s.region[n] == serial and s.side[n] == side:
+            fx += sign * buf.answer[0, n] * s.world[n, 0]
+            fy += sign * buf.answer[0, n] * s.world[n, 1]
+    for i in range(first, buf.counts[0]):
+        r = buf.regions[i]
+        if int(r[9]) != serial:
+            break
+        x += r[1] * r[2]
+        y += r[1] * r[3]
+    square = x * x + y * y
+    return (x * fx + y * fy) / square if square > 0.0 else 0.0
+
+
+@kernel
+def correct_forces(bodies, sy, buf, st, s, pairs):  # type: ignore[no-untyped-def]
     """The forces kept, after Newton's last correction, whose change of the frames is in ``buf.rhs``.
 
     A region's force is that of its loads on the second body, or changes by its stiffness; as the tangent has it. It
-    stays on its line. Under STS all regions of a pair share its loads.
+    stays on its line. Regions that share loads, on a flat or under STS, share their change.
     """
+    grows = 0.0
     for i in range(buf.counts[0]):
         r = buf.regions[i]
+        if st.spread and (i == 0 or r[9] != buf.regions[i - 1, 9]):
+            grows = _growth(bodies, buf, s.load, pairs, i)
         p = int(r[0])
         if sy.ratio[p] > 0.0:  # its dashpot has answered to the force as it was
             continue
         change = 0.0
         if st.spread:
-            fx = fy = 0.0
-            for n in range(s.load.made[0]):
-                if s.load.region[n] == int(r[9]) and s.load.side[n] == pairs[p, 1]:
-                    fx += buf.answer[n] * s.load.world[n, 0]
-                    fy += buf.answer[n] * s.load.world[n, 1]
-            if st.sts:
-                x, y = buf.force[p, 0], buf.force[p, 1]
-                change = r[1] * (x * fx + y * fy) / (x * x + y * y)
-            else:
-                change = r[2] * fx + r[3] * fy
+            change = grows * r[1]
         else:
             for side in range(2):
                 j = 3 * pairs[p, side]

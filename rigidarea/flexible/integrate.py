@@ -199,6 +199,8 @@ class Simulation:
         self.couplings = tuple(np.ascontiguousarray(b.coupling, float) for b in bodies)
         self.boundaries = tuple(b.boundary for b in bodies)
         self.works = tuple(workspace(b.boundary) for b in bodies)
+        for b, w in zip(bodies, self.works, strict=True):
+            w.still[0] = b.fixed and b.boundary.modes.shape[1] == 0 and len(b.boundary.flexibility) == 0
         self._geometric = tuple(
             np.zeros((0, m, m)) if b.geometric is None else np.ascontiguousarray(b.geometric, float)
             for b, m in zip(bodies, count, strict=True)

@@ -203,6 +203,7 @@ def contact(
     """
     n = find_regions(a, wa, pose_a, qa, b, wb, pose_b, qb, n_pairs, stamp, s)
     x, y = s.x, s.y
+    s.load.made[3] = -1  # no flat of another pair's
     for i in range(n):
         r = s.regions[i]
         n_a, n_b = arcs(r, s)

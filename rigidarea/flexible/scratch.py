@@ -32,7 +32,8 @@ FULL = -4  # more loaded nodes than the unknowns of ``condense`` have room for: 
 class Loads(NamedTuple):
     """The loads of all regions as unknowns, and how they answer to displacements; see ``condense``. Room for c."""
 
-    made: Ints  # (2,) unknowns so far, serial number of the region
+    # (6,) unknowns so far; of the present region: serial number, first unknown, flat, first unknowns of its rigid sides
+    made: Ints
     region: Ints  # (c,) that number
     side: Ints  # (c,) 0: on A, 1: on B; then the body
     node: Ints  # (c,) FE boundary node, -1: on a rigid body's side; -2: a moment there, its sign ``local[i, 0]``
@@ -40,9 +41,16 @@ class Loads(NamedTuple):
     world: Array  # (c, 2) direction of the load, world
     local: Array  # (c, 2) and in the body frame
     force: Array  # (c,)
+    turn: Array  # (2, c) turn of its region's direction by displacement along and across the load, counter-clockwise
     stiffness: Array  # (c, c) force by displacements along the loads, changed sign
-    entry: Ints  # (p,) unknowns under one point of a region, and their shares
-    share: Array  # (p,)
+    across: Array  # (c, c) the same by displacements across them
+    entry: Ints  # (p,) unknowns under one piece of a region, and their shares at its Gauss points
+    share: Array  # (3, p)
+    slide: Array  # (p,) change of these by displacement across
+    place: (
+        Array  # (3, 3) parameters of the points on the edges of A, of B, and between the ends of a rigid side
+    )
+    point: Array  # (3, 3) of each point force, stiffness, and weight in the direction's turn
 
 
 class Scratch(NamedTuple):
@@ -68,10 +76,11 @@ def loads(room: int, points: int) -> Loads:
     """Room for ``room`` loads of boundaries of ``points`` points; 0: no answer to displacements is wanted."""
     m = 4 * (points + 4) if room else 0
     return Loads(
-        np.zeros(2, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
+        np.zeros(6, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
         np.zeros((room, 2)),
-        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((room, room)), np.zeros(m, np.int64),
-        np.zeros(m),
+        np.zeros((room, 2)), np.zeros((room, 2)), np.zeros(room), np.zeros((2, room)),
+        np.zeros((room, room)), np.zeros((room, room)), np.zeros(m, np.int64),
+        np.zeros((3, m)), np.zeros(m), np.zeros((3, 3)), np.zeros((3, 3)),
     )  # fmt: skip
 
 

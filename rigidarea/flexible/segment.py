@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from rigidarea.compile.jit import entry, kernel
 from rigidarea.flexible.boundary import Boundary, Work, edges_of, span, strip
 from rigidarea.flexible.boundary_places import add_load, place_leaves
-from rigidarea.flexible.condense import begin_vectors, enter_vector, gather
+from rigidarea.flexible.condense import begin_vectors, enter_vector, gather_vectors
 from rigidarea.flexible.scratch import FULL, MANY, Scratch
 
 Array = NDArray[np.float64]
@@ -65,7 +65,7 @@ def contact(
     if answers:
         if s.load.made[0] + 6 > len(s.load.force):
             return FULL
-        rigid_a, rigid_b = begin_vectors(a, pose_a, b, pose_b, s.load)
+        rigid_a, rigid_b = begin_vectors(a, wa, pose_a, b, wb, pose_b, s.load)
     while end < n_pairs:
         # a group of pairs with one leaf of the slave
         start, leaf_a = end, pairs[end, 0]
@@ -136,7 +136,7 @@ def contact(
                                     n = enter_vector(
                                         b, wb, pose_b, s.load, 1, j, eta, rigid_b, at_x, at_y, nx, ny, n
                                     )
-                                    gather(s.load, n, f, w)
+                                    gather_vectors(s.load, n, f, w)
                     if spread and at_low != 0.0:
                         add_load(load_b, flag_b, touched_b, j, at_low * nx, at_low * ny)
                     carry = at_high

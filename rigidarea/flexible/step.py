@@ -19,9 +19,9 @@ from rigidarea.compile.jit import kernel
 from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
 from rigidarea.flexible.boundary import Boundary, Work
 from rigidarea.flexible.boundary_places import clear_loads, clear_nodes
-from rigidarea.flexible.condense import eliminate_loads, renew_loads
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
+from rigidarea.flexible.eliminate_loads import eliminate_loads, renew_loads
 from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
@@ -38,6 +38,9 @@ NEWTON_LIMIT = (
 )
 HELD = (0.9, 0.8, 0.6, 0.3, 0.0)  # parts of the loads before, tried in turn where the contact seems lost
 TOLERANCE = 1e-7  # residual force over the largest force of the step
+CYCLE = 4  # iterations; then a region that parts and merges again, to and fro, may end them: the directions of its
+# loads jump there, and no loads are those of their own displacements
+PARTED = 1e-2  # and then all loads together are off by no more than this part of the largest force
 FAST = 1e-2  # of a residual, left by a correction: Newton's method is then in its last, fast part
 SURE = 10.0  # and the next may still take this much less off
 UNSEEN = 3e-6  # of the largest force: what the step before says is less is not looked at again
@@ -121,9 +124,13 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         d[j], moved[j] = f - buf.modal_residual[lo + j] - buf.swing[lo + j] * rhs[k + 2], 0.0
     for i in range(s_load.made[0] if hi > lo else 0):
         if s_load.side[i] == b:
-            along, more = buf.modal[i], buf.answer[i]
+            along, more = buf.modal[i], buf.answer[0, i]
             for j in range(hi - lo):
                 d[j] += along[j] * more
+            if buf.turning[i] >= 0:
+                along, more = buf.gauge[i], buf.answer[1, i]
+                for j in range(hi - lo):
+                    d[j] += along[j] * more
     for j in range(hi - lo):
         d[j] *= w.mobility[j]
     # what these do to each other as the frame turns (G is antisymmetric)
@@ -242,6 +249,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     part = 1.0  # of a correction that is taken
     first = slowest = 0.0
     full = stamp = 0
+    earlier = np.inf
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
@@ -286,7 +294,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
             force, left = mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
-        off = eliminate_loads(bodies, sy, buf, state, s.load)
+        off = eliminate_loads(bodies, sy, buf, state, s.load, not st.sts)
         worst = max(worst, off)
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)
@@ -313,6 +321,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         rounded = change < ROUNDING and off <= SETTLED * reference
         if (worst <= TOLERANCE * reference or rounded) and open_most <= CLOSURE:
             return iteration
+        parted = iteration > CYCLE and worst > 0.5 * earlier and buf.counts[0] != regions
+        if parted and worst <= PARTED * reference and open_most <= CLOSURE:
+            return iteration
         # one correction more is enough where the last took so much off that the next leaves less than the tolerance
         left = (
             SURE * rate * worst <= TOLERANCE * reference
@@ -326,7 +337,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
         if sure and before == 0.0:
             buf.pace[3] += 1.0
-        before = worst
+        earlier, before = before, worst
         for i in range(total):
             buf.matrix[i, total] = buf.rhs[i]
         eliminate(buf.matrix, total, 1)
@@ -353,7 +364,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             )
         correct_joints(sy, buf, state, end, scheme.scale / part)
         if sure:
-            correct_forces(sy, buf, st, s, pairs)
+            correct_forces(bodies, sy, buf, st, s, pairs)
             _turn_hubs(bodies, sy, state, scheme)
             return iteration
         buf.rhs[-2], buf.rhs[-1] = worst, reference

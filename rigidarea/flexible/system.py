@@ -98,22 +98,26 @@ class Buffers(NamedTuple):
         Array  # (m,) gradient of the modes' residual by their frame's angle: ``floating_frame.turning_rows``
     )
     column: Ints  # (3 b,) unknown of each hub's constraint force or moment, -1 if there is none
-    counts: Ints  # [0] regions, [1] evaluation stamp, [2] columns of ``right`` but the first
+    counts: Ints  # [0] regions, [1] evaluation stamp, [2] columns of P, [3] loads and turns, [4] whether across, too
     bend: Array  # (b,) largest displacement of the boundary under a contact, by static flexibility
     most: Array  # (b,) the largest of it so far
-    # the loads' system, see ``condense``
+    # the loads' system, see ``condense``: room for t regions that turn
     touched: Ints  # (b,)
     active: Ints  # (6 b,) frames' and hubs' unknowns that move a load: rows of ``tangent``
+    own: Ints  # (c,) loads on one body
+    turning: Ints  # (c,) unknown of the turn of its region, -1: does not turn
     modal: Array  # (c, most modes of a body) of the modes along each load
-    stale: Array  # (c,) a of ``condense``, without what follows
-    shift: Array  # (c,) what the modes' residual moves
-    lag: Array  # (c,) what modes move a load as their frame turns by 1
-    compliance: Array  # (c, c)
-    moves: Array  # (c, 6 b)
-    system: Array  # (3, c, c) scratch of ``dense.yielded``
-    last: Ints  # (c,) the same
-    right: Array  # (6 b + 1, c) right-hand sides, then solutions
-    answer: Array  # (c,) change of each load
+    gauge: Array  # (c, most modes of a body) and across it, a quarter of a turn counter-clockwise
+    lag: Array  # (2, c) what modes move a load along and across as their frame turns by 1
+    local: Array  # (2 c, 2 c) what the loads on one body move each other, along and across
+    turned: Array  # (most modes of a body, 2 c) scratch of that
+    along: Array  # (c, c + t + 1 + 6 b) what loads and turns move loads along their directions; a; P
+    across: Array  # the same across them
+    system: Array  # (c + t, c + t + 1 + 6 b) for ``dense.factor``
+    pivot: Ints  # (c + t,)
+    grip: Array  # (6 b, 6 b + 1) forces on what is ``active``, by a and by unit motions of it
+    single: Array  # (c + t,) solution
+    answer: Array  # (2, c) change of each load, along it and across
     # friction and damping, see ``resist``
     rate: Array  # (b, 3) velocities of the frames
     clock: Array  # (2,) step length, change of a velocity by that of its position
@@ -128,15 +132,20 @@ class Buffers(NamedTuple):
 def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -> Buffers:
     """Scratch for so many bodies, pairs and joints, modes of each body, and ``room`` loads."""
     n, m, rows = bodies, sum(modes), 6 * bodies + 3 * joints
+    turns = room // 2  # a region has two loads at least
+    unknowns, most = room + turns, max(modes, default=0)
+    wide = unknowns + 1 + 6 * n
     return Buffers(
         np.zeros((n, 4)), np.zeros((rows, rows + 1)), np.zeros(rows + 2), np.zeros((n, 3)), np.zeros((6 * n, 6 * n)),
         np.zeros(6 * n), np.zeros(3 * n), np.zeros((pairs, 2)), np.zeros((REGIONS, 10)), np.zeros(m), np.zeros((n, 9)),
         np.zeros(m),
-        np.zeros(3 * n, np.int64), np.zeros(3, np.int64), np.zeros(n), np.zeros(n), np.zeros(n, np.int64),
-        np.zeros(6 * n, np.int64), np.zeros((room, max(modes, default=0))), np.zeros(room), np.zeros(room),
-        np.zeros(room),
-        np.zeros((room, room)), np.zeros((room, 6 * n)), np.zeros((3, room, room)), np.zeros(room, np.int64),
-        np.zeros((6 * n + 1, room)), np.zeros(room), np.zeros((n, 3)), np.zeros(2),
+        np.zeros(3 * n, np.int64), np.zeros(5, np.int64), np.zeros(n), np.zeros(n),
+        np.zeros(n, np.int64), np.zeros(6 * n, np.int64), np.zeros(room, np.int64), np.zeros(room, np.int64),
+        np.zeros((room, most)), np.zeros((room, most)), np.zeros((2, room)),
+        np.zeros((2 * room, 2 * room)), np.zeros((most, 2 * room)), np.zeros((room, wide)),
+        np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros((6 * n, 6 * n + 1)),
+        np.zeros(unknowns),
+        np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
-        np.zeros((4, max(modes, default=0))), np.zeros(4), np.zeros((2, REGIONS)),
+        np.zeros((4, most)), np.zeros(4), np.zeros((2, REGIONS)),
     )  # fmt: skip
