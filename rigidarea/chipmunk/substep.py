@@ -11,7 +11,6 @@ from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.islands import note, share_kicks
 from ..contact.join import any_pair_touches, gather, has_room, join, no_pair_comes_near
-from ..contact.joint import free_turning, geometric_stiffness
 from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
 from ..contact.solve import (
@@ -27,6 +26,7 @@ from ..contact.solve import (
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
 from ..contact.tables import BOUNCES, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
+from ..contact.taut import free_turning, geometric_stiffness
 from .joints import ask_springs, own_joints
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
 from .record import floats, look_at_partners

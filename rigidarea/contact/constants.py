@@ -70,8 +70,8 @@ DEEPER = 20.0
 #: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
 #: both ends of the way does so between them, but for 1/8 of this squared of its size.
 STRAIGHT_WAY = 0.1
-#: A joint gives way by this part of its effective mass: of joints that contradict each other, each is held as far as it
-#: can. What hangs in one sinks by this part of the way that it falls in a substep, over the part of an error that goes.
+#: A joint without an error gives way by this part of its effective mass (`joint`): what hangs in one sinks by this part
+#: of the way that it falls in a substep, over the part of an error that goes.
 JOINT_GIVE = 1e-5
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10

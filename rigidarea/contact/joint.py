@@ -13,7 +13,7 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 | rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
 
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
-max_bias. Joints that cannot all be held share what is asked of them (`JOINT_GIVE`). A limit that is not reached yet is
+max_bias. Joints that cannot all be held share what is asked of them (`_give`). A limit that is not reached yet is
 a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone,
 exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the step's end where the step is too long to follow
 it, as a contact's (`row`).
@@ -26,8 +26,8 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
+from .active import moves
 from .constants import JOINT_GIVE
-from .tables import JOINTS, LIVE, Tables
 
 PIN, SLIDE, PIVOT, GROOVE, SPRING, ROTARY_SPRING, LIMIT, RATCHET, GEAR, MOTOR = range(10)
 #: Kinds of joints.
@@ -64,7 +64,7 @@ JOINT = record(
 
 
 @kernel(forceinline=True)
-def _anchor(body: Any, x: float, y: float) -> tuple[float, float]:
+def anchor(body: Any, x: float, y: float) -> tuple[float, float]:
     """A point of the body's frame, from its centre of gravity, world axes (length)."""
     x -= body.cog_x
     y -= body.cog_y
@@ -96,16 +96,16 @@ def spring_reach(joint: Any, a: Any, b: Any) -> float:
     """What a spring's force function is asked with: its length, or the angle from B to A."""
     if joint.kind == ROTARY_SPRING:
         return float(a.angle - b.angle)
-    ax, ay = _anchor(a, joint.p[0], joint.p[1])
-    bx, by = _anchor(b, joint.p[2], joint.p[3])
+    ax, ay = anchor(a, joint.p[0], joint.p[1])
+    bx, by = anchor(b, joint.p[2], joint.p[3])
     return math.hypot(b.x + bx - a.x - ax, b.y + by - a.y - ay)
 
 
 @kernel
 def _stretch(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     """Pin, slide joint or spring: along the line from anchor to anchor."""
-    ax, ay = _anchor(a, joint.p[0], joint.p[1])
-    bx, by = _anchor(b, joint.p[2], joint.p[3])
+    ax, ay = anchor(a, joint.p[0], joint.p[1])
+    bx, by = anchor(b, joint.p[2], joint.p[3])
     nx = b.x + bx - a.x - ax
     ny = b.y + by - a.y - ay
     distance = math.hypot(nx, ny)
@@ -136,9 +136,9 @@ def _groove(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     """B's anchor on a groove of A's: across it, and at its ends along it too."""
     nx = a.c * joint.p[0] - a.s * joint.p[1]
     ny = a.s * joint.p[0] + a.c * joint.p[1]
-    sx, sy = _anchor(a, joint.p[2], joint.p[3])  # from its start
-    ex, ey = _anchor(a, joint.p[4], joint.p[5])
-    bx, by = _anchor(b, joint.p[6], joint.p[7])
+    sx, sy = anchor(a, joint.p[2], joint.p[3])  # from its start
+    ex, ey = anchor(a, joint.p[4], joint.p[5])
+    bx, by = anchor(b, joint.p[6], joint.p[7])
     x = b.x + bx - a.x
     y = b.y + by - a.y
     # along t = (-n_y, n_x); the groove's end is before its start, for n is its direction turned by +90 degrees
@@ -172,6 +172,24 @@ def _bias_vector(row: Any, joint: Any, x: float, y: float, h: float) -> None:
     row.tt = part * y
 
 
+@kernel(forceinline=True)
+def _give(row: Any, a: Any, b: Any, h: float) -> float:
+    """By which part of its effective mass a joint gives way: JOINT_GIVE, and more where it has an error to mend.
+
+    Joints that nearly contradict each other, two rods of one line, can all be held, at any speed across. What gives way
+    by g bounds that: the gain of a solve (W + g)^-1 is at most 1 / (2 sqrt(g)) (Tikhonov), so that with g = (t h / e)^2
+    an error that goes at the speed t moves no body by more than half its extent e in a step. (A limit that is not
+    reached yet asks for nothing; a rotary joint turns by half a radian.)
+    """
+    t1 = max(row.t1 if row.low < 0.0 else 0.0, -row.t1 if row.high > 0.0 else 0.0)
+    tt = max(row.tt if row.low_t < 0.0 else 0.0, -row.tt if row.high_t > 0.0 else 0.0)
+    part = h * math.sqrt(t1 * t1 + tt * tt)
+    if row.nx != 0.0 or row.ny != 0.0:
+        least = min(a.extent if moves(a) else math.inf, b.extent if moves(b) else math.inf)
+        part = part / least if least > 0.0 else 0.0
+    return float(JOINT_GIVE + part * part)
+
+
 @kernel
 def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> bool:
     """The row of a joint where its bodies are; False: it can do nothing. `a`, `b`: its bodies, the kick already given.
@@ -198,8 +216,8 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     row.high_t = 0.0
     row.most = joint.max_force * h
     if kind == PIVOT:
-        ax, ay = _anchor(a, joint.p[0], joint.p[1])
-        bx, by = _anchor(b, joint.p[2], joint.p[3])
+        ax, ay = anchor(a, joint.p[0], joint.p[1])
+        bx, by = anchor(b, joint.p[2], joint.p[3])
         _place(row, a, b, 1.0, 0.0, ax, ay, bx, by)
         _bias_vector(row, joint, b.x + bx - a.x - ax, b.y + by - a.y - ay, h)
         row.low_t = -math.inf
@@ -247,11 +265,12 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     if row.w11 <= 0.0:
         return False
     row.weight = row.w11
+    give = JOINT_GIVE if kind == MOTOR else _give(row, a, b, h)
     row.f1 = 0.0
     row.f2 = 0.0
     row.ft = 0.0
-    row.alpha = JOINT_GIVE / (1.0 + JOINT_GIVE)
-    row.gamma = row.alpha / (JOINT_GIVE * row.w11)
+    row.alpha = give / (1.0 + give)
+    row.gamma = row.alpha / (give * row.w11)
     row.own = 1.0
     row.other = 0.0
     row.alpha_t = 0.0
@@ -259,9 +278,9 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     row.grips = row.low_t < row.high_t and row.w22 > 0.0
     if row.grips:
         row.alpha_t = row.alpha
-        row.gamma_t = row.alpha / (JOINT_GIVE * row.w22)
-        row.w11 *= 1.0 + JOINT_GIVE
-        row.w22 *= 1.0 + JOINT_GIVE
+        row.gamma_t = row.alpha / (give * row.w22)
+        row.w11 *= 1.0 + give
+        row.w22 *= 1.0 + give
         row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     if kind == SPRING or kind == ROTARY_SPRING:
         _load_spring(row, joint, a, b, h, followed)
@@ -358,40 +377,3 @@ def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
         l1 = row.l1 + (r1 - row.w12 * (within - row.lt)) / row.w11
     l1, lt = clamp_joint(row, l1, within)
     return l1 - row.l1, lt - row.lt
-
-
-@kernel
-def geometric_stiffness(tables: Tables, h: float, followed: float) -> None:
-    """Bodies that their joints pull at turn more slowly: a taut chain sways no faster than the step can follow.
-
-    A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
-    joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
-    doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
-    damping. Only as far as the step is too long to follow it, as of a contact (`row`).
-    """
-    for k in range(tables.counters[LIVE]):
-        tables.bodies[tables.live[k]].tension = 0.0
-    for k in range(tables.counters[JOINTS]):
-        joint = tables.joints[k]
-        if joint.mine and joint.step > 0.0 and joint.kind == PIVOT:
-            a = tables.bodies[joint.a]
-            b = tables.bodies[joint.b]
-            ax, ay = _anchor(a, joint.p[0], joint.p[1])
-            bx, by = _anchor(b, joint.p[2], joint.p[3])
-            a.tension -= (ax * joint.jx + ay * joint.jy) / joint.step
-            b.tension += (bx * joint.jx + by * joint.jy) / joint.step
-    for k in range(tables.counters[LIVE]):
-        body = tables.bodies[tables.live[k]]
-        body.own_inverse_moment = body.inverse_moment
-        if body.calm < 0 and body.inverse_moment > 0.0:
-            phase2 = h * h * body.tension * body.inverse_moment
-            if phase2 > followed:
-                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (followed / phase2) ** 2)
-
-
-@kernel
-def free_turning(tables: Tables) -> None:
-    """After the substep's solve: every body turns as it does."""
-    for k in range(tables.counters[LIVE]):
-        body = tables.bodies[tables.live[k]]
-        body.inverse_moment = body.own_inverse_moment

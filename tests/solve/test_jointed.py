@@ -13,7 +13,9 @@ pytestmark = pytest.mark.skipif(ENGINE == "pymunk", reason="of area contact besi
 FRAMES = 300
 #: Seen shot while joints began before pairs were looked at, and with all that they had borne against contacts that had
 #: come off since (up to 2e6 px/s; 8e9 of a motor that turns a plank against a wall).
+#: The last nine by rods, grooves and limits that nearly contradict each other (up to 8e11 px/s).
 SHOT = {22: 60, 98: 90, 117: 40, 129: 160, 159: 240, 196: 40, 216: 240}
+SHOT |= {195: 60, 247: 280, 273: 20, 631: 100, 864: 80, 1179: 40, 1239: 10, 1327: 300, 2296: 300}
 
 
 def shot(seed: int, frames: int) -> bool:
@@ -32,8 +34,12 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 300 five at the most (14 of 200 before; what is left: paddles and platforms that wedge bodies in corners)."""
-    assert sum(shot(seed, FRAMES) for seed in range(300)) <= 5
+    """Of 3,000 at most 24: measured 20, of pymunk's own response 505 by the same measure the other way round.
+
+    (75 while joints that nearly contradict each other were all held. What is left: paddles and platforms that wedge
+    bodies in corners.)
+    """
+    assert sum(shot(seed, FRAMES) for seed in range(3000)) <= 24
 
 
 def test_there_is_room_for_joints_whose_bodies_do_not_collide():

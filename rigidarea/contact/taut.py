@@ -1,0 +1,44 @@
+"""What is taut turns more slowly: the stiffness that joints' forces give the turning of their bodies."""
+
+from __future__ import annotations
+
+from ..compile.jit import kernel
+from .joint import PIVOT, anchor
+from .tables import JOINTS, LIVE, Tables
+
+
+@kernel
+def geometric_stiffness(tables: Tables, h: float, followed: float) -> None:
+    """Bodies that their joints pull at turn more slowly: a taut chain sways no faster than the step can follow.
+
+    A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
+    joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
+    doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
+    damping. Only as far as the step is too long to follow it, as of a contact (`row`).
+    """
+    for k in range(tables.counters[LIVE]):
+        tables.bodies[tables.live[k]].tension = 0.0
+    for k in range(tables.counters[JOINTS]):
+        joint = tables.joints[k]
+        if joint.mine and joint.step > 0.0 and joint.kind == PIVOT:
+            a = tables.bodies[joint.a]
+            b = tables.bodies[joint.b]
+            ax, ay = anchor(a, joint.p[0], joint.p[1])
+            bx, by = anchor(b, joint.p[2], joint.p[3])
+            a.tension -= (ax * joint.jx + ay * joint.jy) / joint.step
+            b.tension += (bx * joint.jx + by * joint.jy) / joint.step
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.own_inverse_moment = body.inverse_moment
+        if body.calm < 0 and body.inverse_moment > 0.0:
+            phase2 = h * h * body.tension * body.inverse_moment
+            if phase2 > followed:
+                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (followed / phase2) ** 2)
+
+
+@kernel
+def free_turning(tables: Tables) -> None:
+    """After the substep's solve: every body turns as it does."""
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.inverse_moment = body.own_inverse_moment
