@@ -43,6 +43,11 @@ def test_a_world_does_what_the_space_alone_does(make, seed, frames):
         np.testing.assert_array_equal(states[1], state(space))
 
 
+def test_what_parts_within_a_frame_is_forgotten():
+    """Boxes that part within a frame: the space kept the pair, of which Chipmunk had told, and its world did not."""
+    check_world(plain, 5739)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("make", [pile, plain])
 @pytest.mark.parametrize("part", range(10))

@@ -111,28 +111,30 @@ class _World:
         self.run.advance(1)
 
 
-def _scene(growing: Growing, name: str, size: int) -> Scene:
+def _scene(growing: Growing, name: str, size: int, course: int = 0) -> Scene:
+    made = growing.make(size, seed=growing.seeds[course]) if growing.seeds else growing.make(size)
     return Scene(
-        name, growing.title, tuple(growing.make(size)), 1.0, "none", lambda trace: 0.0, "bench growth",
+        name, growing.title, tuple(made), 1.0, "none", lambda trace: 0.0, "bench growth",
         gravity=(0.0, -GRAVITY), friction=0.5, elasticity=growing.elasticity, size=SIDE, pressure=GRAVITY / SIDE,
     )  # fmt: skip
 
 
 def measured(name: str, size: int, engines: Sequence[str]) -> Row:
-    """One scene at one size: times of a frame (µs), of all engines in turns."""
+    """One scene at one size, all its courses: times of a frame (µs), of all engines in turns."""
     growing = GROWING[name]
-    scene = _scene(growing, name, size)
     kinds: dict[str, Any] = {"native_1": _Space, "frame": _Space, "box2d": _World}
-    runs = {engine: kinds[engine](growing, scene, engine == "frame") for engine in kinds if engine in engines}
-    times: dict[str, list[float]] = {engine: [] for engine in runs}
-    with one_core():
-        for first in range(-growing.settle, growing.frames, BLOCK):
-            for engine, run in runs.items():
-                for _ in range(BLOCK):
-                    before = time.thread_time()
-                    run.frame()
-                    if first >= 0:
-                        times[engine].append(1e6 * (time.thread_time() - before))
+    times: dict[str, list[float]] = {engine: [] for engine in engines}
+    for course in range(max(1, len(growing.seeds))):
+        scene = _scene(growing, name, size, course)
+        runs = {engine: kinds[engine](growing, scene, engine == "frame") for engine in engines}
+        with one_core():
+            for first in range(-growing.settle, growing.frames, BLOCK):
+                for engine, run in runs.items():
+                    for _ in range(BLOCK):
+                        before = time.thread_time()
+                        run.frame()
+                        if first >= 0:
+                            times[engine].append(1e6 * (time.thread_time() - before))
     shapes = sum(len(body.shapes) for body in scene.bodies)
     row: Row = {"scene": name, "size": size, "shapes": shapes}
     for engine in kinds:
@@ -230,6 +232,8 @@ def growth(names: Sequence[str] = (), sizes: Sequence[int] = (), peer_names: Seq
         (name, size) for name in names or GROWING if name in GROWING for size in sizes or GROWING[name].sizes
     ]
     progress = Progress("growth", len(chosen) + 1)
+    if "frame" in engines:
+        measured("falling", 1000, ["frame"])  # what a process loads once is no frame's
     rows = [small_spaces()] if not names or "small spaces" in names else []
     for name, size in chosen:
         rows.append(measured(name, size, engines))

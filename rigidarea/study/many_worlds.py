@@ -20,7 +20,7 @@ from .timing import one_core
 BODIES, DT = 20, 1 / 60
 HEIGHTS = (2.0, 8.0, 20.0)
 """From how high the boxes fall, in sides of one: within a quarter of a second, or for one."""
-ROUNDS, FRAMES = 5, 60
+ROUNDS, FRAMES, EPISODE = 5, 60, 600
 """Each round steps worlds and spaces by so many frames, one after the other: a drift of the machine hits both alike."""
 
 
@@ -45,10 +45,11 @@ def worlds(n: int = 1024) -> Row:
     """What `n` worlds of 20 boxes cost: to make, to step by one thread and by two, to reset, and in memory.
 
     Rows: what, measured, unit; must and aim where there are some (of 1,024 worlds). Frames are those of a world, over
-    processor time, medians of ROUNDS rounds of FRAMES frames: from the first on, or 300 later; pymunk's loop is
-    `for space in spaces: space.step(1 / 60)` over 64 spaces that begin in the same states.
+    processor time, medians of ROUNDS rounds of FRAMES frames: from the first on, or 300 later; or of EPISODE frames
+    from the first on, of 256 worlds. pymunk's loop is `for space in spaces: space.step(1 / 60)` over 64 spaces that
+    begin in the same states.
     """
-    progress = Progress("worlds", 6)
+    progress = Progress("worlds", 7)
     rows: list[Row] = []
 
     def note(what: str, measured: float, unit: str, must: str = "", aim: str = "") -> None:
@@ -66,8 +67,12 @@ def worlds(n: int = 1024) -> Row:
             made.append(time.process_time() - before)
     note(f"{n} worlds made", statistics.median(made), "s of processor time", "<= 1", "0.2")
     progress.step("made")
-    for name, waits in (("collapsing", 0), ("settled", 300)):
-        ours, theirs = _beside_pymunk(n, waits, FRAMES)
+    for name, count, waits, frames in (
+        ("collapsing", n, 0, FRAMES),
+        ("settled", n, 300, FRAMES),
+        ("ten seconds from the fall on", min(n, 256), 0, EPISODE),
+    ):
+        ours, theirs = _beside_pymunk(count, waits, frames)
         note(f"frames a second, {name}, one thread", ours, "1/s", f">= {theirs:.0f}", f"{2 * theirs:.0f}")
         note(f"frames a second, {name}, pymunk's loop", theirs, "1/s")
         progress.step(name)
