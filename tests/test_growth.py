@@ -1,6 +1,7 @@
 """Tables that grow: nothing of it is seen, and what is raised on the way leaves everything as it was."""
 
 import itertools
+import subprocess
 import sys
 
 import numpy as np
@@ -164,3 +165,28 @@ def test_what_is_raised_while_tables_grow(error, every):
             break
         k += every
     assert k > 60
+
+
+LOADS_NOTHING = """
+import pymunk, rigidarea as ra
+from rigidarea.compile.cache import CheckedFile
+
+space = pymunk.Space()
+space.gravity = 0, -900
+space.add(pymunk.Segment(space.static_body, (-500, 0), (500, 0), 5))
+ra.attach(space)
+space.step(1 / 60)
+CheckedFile._content = lambda self, path: 1 / 0
+for i in range(400):
+    body = pymunk.Body(1, 100)
+    body.position = 20 * (i % 40) - 400, 15 + 20 * (i // 40)
+    space.add(body, pymunk.Poly.create_box(body, (20, 20)))
+for i in range(60):
+    space.step(1 / 60)
+"""
+
+
+@pytest.mark.skipif(ra.backend() != "compiled", reason="only what is compiled here is loaded one by one")
+def test_growth_loads_nothing():
+    """Whatever a frame asks for is loaded with the first space: none waits for the disk."""
+    subprocess.run([sys.executable, "-c", LOADS_NOTHING], check=True)

@@ -18,7 +18,7 @@ from ..contact.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..contact.join import SPARE
 from ..contact.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
 from ..geometry.gate import positive, whole
-from .arrays import Store
+from .arrays import Store, load_growth
 from .asked import keep, raise_kept, serve
 from .contact_report import regions_of, total_energy
 from .joint_structs import kinds_of_joints
@@ -108,6 +108,7 @@ class AreaContact:
                 self._memory = None
             if not AreaContact._compiled:
                 self.energy()  # compiled now, not when it is asked for
+                load_growth()
                 AreaContact._compiled = True
             if settings["flexible"] is not None:
                 settings["flexible"].enter(space)

@@ -288,6 +288,13 @@ class Store:
         return self.tables.shapes[: int(self.tables.counters[SHAPES])]
 
 
+def load_growth() -> None:
+    """Load what makes room: else the first frame that asks for it would wait for the disk."""
+    store = Store()
+    store.tables.counters[[MORE_PAIRS, MORE_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS]] = 1
+    store.grow()
+
+
 def room_to_keep(sizes: dict[str, int]) -> int:
     """How many bytes `store.keep_tables` wants at the most of tables of these sizes (bytes)."""
     return sum(-(-sizes[name] // 8) * 8 for name in (*LASTING, "counters"))

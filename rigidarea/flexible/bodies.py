@@ -104,12 +104,10 @@ def work_at(bodies: Ints, i: int) -> Work:
         array_at(row[WORK + 13], (1,), np.float64),
         array_at(row[WORK + 14], (f,), np.int64),
         array_at(row[WORK + 15], (f,), np.int64),
-        array_at(row[WORK + 16], (f + 1,), np.int64),
-        array_at(row[WORK + 17], (f, 2), np.float64),
-        array_at(row[WORK + 18], (2,), np.bool_),
-        array_at(row[WORK + 19], (r, 2 * r), np.float64),
-        array_at(row[WORK + 20], (3, r), np.float64),
-        array_at(row[WORK + 21], (1,), np.bool_),
+        array_at(row[WORK + 16], (2,), np.bool_),
+        array_at(row[WORK + 17], (r, 2 * r), np.float64),
+        array_at(row[WORK + 18], (3, r), np.float64),
+        array_at(row[WORK + 19], (1,), np.bool_),
     )
 
 

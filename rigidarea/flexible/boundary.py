@@ -76,8 +76,6 @@ class Work(NamedTuple):
     spin: Array  # (1,) angular velocity of the frame, squared
     slot: Ints  # (f,) unknown of ``condense`` that is the load on a node, in the region
     slot_region: Ints  # (f,) that wrote it
-    given: Ints  # (f + 1,) FE nodes loaded in the iteration before; [-1] their number
-    given_load: Array  # (f, 2) and by what, in their order
     # (2,) whether spin or the hub's force change, in this step, flexibility and modes' stiffness, see ``tension``
     tight: NDArray[np.bool_]
     yielding: Array  # (r, 2 r) D in its right half
@@ -190,6 +188,6 @@ def workspace(b: Boundary) -> Work:
         np.zeros((n, 2)), np.full(n, -1), np.zeros((f, 2)), np.full(f, -1), np.zeros((n, 2)), np.zeros(n),
         np.zeros(n, bool), np.zeros(n + 1, np.int64), np.zeros((f, 2)), np.zeros(f, bool), np.zeros(3),
         np.zeros(f + 1, np.int64), np.zeros(b.modes.shape[1]), np.zeros(1), np.zeros(f, np.int64),
-        np.zeros(f, np.int64), np.zeros(f + 1, np.int64), np.zeros((f, 2)), np.zeros(2, bool), np.zeros((r, 2 * r)),
+        np.zeros(f, np.int64), np.zeros(2, bool), np.zeros((r, 2 * r)),
         np.zeros((3, r)), np.zeros(1, bool),
     )  # fmt: skip

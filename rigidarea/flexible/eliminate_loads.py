@@ -208,21 +208,13 @@ def eliminate_loads(bodies: Ints, sy: Any, buf: Any, state: Any, s: Loads, wide:
 
 
 @kernel
-def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float, part: float) -> None:
+def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float) -> None:
     """The loads that belong to the solution in ``buf.rhs``, and the nodes' loads: changes along and across each load in
     ``buf.answer``.
-
-    Of these, ``part``: the rest is what the nodes were given in the iteration before.
     """
     n, unknowns, columns, count = s.made[0], buf.counts[3], buf.counts[2], 3 * len(sy.mass)
     for b in range(len(sy.mass)):
-        w = work_at(bodies, b)
-        clear_nodes(w)
-        if part != 1.0:
-            for j in range(w.given[-1]):
-                node, rest = w.given[j], 1.0 - part
-                x, y = w.given_load[j, 0], w.given_load[j, 1]
-                add_load(w.node_load, w.node_flag, w.loaded, node, rest * x, rest * y)
+        clear_nodes(work_at(bodies, b))
     for i in range(unknowns if n > 0 else 0):
         row = buf.system[i]
         y = -row[unknowns]
@@ -238,13 +230,6 @@ def renew_loads(bodies: Ints, sy: Any, buf: Any, s: Loads, scale: float, part: f
         buf.answer[0, i], buf.answer[1, i] = buf.single[i], s.force[i] * buf.single[t] if t >= 0 else 0.0
         if s.node[i] >= 0:
             w = work_at(bodies, s.side[i])
-            f, g = part * (s.force[i] + buf.answer[0, i]), part * buf.answer[1, i]
+            f, g = s.force[i] + buf.answer[0, i], buf.answer[1, i]
             x, y = s.local[i, 0], s.local[i, 1]
             add_load(w.node_load, w.node_flag, w.loaded, s.node[i], f * x - g * y, f * y + g * x)
-    for b in range(len(sy.mass)):
-        w = work_at(bodies, b)
-        w.given[-1] = w.loaded[-1]
-        for j in range(w.loaded[-1]):
-            node = w.loaded[j]
-            w.given[j] = node
-            w.given_load[j, 0], w.given_load[j, 1] = w.node_load[node, 0], w.node_load[node, 1]

@@ -62,7 +62,6 @@ def _unloaded(bodies, sy, state, buf):  # type: ignore[no-untyped-def]
         w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
         w.hub_load[2] = mu[2] + sy.torque[b]
     buf.pace[:] = 0.0
-    buf.sway[:] = 0.0
 
 
 @kernel

@@ -26,7 +26,7 @@ from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
 from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
-from rigidarea.flexible.pace import pace, part_of_next
+from rigidarea.flexible.pace import pace
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
 from rigidarea.flexible.tension import draw, slack, tighten
 
@@ -98,13 +98,13 @@ def _move_mode(state, scheme, i, d):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, b, part):  # type: ignore[no-untyped-def]
-    """``part`` of Newton's correction of one body, of the solution in ``buf.rhs``; the largest change over its size."""
+def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, b):  # type: ignore[no-untyped-def]
+    """Newton's correction of one body, of the solution in ``buf.rhs``; the largest change over its size."""
     rhs, k, change = buf.rhs, 3 * b, 0.0
     lo, hi = sy.first[b], sy.first[b + 1]
     c, s = buf.pose[b, 2], buf.pose[b, 3]
     for i in range(0 if sy.fixed[b] == 1 else 3):
-        d = part * rhs[k + i]
+        d = rhs[k + i]
         change = max(change, abs(d) / (sy.size[b] if i < 2 else 1.0))
         state.x[b, i] += d
         state.v[b, i] += scheme.vel * d
@@ -114,9 +114,9 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
     d1 = rhs[buf.column[k + 1]] / scheme.scale if buf.column[k + 1] >= 0 else 0.0
     d2 = rhs[buf.column[k + 2]] / scheme.scale if buf.column[k + 2] >= 0 else 0.0
     mu = state.mu[b]
-    mu[0] += part * d0
-    mu[1] += part * d1
-    mu[2] += part * d2
+    mu[0] += d0
+    mu[1] += d1
+    mu[2] += d2
     x, y = c * d0 + s * d1, -s * d0 + c * d1
     d, moved = buf.modes[0], buf.modes[1]
     for j in range(hi - lo):
@@ -140,7 +140,7 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         for j in range(hi - lo):
             moved[j] += row[j] * x
     for j in range(hi - lo):
-        _move_mode(state, scheme, lo + j, part * (d[j] + moved[j] * w.mobility[j]))
+        _move_mode(state, scheme, lo + j, d[j] + moved[j] * w.mobility[j])
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
     w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
     w.hub_load[2] = mu[2] + sy.torque[b]
@@ -246,9 +246,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     end = _number(sy, buf)
     buf.clock[0], buf.clock[1] = h, scheme.vel
     change, before, regions = 1.0, 0.0, -1
-    part = 1.0  # of a correction that is taken
     first = slowest = 0.0
-    full = stamp = 0
     earlier = np.inf
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
@@ -330,10 +328,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             if before > 0.0
             else rate * worst <= UNSEEN * reference
         )
-        # no more may have been looked at than this evaluation: else loads were let go between
-        full = full + 1 if part == 1.0 and buf.counts[0] == regions and buf.counts[1] == stamp + 1 else 0
-        stamp, part = buf.counts[1], part_of_next(buf, full)
-        sure = rate < FAST and left and part == 1.0 and rate * open_most <= CLOSURE
+        sure = rate < FAST and left and rate * open_most <= CLOSURE
         sure = sure and buf.counts[0] == (regions if before > 0.0 else buf.pace[2])
         if sure and before == 0.0:
             buf.pace[3] += 1.0
@@ -344,7 +339,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         for i in range(total):
             buf.rhs[i] = buf.matrix[i, total]
         if st.spread:
-            renew_loads(bodies, sy, buf, s.load, scheme.scale, part)
+            renew_loads(bodies, sy, buf, s.load, scheme.scale)
         change = 0.0
         for b in range(count):
             change = max(
@@ -359,10 +354,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
                     state,
                     scheme,
                     b,
-                    part,
                 ),
             )
-        correct_joints(sy, buf, state, end, scheme.scale / part)
+        correct_joints(sy, buf, state, end, scheme.scale)
         if sure:
             correct_forces(bodies, sy, buf, st, s, pairs)
             _turn_hubs(bodies, sy, state, scheme)

@@ -126,7 +126,6 @@ class Buffers(NamedTuple):
     joint: Array  # (j, 3) force and moment of each joint on its body b
     modes: Array  # (4, most modes of a body) see ``frame.inertia_forces``
     pace: Array  # (4,) of Newton's method, see ``pace``
-    sway: Array  # (2, REGIONS) the same
 
 
 def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -> Buffers:
@@ -147,5 +146,5 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(unknowns),
         np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
-        np.zeros((4, most)), np.zeros(4), np.zeros((2, REGIONS)),
+        np.zeros((4, most)), np.zeros(4),
     )  # fmt: skip
