@@ -32,8 +32,9 @@ from .structs import LayoutError, address_of
 
 #: Bytes of Chipmunk's structs that are copied.
 SPACE_BYTES, BODY_BYTES, SHAPE_BYTES = 200, 248, 192
-#: Arrays of the state record that no frame remembers: a thread's.
+#: Arrays that are as long as there may be rows, and bodies.
 _OF_ROWS, _OF_BODIES = ("rows", "factors", "queue"), ("mobility", "islands", "members")
+#: Arrays of the state record that no frame remembers: a thread's.
 _SCRATCH = (
     *("stack", "cross", "param", "spot", "order", "done", "hit", "polygon", "label", "bows", "loops"),
     *_OF_ROWS,

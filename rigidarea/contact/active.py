@@ -149,12 +149,11 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         if number >= 0:
             island = tables.islands[number]
             vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
-            island.energy += _kinetic(body, vx - island.x, vy - island.y, w)
+            island.energy += kinetic_of(body, vx - island.x, vy - island.y, w)
     for r in range(tables.counters[ROWS]):
         row = tables.rows[r]
         if row.ends > 0:
-            held = (row.f1 + row.f2) / h * tables.regions[row.region].depth
-            tables.islands[island_of(tables, row)].held += held
+            tables.islands[island_of(tables, row)].held += held_by(row, tables.regions[row.region], h)
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         kick = law.gravity * h
@@ -165,13 +164,20 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
 
 
 @kernel(forceinline=True)
-def _kinetic(body: Any, vx: float, vy: float, w: float) -> float:
+def kinetic_of(body: Any, vx: float, vy: float, w: float) -> float:
+    """Kinetic energy of a body with these velocities, as far as impulses may change them."""
     energy = 0.0
     if body.inverse_mass > 0.0:
         energy += 0.5 * distance2(vx, vy, 0.0, 0.0) / body.inverse_mass
     if body.inverse_moment > 0.0:
         energy += 0.5 * w * w / body.inverse_moment
     return energy
+
+
+@kernel(forceinline=True)
+def held_by(row: Any, region: Any, h: float) -> float:
+    """At least what a contact's spring holds, and could give back (energy)."""
+    return float((row.f1 + row.f2) / h * region.depth)
 
 
 @kernel

@@ -11,8 +11,8 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..geometry.arc import distance2
 from ..geometry.place import place, shift
+from .active import held_by, kinetic_of
 from .constants import HIT, ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
@@ -146,10 +146,7 @@ def kinetic(tables: Tables) -> float:
     total = 0.0
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
-        if body.inverse_mass > 0.0:
-            total += 0.5 * distance2(body.vx, body.vy, 0.0, 0.0) / body.inverse_mass
-        if body.inverse_moment > 0.0:
-            total += 0.5 * body.w * body.w / body.inverse_moment
+        total += kinetic_of(body, body.vx, body.vy, body.w)
     return total
 
 
@@ -160,7 +157,7 @@ def held_back(tables: Tables, h: float) -> float:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if row.ends > 0:
-            total += (row.f1 + row.f2) / h * tables.regions[row.region].depth
+            total += held_by(row, tables.regions[row.region], h)
     return total
 
 
