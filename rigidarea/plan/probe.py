@@ -7,13 +7,10 @@ order that the solve has; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary
 
 from __future__ import annotations
 
-import io
 import math
-import pickle
 from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from itertools import repeat, starmap
-from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,42 +64,37 @@ class Seen(NamedTuple):
     touched: NDArray[np.bool_]  # (bodies,) at the end
 
 
-class Original:
-    """What copies of a space are made from; the space itself is only read."""
+def copied(
+    space: pymunk.Space,
+    bodies: Sequence[pymunk.Body],
+    given: Mapping[pymunk.Shape, float],
+    sagitta: float | None = None,
+) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A space like it, awake, of what is static and of these bodies, without callbacks; and the bodies' twins.
 
-    def __init__(
-        self, space: pymunk.Space, given: Mapping[pymunk.Shape, float], bodies: Sequence[pymunk.Body]
-    ) -> None:
-        self.space, self.given = space, dict(given)  # sagittas that the user has asked for (length)
-        self.bodies = list(bodies)  # what is copied, beside what is static
-
-    def copy(self, sagitta: float | None = None) -> tuple[pymunk.Space, list[pymunk.Body]]:
-        """A space like it, awake, without callbacks; outlines that know their curve sampled to `sagitta` (fraction of
-        their smallest extent), but for those given; and its bodies that move or are moved, in the original's order."""
-        space = self.space
-        made = pymunk.Space()
-        made.gravity, made.damping, made.iterations = space.gravity, space.damping, space.iterations
-        made.collision_slop, made.collision_bias = space.collision_slop, space.collision_bias
-        made.collision_persistence = space.collision_persistence
-        twins = {space.static_body: made.static_body}
-        static = [body for body in space.bodies if body.body_type == pymunk.Body.STATIC]
-        for body in [*static, *self.bodies]:
-            if body.body_type == pymunk.Body.DYNAMIC:
-                twin = pymunk.Body(body.mass, body.moment)
-            else:
-                twin = pymunk.Body(body_type=body.body_type)
-            twins[body] = twin
-            _set(twin, body, ("center_of_gravity", "position", "angle"))
-            if body.body_type != pymunk.Body.STATIC:
-                _set(twin, body, ("velocity", "angular_velocity", "force", "torque"))
+    Outlines that know their curve are sampled to `sagitta` (fraction of their smallest extent), but for those `given`
+    (length).
+    """
+    made = pymunk.Space()
+    _set(made, space, ("gravity", "damping", "collision_slop", "collision_bias", "collision_persistence"))
+    twins = {space.static_body: made.static_body}
+    for body in [*(body for body in space.bodies if body.body_type == pymunk.Body.STATIC), *bodies]:
+        twins[body] = twin = pymunk.Body(body.mass, body.moment, body.body_type)
+        _set(twin, body, ("center_of_gravity", "position", "angle"))
+        if body.body_type != pymunk.Body.STATIC:
+            _set(twin, body, ("velocity", "angular_velocity", "force", "torque"))
+        made.add(twin)
+    for shape in space.shapes:
+        if shape.body in twins and not shape.sensor:
+            made.add(_twin(shape, twins[shape.body], sagitta, given.get(shape)))
+    for joint in space.constraints:
+        if joint.a in twins and joint.b in twins:
+            # pymunk's own pickling, but for the bodies, the user's attributes and the callbacks
+            state, twin = joint.__getstate__(), object.__new__(type(joint))
+            init = [(k, twins[v] if isinstance(v, pymunk.Body) else v) for k, v in state["init"]]
+            twin.__setstate__({"init": init, "general": state["general"], "custom": [], "special": []})
             made.add(twin)
-        for shape in space.shapes:
-            if shape.body in twins and not shape.sensor:
-                made.add(_twin(shape, twins[shape.body], sagitta, self.given.get(shape)))
-        for joint in space.constraints:
-            if joint.a in twins and joint.b in twins:
-                made.add(_moved(joint, twins))
-        return made, [twins[body] for body in self.bodies]
+    return made, [twins[body] for body in bodies]
 
 
 def _twin(shape: pymunk.Shape, body: pymunk.Body, sagitta: float | None, given: float | None) -> pymunk.Shape:
@@ -133,28 +125,6 @@ def _set(twin: Any, thing: Any, names: tuple[str, ...]) -> None:
             setattr(twin, name, value)
 
 
-def _moved(joint: pymunk.Constraint, twins: dict[pymunk.Body, pymunk.Body]) -> pymunk.Constraint:
-    """A joint like it between the twins of its bodies: pymunk's own pickling, bodies apart, without callbacks."""
-    bodies = [joint.a, joint.b]
-
-    class Write(pickle.Pickler):
-        def persistent_id(self, obj: Any) -> int | None:
-            if isinstance(obj, pymunk.Body):
-                return bodies.index(obj)
-            return -1 if isinstance(obj, FunctionType | MethodType) else None
-
-    class Read(pickle.Unpickler):
-        def persistent_load(self, pid: int) -> pymunk.Body | None:
-            return twins[bodies[pid]] if pid >= 0 else None
-
-    kept = io.BytesIO()
-    Write(kept).dump(joint)
-    kept.seek(0)
-    twin: pymunk.Constraint = Read(kept).load()
-    twin.pre_solve = twin.post_solve = None
-    return twin
-
-
 class Probe:
     """Copies of a space, or of some `bodies` of it (see `part`), run at settings, each once; what they cost is counted
     by `costs` (s)."""
@@ -169,9 +139,7 @@ class Probe:
         tolerance: float,
         bodies: Sequence[pymunk.Body],
     ) -> None:
-        self.tolerance = tolerance
-        self.original = Original(space, given, bodies)
-        self.bodies = self.original.bodies
+        self.space, self.given, self.tolerance, self.bodies = space, given, tolerance, list(bodies)
         self.frame, self.frames, self.stiffness = frame, frames, stiffness
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
@@ -247,11 +215,11 @@ class Probe:
         if setting.level == "pymunk" or sagitta not in self._spaces:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
         if setting.level == "pymunk":
-            space, bodies = self.original.copy()
+            space, bodies = copied(self.space, self.bodies, self.given)
             space.collision_slop = setting.penetration * self.smallest
         else:
             if sagitta not in self._spaces:
-                space, bodies = self.original.copy(sagitta)
+                space, bodies = copied(self.space, self.bodies, self.given, sagitta)
                 made = attach(space, self.stiffness, penetration=setting.penetration)
                 self._spaces[sagitta] = made, made.snapshot(), bodies
             contact, begin, bodies = self._spaces[sagitta]
