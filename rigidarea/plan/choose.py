@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-import pymunk
 
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
@@ -76,7 +75,7 @@ class Search:
         self.probe, self.given, self.least, self.budget = probe, given, least, budget
         self.tried: list[Tried] = []
 
-    def found(self, native: bool, materials: Mapping[pymunk.Body, Any]) -> Found:
+    def found(self, native: bool) -> Found:
         """The cheapest setting whose error is within the tolerance; where none is, the one with the least.
 
         native: whether Chipmunk's own response may be chosen, by the plan or by the user.
@@ -107,7 +106,7 @@ class Search:
                 if errors.max(initial=0.0) <= max(self.probe.tolerance, chosen.error):
                     chosen, self.sagitta = chosen._replace(errors=errors), coarser
                     break
-        states, seen = probe.run(chosen.setting, self.sagitta, materials=materials)
+        states, seen = probe.run(chosen.setting, self.sagitta, noted=True)
         finer: dict[int, int] = {}
         if rigid and "steps" not in self.given and self.least is None and probe.share == 1.0:
             chosen, finer, states = self._islands(chosen, seen, states)
@@ -126,10 +125,8 @@ class Search:
         n = len(self.probe.bodies)
         unknown = np.full(n, np.inf)
         chosen = Tried(setting, unknown, self.probe.cost(setting))
-        seen = Seen({}, np.arange(n), np.zeros(n, bool))
-        return Found(
-            chosen, {}, None, [], Reference(setting, np.zeros((0, n, 6)), unknown, []), seen, unknown
-        )
+        fine = Reference(setting, np.zeros((0, n, 6)), unknown, [])
+        return Found(chosen, {}, None, [], fine, Seen({}, np.arange(n)), unknown)
 
     # --- trying ---
 
@@ -155,9 +152,7 @@ class Search:
         if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
             self.tried += [Tried(run, errors, probe.cost(run)) for run, errors in self.fine.coarser]
         within = [each for each in self.tried if each.error <= tolerance]
-        if (
-            not within and self.least is not None
-        ):  # of a plan that was outgrown: better too fine than too coarse
+        if not within and self.least is not None:  # a plan that was outgrown: better too fine than too coarse
             return max(self.tried, key=lambda each: each.cost_s)
         if not within:
             return min(self.tried, key=lambda each: each.error)

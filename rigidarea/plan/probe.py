@@ -61,7 +61,6 @@ class Seen(NamedTuple):
 
     measured: dict[str, Measured]
     groups: NDArray[np.int64]  # (bodies,) those of a number have touched or are jointed
-    touched: NDArray[np.bool_]  # (bodies,) at the end
 
 
 def copied(
@@ -90,10 +89,10 @@ def copied(
     for joint in space.constraints:
         if joint.a in twins and joint.b in twins:
             # pymunk's own pickling, but for the bodies, the user's attributes and the callbacks
-            state, twin = joint.__getstate__(), object.__new__(type(joint))
+            state, moved = joint.__getstate__(), object.__new__(type(joint))
             init = [(k, twins[v] if isinstance(v, pymunk.Body) else v) for k, v in state["init"]]
-            twin.__setstate__({"init": init, "general": state["general"], "custom": [], "special": []})
-            made.add(twin)
+            moved.__setstate__({"init": init, "general": state["general"], "custom": [], "special": []})
+            made.add(moved)
     return made, [twins[body] for body in bodies]
 
 
@@ -197,7 +196,7 @@ class Probe:
         key = setting, sagitta
         if key not in self._tracks:
             first = not self._tracks
-            self._tracks[key], seen = self.run(setting, sagitta, materials={} if first else None)
+            self._tracks[key], seen = self.run(setting, sagitta, noted=first)
             self.groups = seen.groups if first else self.groups
         return self._tracks[key]
 
@@ -206,10 +205,9 @@ class Probe:
         setting: Setting,
         sagitta: float | None,
         asked: Mapping[int, int] | None = None,
-        materials: Mapping[pymunk.Body, Any] | None = None,
+        noted: bool = False,
     ) -> tuple[Array, Seen]:
-        """A run, as `track` has it, where bodies have `asked` for substeps, by number; and, given `materials`, what it
-        shows."""
+        """A run, as `track` has it, where bodies have `asked` for substeps, by number; and what is `noted` of it."""
         self.spent += self.price(setting)
         contact: AreaContact | None = None
         if setting.level == "pymunk" or sagitta not in self._spaces:
@@ -235,10 +233,9 @@ class Probe:
         read = reader(space, bodies)
         states[0] = read()
         index = {body: i for i, body in enumerate(bodies)}
-        seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
-        made_of = {twin: (materials or {}).get(body) for twin, body in zip(bodies, self.bodies)}
+        seen = Seen({}, np.arange(len(bodies)))
         notes = 0
-        if materials is not None:
+        if noted:
             note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
             notes = max(1, min(NOTES, int(NOTING_S / note)))
             self.spent += (notes + 1) * note
@@ -252,7 +249,7 @@ class Probe:
                     contact.step(self.frame, frames, steps=setting.steps)
                 states[k + 1] = read()
                 if notes and (k == 0 or k % every == every - 1):
-                    self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
+                    self._note(space, contact, self.frame / setting.steps, index, seen)
         except SimulationError:
             states[:] = math.nan
         speeds = np.hypot(states[:, :, 3], states[:, :, 4]) + self.reach * np.abs(states[:, :, 5])
@@ -269,19 +266,15 @@ class Probe:
         h: float,
         index: Mapping[pymunk.Body, int],
         seen: Seen,
-        materials: Mapping[pymunk.Body, Any],
     ) -> None:
-        seen.touched[:] = False
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
             rows = contact.regions
-            measure(contact, rows, h, seen.measured, materials, self._extents)
+            measure(contact, rows, h, seen.measured, {}, self._extents)
             if self.begin is None:
                 self.begin = seen.measured.get("penetration", (0.0, None))[0]
             self._touching.append(len(rows))
             links += [(row["body_a"], row["body_b"]) for row in rows]
-            for ends in links[-len(rows) :] if len(rows) else []:
-                seen.touched[[index[end] for end in ends if end in index]] = True
         for a, b in links:
             if a in index and b in index:
                 join(seen.groups, index[a], index[b])

@@ -64,10 +64,12 @@ def _meets_rigid(space: pymunk.Space, body: pymunk.Body, bends: Sequence[Choice]
 
 
 def name_of(space: pymunk.Space, who: Any) -> str:
-    """What a body or shape is called: its `name`, if the user gave it one, else what it is and where; None: the
-    space."""
+    """What a body or shape is called: its `name`, if the user gave it one, else what it is and where; None: the space;
+    a tuple: each of it."""
     if who is None:
         return "space"
+    if isinstance(who, tuple):
+        return " and ".join(name_of(space, each) for each in who)
     given = getattr(who, "name", None)
     if isinstance(given, str) and given:
         return given

@@ -34,7 +34,7 @@ def lines_of(plan: Any) -> list[Line]:
     mine = ", ".join(sorted(plan.overrides.get(None, {})))
     head = _told(plan, chosen.setting) + (f" (yours: {mine})" if mine else "")
     against = f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
-    out = [Line("space", head, against if found.tried else "the defaults", plan.error, plan._frame_cost)]
+    out = [Line("space", head, against if found.tried else "the defaults", plan.error, chosen.cost_s)]
     cheaper = [each for each in found.tried if each.cost_s < chosen.cost_s][-1:]
     finer = [each for each in found.tried if each.cost_s > chosen.cost_s and each.error < plan.error][:1]
     for what, others in (("  cheaper", cheaper), ("  finer", finer)):
@@ -62,7 +62,7 @@ def lines_of(plan: Any) -> list[Line]:
         level = choice.level + (" (yours)" if choice.overridden else "")
         out.append(Line(name_of(space, choice.body), level, choice.reason, choice.error, target=choice.body))
     if asleep := plan.may_sleep:
-        text = f"stood still on something, slower than {plan.idle_speed:.1e}"
+        text = f"stood still, slower than {plan.idle_speed:.1e}"
         out.append(Line(f"{len(asleep)} bodies", "may sleep", text, 0.0))
     return out
 
