@@ -24,19 +24,12 @@ STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 SWEEPS, FEWER_SWEEPS = 10, 5
 FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
-COPIES, SAMPLED = 0.5, 0.1
-"""What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
 
 
 def budget_of(bodies: int, frames: int, steps: int | None) -> float:
     """What trying out may cost (s): of so many bodies, planned for so many frames of so many substeps."""
     run = costs.area_frame([(bodies, bodies, steps or SUBSTEPS)], SWEEPS) * frames
     return max(SHARE * run, UNNOTICED_S)
-
-
-def bodies_for(budget: float) -> tuple[float, float]:
-    """How many bodies may be copied, and how many of islands that are sampled: see `part`."""
-    return COPIES * budget / costs.COPY_BODY_S, SAMPLED * budget / costs.COPY_BODY_S
 
 
 class Tried(NamedTuple):
@@ -109,10 +102,11 @@ class Search:
         states, seen = probe.run(chosen.setting, self.sagitta, noted=True)
         finer: dict[int, int] = {}
         if rigid and "steps" not in self.given and self.least is None and probe.share == 1.0:
-            chosen, finer, states = self._islands(chosen, seen, states)
+            chosen, finer, states = self._islands(chosen, seen) or (chosen, {}, states)
         sooner = probe.apart(states, self.fine.track, so_far=True)
         self.tried.sort(key=lambda each: (each.cost_s, each.error))
-        probe.forget()
+        probe.copies.clear()
+        probe.extents.clear()
         return Found(chosen, finer, self.sagitta, self.tried, self.fine, seen, sooner)
 
     def _untried(self) -> Found:
@@ -187,12 +181,12 @@ class Search:
                 out.append([Setting("pymunk", n, sweeps, depths[0])])
         return sorted(out, key=lambda group: self.probe.cost(group[0]))
 
-    def _islands(self, chosen: Tried, seen: Seen, states: Array) -> tuple[Tried, dict[int, int], Array]:
-        """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
-        mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
+    def _islands(self, chosen: Tried, seen: Seen) -> tuple[Tried, dict[int, int], Array] | None:
+        """Each island's own substeps: the fewest with which its bodies were within the tolerance; what that costs, and
+        the run. None where a run of that mixture is not within it, or all take the same."""
         probe, tolerance, setting = self.probe, self.probe.tolerance, chosen.setting
         if chosen.error > tolerance:
-            return chosen, {}, states
+            return None
         alike = [chosen] + [
             each
             for each in self.tried
@@ -210,12 +204,12 @@ class Search:
         base = min(wanted.values(), default=setting.steps)
         finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
         if not finer:
-            return chosen, {}, states
+            return None
         setting = setting._replace(steps=base)
         mixed = probe.run(setting, self.sagitta, finer)[0]
         errors = probe.apart(mixed, self.fine.track) + self.fine.doubt
         if not errors.max(initial=0.0) <= tolerance:
-            return chosen, {}, states
+            return None
         share = {g: float((seen.groups == g).mean()) for g in wanted}
         parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
         cost = costs.area_frame(parts, setting.sweeps, probe.points)

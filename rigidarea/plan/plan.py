@@ -1,7 +1,6 @@
 """`plan(space, tolerance)`: the cheapest settings that are within a tolerance on a copy of a space, and why.
 
-A plan reads a space and changes nothing; `Plan.apply` makes it so. What is tried is in `choose`, how in `probe`; which
-bodies bend is in `elastic`.
+What is tried is in `choose`, how in `probe`; which bodies bend is in `elastic`.
 """
 
 from __future__ import annotations
@@ -18,7 +17,7 @@ from ..chipmunk import AreaContact, SimulationError, attach, attached
 from ..geometry.gate import one_of, positive, truth, whole
 from ..geometry.outline import Outline
 from . import elastic
-from .choose import Found, Search, bodies_for, budget_of
+from .choose import Found, Search, budget_of
 from .part import part
 from .probe import Probe, Setting
 from .promise import name_of, unpromised
@@ -98,14 +97,10 @@ class Plan:
             self.elastic = elastic.choose(
                 self.space, self.materials, self.tolerance, self.stiffness, self.overrides
             )
-        asked = {
-            shape: settings["sampling"]
-            for shape, settings in self.overrides.items()
-            if isinstance(shape, pymunk.Shape) and "sampling" in settings
-        }
+        asked = {shape: told["sampling"] for shape, told in self.overrides.items() if "sampling" in told}
         frames = max(1, round(self.seconds / self.frame))
         budget = budget_of(len(self.space.bodies), frames, given.get("steps"))
-        bodies = part(self.space, *bodies_for(budget))
+        bodies = part(self.space, budget)
         probe = Probe(self.space, self.frame, frames, self.stiffness, asked, self.tolerance, bodies)
         bends = any(choice.level in ELASTIC for choice in self.elastic)
         level = given.get("level")
@@ -322,8 +317,8 @@ def plan(
 ) -> Plan:
     """Choose the cheapest model and settings for a space whose error is within `tolerance`, tried out on copies.
 
-    tolerance: relative, of the study's errors: a velocity's over the approach speed, a path's over its length or the
-        body's size; 0.01 is one per cent, and so is "1%".
+    tolerance: relative: of places over a body's way or its smallest extent, of turns over what it turns or a radian, of
+        drives over their speed; 0.01 is one per cent, and so is "1%".
     seconds: simulated time over which it must hold, 10 unless said: it is tried out as far as a twentieth of that run's
         cost goes, or a tenth of a second. frame: length of a frame (time).
     materials: what bodies are made of (`flexible.Material`), where it matters whether they bend.

@@ -8,9 +8,7 @@ order that the solve has; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from itertools import repeat, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -156,10 +154,9 @@ class Probe:
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
-        self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
-        self._tracks: dict[tuple[Setting, float | None], Array] = {}
+        self.copies: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}  # by sagitta
+        self.extents: dict[pymunk.Shape, float] = {}  # of the copies' shapes
         self._asked: set[int] = set()
-        self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
         self.begin: float | None = None  # depth after the first run's first frame, over the smallest extent
 
@@ -185,20 +182,12 @@ class Probe:
 
     # --- runs ---
 
-    def forget(self) -> None:
-        """Let go of the copies and what they did."""
-        self._spaces.clear()
-        self._extents.clear()
-        self._tracks.clear()
-
     def track(self, setting: Setting, sagitta: float | None = None) -> Array:
         """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
-        key = setting, sagitta
-        if key not in self._tracks:
-            first = not self._tracks
-            self._tracks[key], seen = self.run(setting, sagitta, noted=first)
-            self.groups = seen.groups if first else self.groups
-        return self._tracks[key]
+        first = self.begin is None
+        states, seen = self.run(setting, sagitta, noted=first)
+        self.groups = seen.groups if first else self.groups
+        return states
 
     def run(
         self,
@@ -210,17 +199,17 @@ class Probe:
         """A run, as `track` has it, where bodies have `asked` for substeps, by number; and what is `noted` of it."""
         self.spent += self.price(setting)
         contact: AreaContact | None = None
-        if setting.level == "pymunk" or sagitta not in self._spaces:
+        if setting.level == "pymunk" or sagitta not in self.copies:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
         if setting.level == "pymunk":
             space, bodies = copied(self.space, self.bodies, self.given)
             space.collision_slop = setting.penetration * self.smallest
         else:
-            if sagitta not in self._spaces:
+            if sagitta not in self.copies:
                 space, bodies = copied(self.space, self.bodies, self.given, sagitta)
                 made = attach(space, self.stiffness, penetration=setting.penetration)
-                self._spaces[sagitta] = made, made.snapshot(), bodies
-            contact, begin, bodies = self._spaces[sagitta]
+                self.copies[sagitta] = made, made.snapshot(), bodies
+            contact, begin, bodies = self.copies[sagitta]
             contact.restore(begin)
             contact.penetration, space = setting.penetration, contact.space
             for i in self._asked | (asked or {}).keys():
@@ -243,8 +232,8 @@ class Probe:
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
-                    one = repeat((space._space, self.frame / setting.steps), frames * setting.steps)
-                    deque(starmap(lib.cpSpaceStep, one), maxlen=0)  # no callbacks: nothing for Python to do
+                    for _ in range(frames * setting.steps):  # no callbacks: nothing for pymunk to do
+                        lib.cpSpaceStep(space._space, self.frame / setting.steps)
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
                 states[k + 1] = read()
@@ -270,7 +259,7 @@ class Probe:
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
             rows = contact.regions
-            measure(contact, rows, h, seen.measured, {}, self._extents)
+            measure(contact, rows, h, seen.measured, {}, self.extents)
             if self.begin is None:
                 self.begin = seen.measured.get("penetration", (0.0, None))[0]
             self._touching.append(len(rows))
