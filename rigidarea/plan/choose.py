@@ -76,10 +76,8 @@ class Search:
         probe, planned = self.probe, self.probe.frames
         if probe.moving and not probe.bodies:
             return self._untried()
-        copies = costs.COPY_BODY_S * len(probe.bodies)
-        probe.look(
-            (self.budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION)
-        )
+        left = self.budget - probe.spent - costs.COPY_BODY_S * len(probe.bodies)
+        probe.look(left / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION))
         self.sagitta = None
         if probe.sampled and self.least is None:
             # facets that turn by no more than the tolerance: turn² = 8 sagitta/radius
@@ -90,9 +88,8 @@ class Search:
         chosen = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
         rigid = chosen.setting.level == "rigid"
         if probe.frames < planned and rigid and "steps" not in self.given:
-            chosen = chosen._replace(
-                setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps))
-            )
+            steps = max(SUBSTEPS, chosen.setting.steps)
+            chosen = chosen._replace(setting=chosen.setting._replace(steps=steps))
         if self.sagitta is not None and rigid:
             for coarser in (100.0 * self.sagitta, 10.0 * self.sagitta):
                 errors = self._errors(chosen.setting, coarser)
@@ -112,9 +109,8 @@ class Search:
     def _untried(self) -> Found:
         """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too
         much."""
-        setting = self.least or Setting(
-            "rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * self.probe.tolerance)
-        )
+        depth = min(PENETRATION, 0.1 * self.probe.tolerance)
+        setting = self.least or Setting("rigid", SUBSTEPS, SWEEPS, depth)
         setting = setting._replace(**{k: v for k, v in self.given.items() if k in Setting._fields})
         n = len(self.probe.bodies)
         unknown = np.full(n, np.inf)
@@ -187,20 +183,12 @@ class Search:
         probe, tolerance, setting = self.probe, self.probe.tolerance, chosen.setting
         if chosen.error > tolerance:
             return None
-        alike = [chosen] + [
-            each
-            for each in self.tried
-            if each.setting._replace(steps=setting.steps, sweeps=setting.sweeps) == setting
-            and each.setting.steps <= setting.steps
-        ]
-        wanted = {
-            int(group): min(
-                each.setting.steps
-                for each in alike
-                if each.errors[seen.groups == group].max(initial=0.0) <= tolerance
-            )
-            for group in np.unique(seen.groups[probe.free])
-        }
+        wanted = dict.fromkeys(np.unique(seen.groups[probe.free]).tolist(), setting.steps)
+        for each in self.tried:
+            if each.setting._replace(steps=setting.steps, sweeps=setting.sweeps) == setting:
+                for group, steps in wanted.items():
+                    if each.errors[seen.groups == group].max(initial=0.0) <= tolerance:
+                        wanted[group] = min(steps, each.setting.steps)
         base = min(wanted.values(), default=setting.steps)
         finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
         if not finer:

@@ -103,10 +103,8 @@ class Plan:
         bodies = part(self.space, budget)
         probe = Probe(self.space, self.frame, frames, self.stiffness, asked, self.tolerance, bodies)
         bends = any(choice.level in ELASTIC for choice in self.elastic)
-        level = given.get("level")
-        native = level == "pymunk" or (
-            level is None and not bends and self.stiffness is None and not probe.stands_in
-        )
+        free = "level" not in given and self.stiffness is None and not bends and not probe.stands_in
+        native = free or given.get("level") == "pymunk"
         found = Search(probe, given, least, budget).found(native)
         self._probe, self._found = probe, found
         self.level, self.steps, self.sweeps, self.penetration = found.chosen.setting
@@ -134,8 +132,7 @@ class Plan:
         """Bodies whose islands take more than the space: as found, as before at least, as the user says."""
         wanted = {body: max(found.get(body, 0), before.get(body, 0)) for body in found | before}
         told = {body: s["steps"] for body, s in self.overrides.items() if body is not None and "steps" in s}
-        wanted.update(told)
-        return {body: n for body, n in wanted.items() if n > self.steps and body.space is self.space}
+        return {body: n for body, n in (wanted | told).items() if n > self.steps and body.space is self.space}
 
     def _sagittas(self, found: Found) -> dict[pymunk.Shape, float]:
         """The sagitta (length) of each outline that knows its curve."""

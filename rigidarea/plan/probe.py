@@ -150,7 +150,9 @@ class Probe:
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
-        self.share = self.free.sum() / self.moving if self.moving else 1.0  # of what moves that is copied
+        self.share = (
+            float(self.free.sum()) / self.moving if self.moving else 1.0
+        )  # of what moves that is copied
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
@@ -322,10 +324,7 @@ def reference(probe: Probe, sagitta: float | None, budget: float, least: Setting
             break
         runs.append((setting, probe.track(setting, sagitta)))
         if j:
-            near = [probe.apart(track, runs[-1][1]) for _, track in runs[-3:-1]]
-            doubt = near[-1] / (RATIO - 1.0)
-            if len(near) > 1:
-                doubt = np.maximum(doubt, near[0] / (RATIO**2 - 1.0))
+            doubt = probe.apart(runs[-2][1], runs[-1][1]) / (RATIO - 1.0)
             if j > 2 and doubt.max(initial=0.0) <= ENOUGH * probe.tolerance:
                 break
     fine = runs.pop()

@@ -48,11 +48,12 @@ def unpromised(
 def callbacks(space: pymunk.Space) -> bool:
     """Whether functions of the user's are called in a step."""
     empty = pymunk.empty_callback
-    handlers = space._handlers.values()
+    handlers, joints = space._handlers.values(), space.constraints
+    hooks = ("_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func")
     return (
         any(f != empty for h in handlers for f in (h._begin, h._pre_solve, h._post_solve, h._separate))
         or any(b._velocity_func is not None or b._position_func is not None for b in space.bodies)
-        or any(j._pre_solve_func is not None or j._post_solve_func is not None for j in space.constraints)
+        or any(getattr(joint, hook, None) is not None for joint in joints for hook in hooks)
     )
 
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pymunk
 
 from ..chipmunk import attached
-from .measures import Measured, extent_of, fastest, measure
+from .measures import extent_of, fastest, measure
 from .promise import name_of
 
 #: A measured number so many times the predicted one has outgrown the plan: below, it is what estimates are off by.
@@ -137,8 +137,7 @@ class Watch:
         plan = self.plan
         space = plan.space
         contact = attached(space)
-        worst: dict[str, Measured] = {"speed": (0.0, None)}
-        fastest(space, worst)
+        worst = {"speed": fastest(space)}
         if contact is not None:
             measure(contact, contact.regions, plan.frame / plan.steps, worst, plan.materials, {})
         found = {name: (value, name_of(space, where)) for name, (value, where) in worst.items()}

@@ -176,6 +176,7 @@ def study(
         chosen = plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
         told = (chosen.level, chosen.steps, chosen.sweeps, chosen.penetration, *sorted(chosen.finer.values()))
         task = {**name, "tolerance": tolerance, "plan": told, "sampling": sorted(chosen.sampling.values())}
+        task |= {"reachable": chosen.reachable, "unpromised": chosen.unpromised}
         look = partial(judge, scene, tolerance, swept, varied, reference)
         rows.append({k: v for k, v in kept(task, look).items() if k != "task"})
     return rows
