@@ -123,9 +123,8 @@ class Plan:
         sooner = float(found.sooner.max(initial=0.0))
         if self.reachable and sooner > self.tolerance:
             name = name_of(self.space, bodies[int(found.sooner.argmax())])
-            self.unpromised.append(
-                f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
-            )
+            told = f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
+            self.unpromised.append(told)
         return self
 
     def _finer(self, found: dict[pymunk.Body, int], before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:

@@ -134,8 +134,7 @@ class Watch:
             self.promised[name] = max(self.promised[name], self.indicators[name].measured)
 
     def _measure(self) -> dict[str, tuple[float, str]]:
-        plan = self.plan
-        space = plan.space
+        plan, space = self.plan, self.plan.space
         contact = attached(space)
         worst = {"speed": fastest(space)}
         if contact is not None:
@@ -143,9 +142,7 @@ class Watch:
         found = {name: (value, name_of(space, where)) for name, (value, where) in worst.items()}
         if contact is not None and not _driven(space):
             energy = contact.energy()
-            kinetic = sum(
-                body.kinetic_energy for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC
-            )
+            kinetic = sum(body.kinetic_energy for body in space.bodies)
             self._scale = max(self._scale, kinetic, self._weight)
             if self._energy is not None and self._scale > 0.0:
                 found["energy"] = max(0.0, energy - self._energy) / self._scale, "the space"
@@ -156,8 +153,9 @@ class Watch:
 def _driven(space: pymunk.Space) -> bool:
     """Whether something may do work on the bodies: motors, springs, belts, kinematic bodies that move."""
     kinematic = [body for body in space.bodies if body.body_type == pymunk.Body.KINEMATIC]
+    works = pymunk.SimpleMotor | pymunk.DampedSpring | pymunk.DampedRotarySpring
     return (
-        any(isinstance(joint, pymunk.SimpleMotor | pymunk.DampedSpring) for joint in space.constraints)
+        any(isinstance(joint, works) for joint in space.constraints)
         or any(body.velocity.length or body.angular_velocity for body in kinematic)
         or any(shape.surface_velocity != (0.0, 0.0) for shape in space.shapes)
     )
