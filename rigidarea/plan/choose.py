@@ -6,7 +6,6 @@ from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
-import pymunk
 
 from ..chipmunk.attach import PENETRATION
 from ..contact.constants import SUBSTEPS
@@ -25,19 +24,12 @@ STEPS = (1, 2, 4, 8, 16, 32, 64, 128)
 SWEEPS, FEWER_SWEEPS = 10, 5
 FINEST_SAGITTA = 1e-6
 """Of an outline sampled anew (fraction of its smallest extent)."""
-COPIES, SAMPLED = 0.5, 0.1
-"""What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
 
 
 def budget_of(bodies: int, frames: int, steps: int | None) -> float:
     """What trying out may cost (s): of so many bodies, planned for so many frames of so many substeps."""
     run = costs.area_frame([(bodies, bodies, steps or SUBSTEPS)], SWEEPS) * frames
     return max(SHARE * run, UNNOTICED_S)
-
-
-def bodies_for(budget: float) -> tuple[float, float]:
-    """How many bodies may be copied, and how many of islands that are sampled: see `part`."""
-    return COPIES * budget / costs.COPY_BODY_S, SAMPLED * budget / costs.COPY_BODY_S
 
 
 class Tried(NamedTuple):
@@ -76,7 +68,7 @@ class Search:
         self.probe, self.given, self.least, self.budget = probe, given, least, budget
         self.tried: list[Tried] = []
 
-    def found(self, native: bool, materials: Mapping[pymunk.Body, Any]) -> Found:
+    def found(self, native: bool) -> Found:
         """The cheapest setting whose error is within the tolerance; where none is, the one with the least.
 
         native: whether Chipmunk's own response may be chosen, by the plan or by the user.
@@ -84,10 +76,8 @@ class Search:
         probe, planned = self.probe, self.probe.frames
         if probe.moving and not probe.bodies:
             return self._untried()
-        copies = costs.COPY_BODY_S * len(probe.bodies)
-        probe.look(
-            (self.budget - copies - probe.spent) / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION)
-        )
+        left = self.budget - probe.spent - costs.COPY_BODY_S * len(probe.bodies)
+        probe.look(left / RUNS, Setting("rigid", SUBSTEPS, SWEEPS, PENETRATION))
         self.sagitta = None
         if probe.sampled and self.least is None:
             # facets that turn by no more than the tolerance: turn² = 8 sagitta/radius
@@ -98,38 +88,35 @@ class Search:
         chosen = self._cheapest(native and (seen_whole or self.given.get("level") == "pymunk"))
         rigid = chosen.setting.level == "rigid"
         if probe.frames < planned and rigid and "steps" not in self.given:
-            chosen = chosen._replace(
-                setting=chosen.setting._replace(steps=max(SUBSTEPS, chosen.setting.steps))
-            )
+            steps = max(SUBSTEPS, chosen.setting.steps)
+            chosen = chosen._replace(setting=chosen.setting._replace(steps=steps))
         if self.sagitta is not None and rigid:
             for coarser in (100.0 * self.sagitta, 10.0 * self.sagitta):
                 errors = self._errors(chosen.setting, coarser)
                 if errors.max(initial=0.0) <= max(self.probe.tolerance, chosen.error):
                     chosen, self.sagitta = chosen._replace(errors=errors), coarser
                     break
-        states, seen = probe.run(chosen.setting, self.sagitta, materials=materials)
+        states, seen = probe.run(chosen.setting, self.sagitta, noted=True)
         finer: dict[int, int] = {}
         if rigid and "steps" not in self.given and self.least is None and probe.share == 1.0:
-            chosen, finer, states = self._islands(chosen, seen, states)
+            chosen, finer, states = self._islands(chosen, seen) or (chosen, {}, states)
         sooner = probe.apart(states, self.fine.track, so_far=True)
         self.tried.sort(key=lambda each: (each.cost_s, each.error))
-        probe.forget()
+        probe.copies.clear()
+        probe.extents.clear()
         return Found(chosen, finer, self.sagitta, self.tried, self.fine, seen, sooner)
 
     def _untried(self) -> Found:
         """The defaults, no deeper than a tenth of the tolerance, where a copy of one island alone would cost too
         much."""
-        setting = self.least or Setting(
-            "rigid", SUBSTEPS, SWEEPS, min(PENETRATION, 0.1 * self.probe.tolerance)
-        )
+        depth = min(PENETRATION, 0.1 * self.probe.tolerance)
+        setting = self.least or Setting("rigid", SUBSTEPS, SWEEPS, depth)
         setting = setting._replace(**{k: v for k, v in self.given.items() if k in Setting._fields})
         n = len(self.probe.bodies)
         unknown = np.full(n, np.inf)
         chosen = Tried(setting, unknown, self.probe.cost(setting))
-        seen = Seen({}, np.arange(n), np.zeros(n, bool))
-        return Found(
-            chosen, {}, None, [], Reference(setting, np.zeros((0, n, 6)), unknown, []), seen, unknown
-        )
+        fine = Reference(setting, np.zeros((0, n, 6)), unknown, [])
+        return Found(chosen, {}, None, [], fine, Seen({}, np.arange(n)), unknown)
 
     # --- trying ---
 
@@ -155,9 +142,7 @@ class Search:
         if not {"steps", "sweeps", "penetration"} & given.keys() and given.get("level") != "pymunk":
             self.tried += [Tried(run, errors, probe.cost(run)) for run, errors in self.fine.coarser]
         within = [each for each in self.tried if each.error <= tolerance]
-        if (
-            not within and self.least is not None
-        ):  # of a plan that was outgrown: better too fine than too coarse
+        if not within and self.least is not None:  # a plan that was outgrown: better too fine than too coarse
             return max(self.tried, key=lambda each: each.cost_s)
         if not within:
             return min(self.tried, key=lambda each: each.error)
@@ -192,35 +177,27 @@ class Search:
                 out.append([Setting("pymunk", n, sweeps, depths[0])])
         return sorted(out, key=lambda group: self.probe.cost(group[0]))
 
-    def _islands(self, chosen: Tried, seen: Seen, states: Array) -> tuple[Tried, dict[int, int], Array]:
-        """Each island's own substeps: the fewest with which its bodies were within the tolerance, where a run of that
-        mixture is too; what that costs, and the run (`states`: of the chosen setting)."""
+    def _islands(self, chosen: Tried, seen: Seen) -> tuple[Tried, dict[int, int], Array] | None:
+        """Each island's own substeps: the fewest with which its bodies were within the tolerance; what that costs, and
+        the run. None where a run of that mixture is not within it, or all take the same."""
         probe, tolerance, setting = self.probe, self.probe.tolerance, chosen.setting
         if chosen.error > tolerance:
-            return chosen, {}, states
-        alike = [chosen] + [
-            each
-            for each in self.tried
-            if each.setting._replace(steps=setting.steps, sweeps=setting.sweeps) == setting
-            and each.setting.steps <= setting.steps
-        ]
-        wanted = {
-            int(group): min(
-                each.setting.steps
-                for each in alike
-                if each.errors[seen.groups == group].max(initial=0.0) <= tolerance
-            )
-            for group in np.unique(seen.groups[probe.free])
-        }
+            return None
+        wanted = dict.fromkeys(np.unique(seen.groups[probe.free]).tolist(), setting.steps)
+        for each in self.tried:
+            if each.setting._replace(steps=setting.steps, sweeps=setting.sweeps) == setting:
+                for group, steps in wanted.items():
+                    if each.errors[seen.groups == group].max(initial=0.0) <= tolerance:
+                        wanted[group] = min(steps, each.setting.steps)
         base = min(wanted.values(), default=setting.steps)
         finer = {int(i): wanted[int(g)] for i, g in enumerate(seen.groups) if wanted.get(int(g), base) > base}
         if not finer:
-            return chosen, {}, states
+            return None
         setting = setting._replace(steps=base)
         mixed = probe.run(setting, self.sagitta, finer)[0]
         errors = probe.apart(mixed, self.fine.track) + self.fine.doubt
         if not errors.max(initial=0.0) <= tolerance:
-            return chosen, {}, states
+            return None
         share = {g: float((seen.groups == g).mean()) for g in wanted}
         parts = [(share[g] * len(probe.bodies), share[g] * probe.pairs, n) for g, n in wanted.items()]
         cost = costs.area_frame(parts, setting.sweeps, probe.points)

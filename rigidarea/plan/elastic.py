@@ -44,31 +44,19 @@ class Shape(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def pockets(outline: Outline) -> int:
-    """Teeth or slots of an outline: pockets between it and its hull."""
-    hull = shapely.convex_hull(outline.polygon)
-    found = shapely.get_parts(shapely.difference(hull, shapely.Polygon(outline.polygon.exterior)))
-    return sum(part.area > 1e-6 * hull.area for part in found)
-
-
 def shape_of(outline: Outline) -> Shape:
     """What of an outline bears on how it bends: its teeth, slenderness, bore."""
-    polygon = outline.polygon
-    hull = shapely.convex_hull(polygon)
-    teeth = pockets(outline)
-    if teeth <= 2:
-        teeth = 0
+    polygon, hull = outline.polygon, shapely.convex_hull(outline.polygon)
+    pockets = shapely.get_parts(shapely.difference(hull, shapely.Polygon(polygon.exterior)))
+    teeth = sum(pocket.area > 1e-6 * hull.area for pocket in pockets)
     reach = math.sqrt(hull.area / math.pi)
-    holes = [math.sqrt(shapely.Polygon(hole).area / math.pi) for hole in polygon.interiors]
-    box = shapely.oriented_envelope(polygon)
-    corners = shapely.get_coordinates(box)
-    one = math.dist(corners[0], corners[1])
-    other = math.dist(corners[1], corners[2])
-    length, height = max(one, other), min(one, other)
-    if teeth:  # a tooth stands out of the rim by about its own thickness, half a pitch
-        pitch = 2.0 * math.pi * reach / teeth
-        length = height = pitch
-    return Shape(teeth, length, height, reach, max(holes, default=0.0), float(outline.area))
+    bore = max((math.sqrt(shapely.Polygon(hole).area / math.pi) for hole in polygon.interiors), default=0.0)
+    if teeth > 2:  # a tooth stands out of the rim by about its own thickness, half a pitch
+        length = height = 2.0 * math.pi * reach / teeth
+    else:
+        teeth, (one, other, third, *_) = 0, shapely.get_coordinates(shapely.oriented_envelope(polygon))
+        height, length = sorted((math.dist(one, other), math.dist(other, third)))
+    return Shape(teeth, length, height, reach, bore, float(outline.area))
 
 
 #: Elements across what bends, a tooth or a bar: the tooth is then 4 % too stiff (docs/flexible.md).
@@ -77,21 +65,11 @@ ACROSS = 5.0
 
 def load_on(space: pymunk.Space, body: pymunk.Body, lever: float) -> float:
     """What presses a body (force): its brake's or motor's torque over its lever, else its weight."""
-    torque = max(
-        (
-            motor.max_force
-            for motor in space.constraints
-            if isinstance(motor, pymunk.SimpleMotor)
-            and body in (motor.a, motor.b)
-            and math.isfinite(motor.max_force)
-        ),
-        default=0.0,
-    )
+    torques = [joint.max_force for joint in body.constraints if isinstance(joint, pymunk.SimpleMotor)]
+    torque = max((torque for torque in torques if math.isfinite(torque)), default=0.0)
     if torque > 0.0:
         return float(torque) / lever
-    if body.body_type != pymunk.Body.DYNAMIC:
-        return 0.0
-    return float(body.mass * space.gravity.length)
+    return float(body.mass * space.gravity.length) if body.body_type == pymunk.Body.DYNAMIC else 0.0
 
 
 def blow_on(space: pymunk.Space, body: pymunk.Body) -> tuple[float, float]:
@@ -100,16 +78,13 @@ def blow_on(space: pymunk.Space, body: pymunk.Body) -> tuple[float, float]:
     Of each other body with shapes: how fast the two come on along the axis that parts their boxes, and by how much more
     once one has fallen through the gap; their reduced mass. The blow is the largest v √m.
     """
-    worst = 0.0, math.inf
+    heaviest, worst = 0.0, (0.0, math.inf)
     mine = _box(body)
-    if mine is None:
-        return worst
     for other in (*space.bodies, space.static_body):
         theirs = _box(other)
-        if other is body or theirs is None or any(other in (j.a, j.b) for j in body.constraints):
-            continue
-        own = [b for b in (body, other) if b.body_type == pymunk.Body.DYNAMIC]
-        if not own:
+        free = [b.body_type == pymunk.Body.DYNAMIC for b in (body, other)]
+        jointed = any(other in (joint.a, joint.b) for joint in body.constraints)
+        if other is body or mine is None or theirs is None or jointed or not any(free):
             continue
         # apart in x and y, negative where the boxes overlap: they part along the larger
         gap = [max(mine[i] - theirs[i + 2], theirs[i] - mine[i + 2]) for i in range(2)]
@@ -118,14 +93,11 @@ def blow_on(space: pymunk.Space, body: pymunk.Body) -> tuple[float, float]:
             continue  # they pass each other, as they stand now
         side = 1.0 if mine[along] + mine[along + 2] < theirs[along] + theirs[along + 2] else -1.0
         v = side * (body.velocity[along] - other.velocity[along])
-        falls = [side * space.gravity[along], -side * space.gravity[along]]
-        pulled = sum(falls[i] for i, b in enumerate((body, other)) if b in own)
-        square = v * abs(v) + 2.0 * pulled * max(0.0, gap[along])
-        if square <= 0.0:
-            continue
-        mass = 1.0 / sum(1.0 / b.mass for b in own)
-        if square * mass > (worst[0] ** 2 * worst[1] if worst[0] > 0.0 else 0.0):
-            worst = math.sqrt(square), mass
+        pull = side * space.gravity[along] * (free[0] - free[1])
+        square = v * abs(v) + 2.0 * pull * max(0.0, gap[along])
+        mass = 1.0 / sum(1.0 / b.mass for b, moves in zip((body, other), free) if moves)
+        if square * mass > heaviest:
+            heaviest, worst = square * mass, (math.sqrt(square), mass)
     return worst
 
 
@@ -143,16 +115,14 @@ def first_frequency(shape: Shape, material: Any) -> float:
 
     material: a `rigidarea.flexible.Material` (force/area, mass/volume).
     """
-    young, density = material.young, material.density
-    if shape.bore > 0.0 and shape.teeth:
-        rim = shape.reach - shape.bore
-        return min(
-            est.ring_frequency(young, density, 0.5 * (shape.reach + shape.bore), rim),
-            est.bar_frequency(young, density, 2.0 * shape.reach, 2.0 * shape.reach),
-        )
-    if shape.teeth:
-        return est.bar_frequency(young, density, 2.0 * shape.reach, 2.0 * shape.reach)
-    return est.bar_frequency(young, density, shape.length, shape.height)
+    young, density, across = material.young, material.density, 2.0 * shape.reach
+    if not shape.teeth:
+        return est.bar_frequency(young, density, shape.length, shape.height)
+    lump = est.bar_frequency(young, density, across, across)
+    if shape.bore == 0.0:
+        return lump
+    middle, rim = 0.5 * (shape.reach + shape.bore), shape.reach - shape.bore
+    return min(lump, est.ring_frequency(young, density, middle, rim))
 
 
 def choose(
@@ -174,65 +144,52 @@ def choose(
     spin, or where there are none the contact's own frequency.
     """
     out = []
-    loads = {}
-    shapes: dict[pymunk.Body, Shape] = {}
-    for body in materials:
-        outlines = [Outline.from_pymunk(shape) for shape in body.shapes]
-        if not outlines:
-            continue
-        shapes[body] = shape_of(max(outlines, key=lambda outline: outline.area))
-        loads[body] = load_on(space, body, shapes[body].reach)
+    outlines = {body: [Outline.from_pymunk(shape) for shape in body.shapes] for body in materials}
+    shapes = {body: shape_of(max(own, key=lambda each: each.area)) for body, own in outlines.items() if own}
+    loads = {body: load_on(space, body, shape.reach) for body, shape in shapes.items()}
     heaviest = max(loads.values(), default=0.0)
     for body, shape in shapes.items():
         material = materials[body]
         load = loads[body] or heaviest  # a driver bears what the driven one is braked with
-        slender = shape.height if not shape.teeth else 0.5 * shape.length
-        height = shape.length if not shape.teeth else 0.5 * shape.length
-        if not shape.teeth:
-            slender, height = shape.length, shape.height
-        give = est.deflection(1.0, material.young, material.thickness, slender, height)
-        bends = load * give
+        give = est.deflection(1.0, material.young, material.thickness, shape.length, shape.height)
         excitation = shape.teeth * abs(body.angular_velocity)
         if not shape.teeth and stiffness is not None and body.body_type == pymunk.Body.DYNAMIC:
-            excitation = float(est.contact_frequency(stiffness, shape.height, body.mass))
+            excitation = est.contact_frequency(stiffness, shape.height, body.mass)
         speed, mass = blow_on(space, body)
-        struck = (
-            est.blow(speed, mass, give, stiffness, shape.height) if speed > 0.0 else est.Blow(0.0, 0.0, 0.0)
-        )
-        hit = struck.force > load
-        if hit:
-            load, bends, excitation = struck.force, struck.force * give, struck.frequency
+        struck = est.blow(speed, mass, give, stiffness, shape.height) if speed > 0.0 else None
+        if struck is not None and struck.force > load:
+            load, excitation = struck.force, struck.frequency
+        else:
+            struck = None
         first = first_frequency(shape, material)
-        static = bends / shape.length
+        static = load * give / shape.length
         left = static * est.dynamic_error(excitation, first)
-        if hit:  # of the blow's speed, what stays in it as vibration
+        if struck is not None:  # of the blow's speed, what stays in it as vibration
             left = max(left, struck.share * min(1.0, est.dynamic_error(excitation, first)))
         sinks = est.penetration(load, stiffness, 0.5 * shape.length) / shape.length if stiffness else 0.0
         told = f"bends {static:.1e} of {'its pitch' if shape.teeth else 'its length'}"
-        modes = 0
-        if static <= tolerance and left <= tolerance:
-            level, error, reason = "rigid", max(static, left), f"{told} <= {tolerance:g}"
-        elif left <= tolerance:
+        excited = max(excitation, first) if left > tolerance else first
+        modes = est.modes_below(3.0 * excited, shape.area, material.young, material.density)
+        if left > tolerance:
+            level, error = "modal", 0.0
+            reason = f"{excitation:.3g} rad/s against {first:.3g}: resonance, {modes} modes"
+        elif static > tolerance:
             level, error = "compliant", left
             reason = f"{told} > {tolerance:g}; {excitation:.3g} rad/s against {first:.3g}: statics will do"
         else:
-            level, error = "modal", 0.0
-            modes = est.modes_below(
-                3.0 * max(excitation, first), shape.area, material.young, material.density
-            )
-            reason = f"{excitation:.3g} rad/s against {first:.3g}: resonance, {modes} modes"
-        if hit:
+            level, error, reason = "rigid", max(static, left), f"{told} <= {tolerance:g}"
+        if struck is not None:
             reason = f"a blow at {speed:.3g}: {reason}"
         if sinks > max(tolerance, static):
             reason += f"; sinks {sinks:.1e} at this k"
             error = max(error, sinks)
         yours = overrides.get(body, {}).get("level")
-        if yours == "modal" and modes == 0:
-            modes = est.modes_below(3.0 * first, shape.area, material.young, material.density)
         mesh = (0.5 * shape.length if shape.teeth else shape.height) / ACROSS
         # as deep as the tolerance allows on half of what bears; where nothing presses, as stiff as the body itself
         bed = 2.0 * load / (tolerance * shape.length**2) or material.young * material.thickness / shape.length
-        out.append(Choice(body, yours or level, modes, error, reason, yours is not None, mesh, load, bed))
+        level = yours or level
+        modes = modes if level == "modal" else 0
+        out.append(Choice(body, level, modes, error, reason, yours is not None, mesh, load, bed))
     return out
 
 

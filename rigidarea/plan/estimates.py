@@ -1,6 +1,6 @@
 """Closed forms by which a plan chooses what bends: each with its formula, its source and its unit.
 
-They take numbers or NumPy arrays alike. Nothing here is fitted to a scene.
+Nothing here is fitted to a scene.
 
 Symbols, and the arguments that they stand for: m `mass` (mass), k `stiffness` of F = k A (force/length²), L `chord`
 (length), w `frequency` of a contact (rad/time); E `young` (force/area), rho `density` (mass/volume), l `length`, h
@@ -10,14 +10,10 @@ Symbols, and the arguments that they stand for: m `mass` (mass), k `stiffness` o
 from __future__ import annotations
 
 import math
-from typing import NamedTuple, TypeVar
-
-import numpy as np
-
-Number = TypeVar("Number", float, np.ndarray)
+from typing import NamedTuple
 
 
-def penetration(load: Number, stiffness: Number, chord: Number) -> Number:
+def penetration(load: float, stiffness: float, chord: float) -> float:
     """Depth at which a face of length L carries a load (length): F/(k L).
 
     F = k A (Eq. 5) with A = L d. For a weight: m g/(k L).
@@ -25,9 +21,9 @@ def penetration(load: Number, stiffness: Number, chord: Number) -> Number:
     return load / (stiffness * chord)
 
 
-def contact_frequency(stiffness: Number, chord: Number, mass: Number) -> Number:
+def contact_frequency(stiffness: float, chord: float, mass: float) -> float:
     """w = sqrt(k L/m) of a mass on a face of length L (1/time): dF/dd = k L (docs/theory.md, 3)."""
-    return np.sqrt(stiffness * chord / mass)
+    return math.sqrt(stiffness * chord / mass)
 
 
 def deflection(load: float, young: float, thickness: float, length: float, height: float) -> float:

@@ -59,14 +59,15 @@ def measure(
                 most("strain", force / (chord * material.thickness) / material.young, shapes)
 
 
-def fastest(space: pymunk.Space, found: dict[str, Measured]) -> None:
-    """The speed of the fastest body, its rim included (length/time)."""
-    for body in space.bodies:
-        if body.body_type != pymunk.Body.STATIC:
-            rim = abs(body.angular_velocity)
-            speed = body.velocity.length + (rim * reach_of(body, body.shapes) if rim > 0.0 else 0.0)
-            if speed > found.get("speed", (0.0, None))[0]:
-                found["speed"] = speed, body
+def fastest(space: pymunk.Space) -> Measured:
+    """The speed of the fastest body, its rim included (length/time), and the body."""
+
+    def speed(body: pymunk.Body) -> float:
+        rim = abs(body.angular_velocity)
+        return float(body.velocity.length + (rim * reach_of(body, body.shapes) if rim > 0.0 else 0.0))
+
+    moving = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
+    return max(((speed(body), body) for body in moving), key=lambda each: each[0], default=(0.0, None))
 
 
 def reach_of(body: pymunk.Body, shapes: Iterable[pymunk.Shape]) -> float:

@@ -7,16 +7,21 @@ import pymunk
 import shapely
 from numpy.typing import NDArray
 
+from . import costs
+
+COPIES, SAMPLED = 0.5, 0.1
+"""What copies may take of the budget; where that of the whole space would take more, islands are sampled to this."""
 NEAR = 0.01
 """Of a box: bodies whose boxes are no further apart touch, whatever the rounding."""
 
 
-def part(space: pymunk.Space, most: float, some: float) -> list[pymunk.Body]:
-    """The bodies that are not static, if they are no more than `most`; else those of islands, about `some` in all, and
-    what is kinematic. None where the largest island alone has more than `most`.
+def part(space: pymunk.Space, budget: float) -> list[pymunk.Body]:
+    """The bodies that are not static, if copies of them are within the budget (s); else those of some islands, and what
+    is kinematic. None where the largest island alone is too large.
 
     An island is what touches by its boxes or is jointed, as it is now.
     """
+    most, some = COPIES * budget / costs.COPY_BODY_S, SAMPLED * budget / costs.COPY_BODY_S
     bodies = [body for body in space.bodies if body.body_type != pymunk.Body.STATIC]
     if len(bodies) <= most:
         return bodies

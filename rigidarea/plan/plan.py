@@ -1,7 +1,6 @@
 """`plan(space, tolerance)`: the cheapest settings that are within a tolerance on a copy of a space, and why.
 
-A plan reads a space and changes nothing; `Plan.apply` makes it so. What is tried is in `choose`, how in `probe`; which
-bodies bend is in `elastic`.
+What is tried is in `choose`, how in `probe`; which bodies bend is in `elastic`.
 """
 
 from __future__ import annotations
@@ -9,23 +8,21 @@ from __future__ import annotations
 import math
 import time as clock
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal, TypedDict, Unpack
+from typing import Any, Literal, TypedDict, Unpack
 
 import numpy as np
 import pymunk
 
 from ..chipmunk import AreaContact, SimulationError, attach, attached
-from ..geometry.gate import positive, truth, whole
+from ..geometry.gate import one_of, positive, truth, whole
 from ..geometry.outline import Outline
 from . import elastic
-from .choose import Found, Search, Tried, bodies_for, budget_of
+from .choose import Found, Search, budget_of
 from .part import part
 from .probe import Probe, Setting
 from .promise import name_of, unpromised
 from .table import Line, lines_of, text_of
-
-if TYPE_CHECKING:
-    from .watch import Watch
+from .watch import Watch
 
 LEVELS = ("rigid", "pymunk")
 ELASTIC = ("compliant", "modal")
@@ -75,17 +72,9 @@ class Plan:
         self.materials = dict(materials)
         self.overrides: dict[Any, dict[str, Any]] = {}
         self.level, self.steps, self.sweeps, self.penetration = "rigid", 2, 10, 2e-4
-        self.stiffness: float | None = None
-        self.sampling: dict[pymunk.Shape, float] = {}
         self.finer: dict[pymunk.Body, int] = {}
         self._asked: set[pymunk.Body] = set()
         self._sampled: dict[pymunk.Shape, float] = {}
-        self.reachable = False
-        self.unpromised: list[str] = []
-        self.error = self.cost_s_per_s = math.inf
-        self.looked = self.planning_s = 0.0
-        self.tried: list[Tried] = []
-        self.elastic: list[elastic.Choice] = []
         self._assembled: tuple[Any, Any] = (), None  # what of `elastic` it was made from, and the assembly
         self.again()
 
@@ -103,26 +92,20 @@ class Plan:
         if keep:
             given["level"] = self.level
         current = attached(self.space)
-        self.stiffness = given.get("stiffness", current.stiffness if current is not None else None)
+        self.stiffness: float | None = given.get("stiffness", current.stiffness if current else None)
         if not keep:
             self.elastic = elastic.choose(
                 self.space, self.materials, self.tolerance, self.stiffness, self.overrides
             )
-        asked = {
-            shape: settings["sampling"]
-            for shape, settings in self.overrides.items()
-            if isinstance(shape, pymunk.Shape) and "sampling" in settings
-        }
+        asked = {shape: told["sampling"] for shape, told in self.overrides.items() if "sampling" in told}
         frames = max(1, round(self.seconds / self.frame))
         budget = budget_of(len(self.space.bodies), frames, given.get("steps"))
-        bodies = part(self.space, *bodies_for(budget))
+        bodies = part(self.space, budget)
         probe = Probe(self.space, self.frame, frames, self.stiffness, asked, self.tolerance, bodies)
         bends = any(choice.level in ELASTIC for choice in self.elastic)
-        level = given.get("level")
-        native = level == "pymunk" or (
-            level is None and not bends and self.stiffness is None and not probe.stands_in
-        )
-        found = Search(probe, given, least, budget).found(native, self.materials)
+        free = "level" not in given and self.stiffness is None and not bends and not probe.stands_in
+        native = free or given.get("level") == "pymunk"
+        found = Search(probe, given, least, budget).found(native)
         self._probe, self._found = probe, found
         self.level, self.steps, self.sweeps, self.penetration = found.chosen.setting
         self.error, self.tried = found.chosen.error, found.tried
@@ -130,9 +113,8 @@ class Plan:
         before = self.finer if keep else {}
         self.finer = self._finer({probe.bodies[i]: n for i, n in found.finer.items()}, before)
         if not keep:
-            self.sampling = {**self._sagittas(found), **asked}
-        self._frame_cost = found.chosen.cost_s
-        self.cost_s_per_s = self._frame_cost / self.frame
+            self.sampling: dict[pymunk.Shape, float] = {**self._sagittas(found), **asked}
+        self.cost_s_per_s = found.chosen.cost_s / self.frame
         looked, tried = (probe.frames, len(bodies)) if found.tried else (0, 0)
         self.looked, self.planning_s = looked * self.frame, clock.thread_time() - started
         self.unpromised = unpromised(
@@ -141,30 +123,24 @@ class Plan:
         sooner = float(found.sooner.max(initial=0.0))
         if self.reachable and sooner > self.tolerance:
             name = name_of(self.space, bodies[int(found.sooner.argmax())])
-            self.unpromised.append(
-                f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
-            )
+            told = f"so little at each moment: {name} is off by {sooner:.1e} of its way until then"
+            self.unpromised.append(told)
         return self
 
     def _finer(self, found: dict[pymunk.Body, int], before: dict[pymunk.Body, int]) -> dict[pymunk.Body, int]:
         """Bodies whose islands take more than the space: as found, as before at least, as the user says."""
-        wanted = dict(found)
-        for body, n in before.items():
-            wanted[body] = max(n, wanted.get(body, 0))
-        for target, settings in self.overrides.items():
-            if isinstance(target, pymunk.Body) and "steps" in settings:
-                wanted[target] = settings["steps"]
-        return {body: n for body, n in wanted.items() if n > self.steps and body.space is self.space}
+        wanted = {body: max(found.get(body, 0), before.get(body, 0)) for body in found | before}
+        told = {body: s["steps"] for body, s in self.overrides.items() if body is not None and "steps" in s}
+        return {body: n for body, n in (wanted | told).items() if n > self.steps and body.space is self.space}
 
     def _sagittas(self, found: Found) -> dict[pymunk.Shape, float]:
         """The sagitta (length) of each outline that knows its curve."""
         if found.sagitta is None or self.level == "pymunk":
             return {}
-        outlines = {shape: getattr(shape, "outline", None) for shape in self.space.shapes}
         return {
             shape: found.sagitta * float(outline.smallest_extent)
-            for shape, outline in outlines.items()
-            if isinstance(outline, Outline) and outline._resample is not None
+            for shape in self.space.shapes
+            if isinstance(outline := vars(shape).get("outline"), Outline) and outline._resample is not None
         }
 
     # --- overriding ---
@@ -179,11 +155,9 @@ class Plan:
         "compliant", "modal").
         Raises ValueError for what is none of these, before anything has changed.
         """
-        checked = {}
         for name, value in settings.items():
             _check(target, name, value, self.materials)
-            checked[name] = value
-        kept = {**self.overrides.get(target, {}), **checked}
+        kept: dict[str, Any] = {**self.overrides.get(target, {}), **settings}
         self.overrides[target] = {name: value for name, value in kept.items() if value is not None}
         return self.again()
 
@@ -264,8 +238,6 @@ class Plan:
 
     def watch(self, adapt: bool = False) -> Watch:
         """What stands beside the plan while it runs: see `Watch`."""
-        from .watch import Watch
-
         return Watch(self, adapt)
 
     # --- reading ---
@@ -286,15 +258,14 @@ class Plan:
 
     @property
     def may_sleep(self) -> list[pymunk.Body]:
-        """Bodies that touch something and stood still in what was tried out: `space.sleep_time_threshold` is yours to
-        set."""
+        """Bodies that stood still in what was tried out: `space.sleep_time_threshold` is yours to set."""
         probe, track = self._probe, self._found.fine.track
         if not len(track):
             return []
         speed = np.hypot(track[-1, :, 3], track[-1, :, 4]) + probe.reach * np.abs(track[-1, :, 5])
         way = np.hypot(*np.moveaxis(track[:, :, :2] - track[0, :, :2], 2, 0)).max(axis=0)
         still = (speed <= self.idle_speed) & (way <= self.tolerance * probe.extent)
-        return [probe.bodies[i] for i in np.flatnonzero(still & self._found.seen.touched & probe.free)]
+        return [probe.bodies[i] for i in np.flatnonzero(still & probe.free)]
 
 
 def relative(tolerance: float | str) -> float:
@@ -325,12 +296,9 @@ def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, A
     if value is None:
         return
     if name == "level":
-        known = LEVELS if target is None else ("rigid", *ELASTIC)
-        if value not in known:
-            raise ValueError(f"level must be one of {', '.join(known)}, got {value!r}")
+        one_of(value, name, LEVELS if target is None else ("rigid", *ELASTIC))
     elif name in ("steps", "sweeps"):
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or value < 1:
-            raise ValueError(f"{name} must be a whole number >= 1, got {value!r}")
+        whole(value, name, 1)
     else:
         positive(value, name)
 
@@ -345,8 +313,8 @@ def plan(
 ) -> Plan:
     """Choose the cheapest model and settings for a space whose error is within `tolerance`, tried out on copies.
 
-    tolerance: relative, of the study's errors: a velocity's over the approach speed, a path's over its length or the
-        body's size; 0.01 is one per cent, and so is "1%".
+    tolerance: relative: of places over a body's way or its smallest extent, of turns over what it turns or a radian, of
+        drives over their speed; 0.01 is one per cent, and so is "1%".
     seconds: simulated time over which it must hold, 10 unless said: it is tried out as far as a twentieth of that run's
         cost goes, or a tenth of a second. frame: length of a frame (time).
     materials: what bodies are made of (`flexible.Material`), where it matters whether they bend.

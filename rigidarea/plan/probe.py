@@ -7,13 +7,8 @@ order that the solve has; E. Hairer, S. P. Nørsett, G. Wanner, Solving Ordinary
 
 from __future__ import annotations
 
-import io
 import math
-import pickle
-from collections import deque
 from collections.abc import Callable, Mapping, Sequence
-from itertools import repeat, starmap
-from types import FunctionType, MethodType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -64,45 +59,39 @@ class Seen(NamedTuple):
 
     measured: dict[str, Measured]
     groups: NDArray[np.int64]  # (bodies,) those of a number have touched or are jointed
-    touched: NDArray[np.bool_]  # (bodies,) at the end
 
 
-class Original:
-    """What copies of a space are made from; the space itself is only read."""
+def copied(
+    space: pymunk.Space,
+    bodies: Sequence[pymunk.Body],
+    given: Mapping[pymunk.Shape, float],
+    sagitta: float | None = None,
+) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A space like it, awake, of what is static and of these bodies, without callbacks; and the bodies' twins.
 
-    def __init__(
-        self, space: pymunk.Space, given: Mapping[pymunk.Shape, float], bodies: Sequence[pymunk.Body]
-    ) -> None:
-        self.space, self.given = space, dict(given)  # sagittas that the user has asked for (length)
-        self.bodies = list(bodies)  # what is copied, beside what is static
-
-    def copy(self, sagitta: float | None = None) -> tuple[pymunk.Space, list[pymunk.Body]]:
-        """A space like it, awake, without callbacks; outlines that know their curve sampled to `sagitta` (fraction of
-        their smallest extent), but for those given; and its bodies that move or are moved, in the original's order."""
-        space = self.space
-        made = pymunk.Space()
-        made.gravity, made.damping, made.iterations = space.gravity, space.damping, space.iterations
-        made.collision_slop, made.collision_bias = space.collision_slop, space.collision_bias
-        made.collision_persistence = space.collision_persistence
-        twins = {space.static_body: made.static_body}
-        static = [body for body in space.bodies if body.body_type == pymunk.Body.STATIC]
-        for body in [*static, *self.bodies]:
-            if body.body_type == pymunk.Body.DYNAMIC:
-                twin = pymunk.Body(body.mass, body.moment)
-            else:
-                twin = pymunk.Body(body_type=body.body_type)
-            twins[body] = twin
-            _set(twin, body, ("center_of_gravity", "position", "angle"))
-            if body.body_type != pymunk.Body.STATIC:
-                _set(twin, body, ("velocity", "angular_velocity", "force", "torque"))
-            made.add(twin)
-        for shape in space.shapes:
-            if shape.body in twins and not shape.sensor:
-                made.add(_twin(shape, twins[shape.body], sagitta, self.given.get(shape)))
-        for joint in space.constraints:
-            if joint.a in twins and joint.b in twins:
-                made.add(_moved(joint, twins))
-        return made, [twins[body] for body in self.bodies]
+    Outlines that know their curve are sampled to `sagitta` (fraction of their smallest extent), but for those `given`
+    (length).
+    """
+    made = pymunk.Space()
+    _set(made, space, ("gravity", "damping", "collision_slop", "collision_bias", "collision_persistence"))
+    twins = {space.static_body: made.static_body}
+    for body in [*(body for body in space.bodies if body.body_type == pymunk.Body.STATIC), *bodies]:
+        twins[body] = twin = pymunk.Body(body.mass, body.moment, body.body_type)
+        _set(twin, body, ("center_of_gravity", "position", "angle"))
+        if body.body_type != pymunk.Body.STATIC:
+            _set(twin, body, ("velocity", "angular_velocity", "force", "torque"))
+        made.add(twin)
+    for shape in space.shapes:
+        if shape.body in twins and not shape.sensor:
+            made.add(_twin(shape, twins[shape.body], sagitta, given.get(shape)))
+    for joint in space.constraints:
+        if joint.a in twins and joint.b in twins:
+            # pymunk's own pickling, but for the bodies, the user's attributes and the callbacks
+            state, moved = joint.__getstate__(), object.__new__(type(joint))
+            init = [(k, twins[v] if isinstance(v, pymunk.Body) else v) for k, v in state["init"]]
+            moved.__setstate__({"init": init, "general": state["general"], "custom": [], "special": []})
+            made.add(moved)
+    return made, [twins[body] for body in bodies]
 
 
 def _twin(shape: pymunk.Shape, body: pymunk.Body, sagitta: float | None, given: float | None) -> pymunk.Shape:
@@ -133,28 +122,6 @@ def _set(twin: Any, thing: Any, names: tuple[str, ...]) -> None:
             setattr(twin, name, value)
 
 
-def _moved(joint: pymunk.Constraint, twins: dict[pymunk.Body, pymunk.Body]) -> pymunk.Constraint:
-    """A joint like it between the twins of its bodies: pymunk's own pickling, bodies apart, without callbacks."""
-    bodies = [joint.a, joint.b]
-
-    class Write(pickle.Pickler):
-        def persistent_id(self, obj: Any) -> int | None:
-            if isinstance(obj, pymunk.Body):
-                return bodies.index(obj)
-            return -1 if isinstance(obj, FunctionType | MethodType) else None
-
-    class Read(pickle.Unpickler):
-        def persistent_load(self, pid: int) -> pymunk.Body | None:
-            return twins[bodies[pid]] if pid >= 0 else None
-
-    kept = io.BytesIO()
-    Write(kept).dump(joint)
-    kept.seek(0)
-    twin: pymunk.Constraint = Read(kept).load()
-    twin.pre_solve = twin.post_solve = None
-    return twin
-
-
 class Probe:
     """Copies of a space, or of some `bodies` of it (see `part`), run at settings, each once; what they cost is counted
     by `costs` (s)."""
@@ -169,9 +136,7 @@ class Probe:
         tolerance: float,
         bodies: Sequence[pymunk.Body],
     ) -> None:
-        self.tolerance = tolerance
-        self.original = Original(space, given, bodies)
-        self.bodies = self.original.bodies
+        self.space, self.given, self.tolerance, self.bodies = space, given, tolerance, list(bodies)
         self.frame, self.frames, self.stiffness = frame, frames, stiffness
         shapes = [[s for s in body.shapes if not s.sensor] for body in self.bodies]
         self.extent = np.array([min(map(extent_of, own), default=math.inf) for own in shapes])
@@ -185,14 +150,15 @@ class Probe:
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
-        self.share = self.free.sum() / self.moving if self.moving else 1.0  # of what moves that is copied
+        self.share = (
+            float(self.free.sum()) / self.moving if self.moving else 1.0
+        )  # of what moves that is copied
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`
-        self._spaces: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}
-        self._tracks: dict[tuple[Setting, float | None], Array] = {}
+        self.copies: dict[float | None, tuple[AreaContact, Any, list[pymunk.Body]]] = {}  # by sagitta
+        self.extents: dict[pymunk.Shape, float] = {}  # of the copies' shapes
         self._asked: set[int] = set()
-        self._extents: dict[pymunk.Shape, float] = {}
         self._touching: list[int] = []
         self.begin: float | None = None  # depth after the first run's first frame, over the smallest extent
 
@@ -218,43 +184,34 @@ class Probe:
 
     # --- runs ---
 
-    def forget(self) -> None:
-        """Let go of the copies and what they did."""
-        self._spaces.clear()
-        self._extents.clear()
-        self._tracks.clear()
-
     def track(self, setting: Setting, sagitta: float | None = None) -> Array:
         """The run at a setting: (samples, bodies, 6) place, angle, velocity, spin; empty where it failed."""
-        key = setting, sagitta
-        if key not in self._tracks:
-            first = not self._tracks
-            self._tracks[key], seen = self.run(setting, sagitta, materials={} if first else None)
-            self.groups = seen.groups if first else self.groups
-        return self._tracks[key]
+        first = self.begin is None
+        states, seen = self.run(setting, sagitta, noted=first)
+        self.groups = seen.groups if first else self.groups
+        return states
 
     def run(
         self,
         setting: Setting,
         sagitta: float | None,
         asked: Mapping[int, int] | None = None,
-        materials: Mapping[pymunk.Body, Any] | None = None,
+        noted: bool = False,
     ) -> tuple[Array, Seen]:
-        """A run, as `track` has it, where bodies have `asked` for substeps, by number; and, given `materials`, what it
-        shows."""
+        """A run, as `track` has it, where bodies have `asked` for substeps, by number; and what is `noted` of it."""
         self.spent += self.price(setting)
         contact: AreaContact | None = None
-        if setting.level == "pymunk" or sagitta not in self._spaces:
+        if setting.level == "pymunk" or sagitta not in self.copies:
             self.spent += costs.COPY_BODY_S * len(self.bodies)
         if setting.level == "pymunk":
-            space, bodies = self.original.copy()
+            space, bodies = copied(self.space, self.bodies, self.given)
             space.collision_slop = setting.penetration * self.smallest
         else:
-            if sagitta not in self._spaces:
-                space, bodies = self.original.copy(sagitta)
+            if sagitta not in self.copies:
+                space, bodies = copied(self.space, self.bodies, self.given, sagitta)
                 made = attach(space, self.stiffness, penetration=setting.penetration)
-                self._spaces[sagitta] = made, made.snapshot(), bodies
-            contact, begin, bodies = self._spaces[sagitta]
+                self.copies[sagitta] = made, made.snapshot(), bodies
+            contact, begin, bodies = self.copies[sagitta]
             contact.restore(begin)
             contact.penetration, space = setting.penetration, contact.space
             for i in self._asked | (asked or {}).keys():
@@ -267,10 +224,9 @@ class Probe:
         read = reader(space, bodies)
         states[0] = read()
         index = {body: i for i, body in enumerate(bodies)}
-        seen = Seen({}, np.arange(len(bodies)), np.zeros(len(bodies), bool))
-        made_of = {twin: (materials or {}).get(body) for twin, body in zip(bodies, self.bodies)}
+        seen = Seen({}, np.arange(len(bodies)))
         notes = 0
-        if materials is not None:
+        if noted:
             note = costs.NOTE_PAIR_S * self.share * self.pairs + costs.SAMPLE_S
             notes = max(1, min(NOTES, int(NOTING_S / note)))
             self.spent += (notes + 1) * note
@@ -278,13 +234,13 @@ class Probe:
         try:
             for k, frames in enumerate(np.diff(ends).tolist()):
                 if contact is None:
-                    one = repeat((space._space, self.frame / setting.steps), frames * setting.steps)
-                    deque(starmap(lib.cpSpaceStep, one), maxlen=0)  # no callbacks: nothing for Python to do
+                    for _ in range(frames * setting.steps):  # no callbacks: nothing for pymunk to do
+                        lib.cpSpaceStep(space._space, self.frame / setting.steps)
                 else:
                     contact.step(self.frame, frames, steps=setting.steps)
                 states[k + 1] = read()
                 if notes and (k == 0 or k % every == every - 1):
-                    self._note(space, contact, self.frame / setting.steps, index, seen, made_of)
+                    self._note(space, contact, self.frame / setting.steps, index, seen)
         except SimulationError:
             states[:] = math.nan
         speeds = np.hypot(states[:, :, 3], states[:, :, 4]) + self.reach * np.abs(states[:, :, 5])
@@ -301,19 +257,15 @@ class Probe:
         h: float,
         index: Mapping[pymunk.Body, int],
         seen: Seen,
-        materials: Mapping[pymunk.Body, Any],
     ) -> None:
-        seen.touched[:] = False
         links = [(joint.a, joint.b) for joint in space.constraints]
         if contact is not None:
             rows = contact.regions
-            measure(contact, rows, h, seen.measured, materials, self._extents)
+            measure(contact, rows, h, seen.measured, {}, self.extents)
             if self.begin is None:
                 self.begin = seen.measured.get("penetration", (0.0, None))[0]
             self._touching.append(len(rows))
             links += [(row["body_a"], row["body_b"]) for row in rows]
-            for ends in links[-len(rows) :] if len(rows) else []:
-                seen.touched[[index[end] for end in ends if end in index]] = True
         for a, b in links:
             if a in index and b in index:
                 join(seen.groups, index[a], index[b])
@@ -372,10 +324,7 @@ def reference(probe: Probe, sagitta: float | None, budget: float, least: Setting
             break
         runs.append((setting, probe.track(setting, sagitta)))
         if j:
-            near = [probe.apart(track, runs[-1][1]) for _, track in runs[-3:-1]]
-            doubt = near[-1] / (RATIO - 1.0)
-            if len(near) > 1:
-                doubt = np.maximum(doubt, near[0] / (RATIO**2 - 1.0))
+            doubt = probe.apart(runs[-2][1], runs[-1][1]) / (RATIO - 1.0)
             if j > 2 and doubt.max(initial=0.0) <= ENOUGH * probe.tolerance:
                 break
     fine = runs.pop()

@@ -48,11 +48,12 @@ def unpromised(
 def callbacks(space: pymunk.Space) -> bool:
     """Whether functions of the user's are called in a step."""
     empty = pymunk.empty_callback
-    handlers = space._handlers.values()
+    handlers, joints = space._handlers.values(), space.constraints
+    hooks = ("_pre_solve_func", "_post_solve_func", "_force_func", "_torque_func")
     return (
         any(f != empty for h in handlers for f in (h._begin, h._pre_solve, h._post_solve, h._separate))
         or any(b._velocity_func is not None or b._position_func is not None for b in space.bodies)
-        or any(j._pre_solve_func is not None or j._post_solve_func is not None for j in space.constraints)
+        or any(getattr(joint, hook, None) is not None for joint in joints for hook in hooks)
     )
 
 
@@ -64,10 +65,12 @@ def _meets_rigid(space: pymunk.Space, body: pymunk.Body, bends: Sequence[Choice]
 
 
 def name_of(space: pymunk.Space, who: Any) -> str:
-    """What a body or shape is called: its `name`, if the user gave it one, else what it is and where; None: the
-    space."""
+    """What a body or shape is called: its `name`, if the user gave it one, else what it is and where; None: the space;
+    a tuple: each of it."""
     if who is None:
         return "space"
+    if isinstance(who, tuple):
+        return " and ".join(name_of(space, each) for each in who)
     given = getattr(who, "name", None)
     if isinstance(given, str) and given:
         return given

@@ -34,19 +34,19 @@ def lines_of(plan: Any) -> list[Line]:
     mine = ", ".join(sorted(plan.overrides.get(None, {})))
     head = _told(plan, chosen.setting) + (f" (yours: {mine})" if mine else "")
     against = f"against {fine.setting.steps} substeps, penetration {fine.setting.penetration:.0e}"
-    out = [Line("space", head, against if found.tried else "the defaults", plan.error, plan._frame_cost)]
+    out = [Line("space", head, against if found.tried else "the defaults", plan.error, chosen.cost_s)]
     cheaper = [each for each in found.tried if each.cost_s < chosen.cost_s][-1:]
     finer = [each for each in found.tried if each.cost_s > chosen.cost_s and each.error < plan.error][:1]
     for what, others in (("  cheaper", cheaper), ("  finer", finer)):
         out += [Line(what, _told(plan, one.setting), "tried too", one.error, one.cost_s) for one in others]
-    errors = chosen.errors
-    for i in np.argsort(-errors, kind="stable")[:WORST]:
-        if 0.0 < errors[i] < math.inf:
-            body = probe.bodies[i]
+    for i in np.argsort(-chosen.errors, kind="stable")[:WORST]:
+        if 0.0 < chosen.errors[i] < math.inf:
+            body, error = probe.bodies[i], float(chosen.errors[i])
             text = f"its place or turn is off, of which {fine.doubt[i]:.1e} is the finer run's own"
-            out.append(Line(name_of(space, body), "as the space", text, float(errors[i]), target=body))
-    for steps in sorted(set(plan.finer.values())):
-        first, *more = [body for body, n in plan.finer.items() if n == steps]
+            out.append(Line(name_of(space, body), "as the space", text, error, target=body))
+    found_finer = {body: n for body, n in plan.finer.items() if "steps" not in plan.overrides.get(body, {})}
+    for steps in sorted(set(found_finer.values())):
+        first, *more = [body for body, n in found_finer.items() if n == steps]
         names = name_of(space, first) + (f" and {len(more)} more" if more else "")
         out.append(Line(names, f"{steps} substeps", "with fewer their island is outside", target=first))
     for target, settings in plan.overrides.items():
@@ -62,7 +62,7 @@ def lines_of(plan: Any) -> list[Line]:
         level = choice.level + (" (yours)" if choice.overridden else "")
         out.append(Line(name_of(space, choice.body), level, choice.reason, choice.error, target=choice.body))
     if asleep := plan.may_sleep:
-        text = f"stood still on something, slower than {plan.idle_speed:.1e}"
+        text = f"stood still, slower than {plan.idle_speed:.1e}"
         out.append(Line(f"{len(asleep)} bodies", "may sleep", text, 0.0))
     return out
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import pymunk
 
 from ..chipmunk import attached
-from .measures import Measured, extent_of, fastest, measure
+from .measures import extent_of, fastest, measure
 from .promise import name_of
 
 #: A measured number so many times the predicted one has outgrown the plan: below, it is what estimates are off by.
@@ -62,12 +62,18 @@ class Watch:
         self._energy: float | None = None
         self._scale = 0.0
         self._bodies = len(plan.space.bodies), len(plan.space.shapes)
+        self.promised: dict[str, float] = {}
         self._promise()
 
     def _promise(self) -> None:
-        """What the plan's own numbers are, as of now."""
+        """What the plan's own numbers are, as of now; where it was planned anew, for what it has grown to."""
         plan = self.plan
-        self._weight = _weight_energy(plan)
+        # what the bodies would get in falling by their own extent (force length)
+        self._weight = plan.space.gravity.length * sum(
+            body.mass * min(map(extent_of, body.shapes), default=0.0)
+            for body in plan.space.bodies
+            if body.body_type == pymunk.Body.DYNAMIC
+        )
         seen = {name: value for name, (value, _) in plan._found.seen.measured.items()}
         promised = {
             # what is no deeper than the tolerance has outgrown nothing
@@ -79,10 +85,7 @@ class Watch:
             "energy": plan.tolerance / OUTGROWN,
             "strain": plan.tolerance,
         }
-        if not hasattr(self, "promised"):
-            self.promised = promised
-        else:  # planned anew: for what it has grown to
-            self.promised = {name: max(value, promised[name]) for name, value in self.promised.items()}
+        self.promised = {name: max(value, self.promised.get(name, 0.0)) for name, value in promised.items()}
 
     # --- looking ---
 
@@ -107,9 +110,8 @@ class Watch:
             name: Indicator(value, self.promised[name], where)
             for name, (value, where) in self._measure().items()
         }
-        if self._frames <= SETTLING:
-            return self.indicators
-        grown = [name for name, indicator in self.indicators.items() if indicator.outgrown]
+        settled = self._frames > SETTLING
+        grown = [name for name, indicator in self.indicators.items() if settled and indicator.outgrown]
         for name in grown:
             indicator = self.indicators[name]
             self._warn(name, indicator.where, indicator.measured, indicator.predicted)
@@ -129,30 +131,18 @@ class Watch:
         plan.apply()
         self._promise()
         for name in grown:  # what has been answered is what is now expected
-            if name in self.indicators:
-                self.promised[name] = max(self.promised[name], self.indicators[name].measured)
+            self.promised[name] = max(self.promised[name], self.indicators[name].measured)
 
     def _measure(self) -> dict[str, tuple[float, str]]:
-        plan = self.plan
-        space = plan.space
+        plan, space = self.plan, self.plan.space
         contact = attached(space)
-        worst: dict[str, Measured] = {"speed": (0.0, None)}
-        fastest(space, worst)
+        worst = {"speed": fastest(space)}
         if contact is not None:
             measure(contact, contact.regions, plan.frame / plan.steps, worst, plan.materials, {})
-        found = {
-            name: (value, " and ".join(name_of(space, each) for each in where))
-            if isinstance(where, tuple)
-            else (value, name_of(space, where))
-            for name, (value, where) in worst.items()
-        }
-        if contact is None:
-            return found
-        if not _driven(space):
+        found = {name: (value, name_of(space, where)) for name, (value, where) in worst.items()}
+        if contact is not None and not _driven(space):
             energy = contact.energy()
-            kinetic = sum(
-                body.kinetic_energy for body in space.bodies if body.body_type == pymunk.Body.DYNAMIC
-            )
+            kinetic = sum(body.kinetic_energy for body in space.bodies)
             self._scale = max(self._scale, kinetic, self._weight)
             if self._energy is not None and self._scale > 0.0:
                 found["energy"] = max(0.0, energy - self._energy) / self._scale, "the space"
@@ -160,23 +150,12 @@ class Watch:
         return found
 
 
-def _weight_energy(plan: Any) -> float:
-    """What the space's bodies would get in falling by their own extent (force length)."""
-    weights = [
-        body.mass * min(map(extent_of, body.shapes), default=0.0)
-        for body in plan.space.bodies
-        if body.body_type == pymunk.Body.DYNAMIC
-    ]
-    return float(plan.space.gravity.length * sum(weights))
-
-
 def _driven(space: pymunk.Space) -> bool:
     """Whether something may do work on the bodies: motors, springs, belts, kinematic bodies that move."""
-    if any(isinstance(joint, pymunk.SimpleMotor | pymunk.DampedSpring) for joint in space.constraints):
-        return True
-    if any(
-        body.body_type == pymunk.Body.KINEMATIC and (body.velocity.length or body.angular_velocity)
-        for body in space.bodies
-    ):
-        return True
-    return any(shape.surface_velocity != (0.0, 0.0) for shape in space.shapes)
+    kinematic = [body for body in space.bodies if body.body_type == pymunk.Body.KINEMATIC]
+    works = pymunk.SimpleMotor | pymunk.DampedSpring | pymunk.DampedRotarySpring
+    return (
+        any(isinstance(joint, works) for joint in space.constraints)
+        or any(body.velocity.length or body.angular_velocity for body in kinematic)
+        or any(shape.surface_velocity != (0.0, 0.0) for shape in space.shapes)
+    )

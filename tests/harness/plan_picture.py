@@ -61,6 +61,8 @@ def summaries(report: Row) -> str:
         "seeded variations": report["summary"]["variations"],
         "scenes that no estimate was found on": report["summary"]["unseen"],
     }
+    if "judged" in report["summary"]:
+        kinds["scenes written after the planner"] = report["summary"]["judged"]
     columns = (
         *("", "cells", "some setting is within", "planned within", "outside, and said so"),
         *("cost ratio, median", "worst"),

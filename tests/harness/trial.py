@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,30 @@ from pymunk._chipmunk_cffi import lib
 
 from rigidarea import chipmunk as area
 from rigidarea.plan.plan import Plan
+from rigidarea.study import user_space
 from rigidarea.study.peers.base import drive
 from rigidarea.study.peers.pymunk_peer import SpaceRun
 from rigidarea.study.records import Row
 from rigidarea.study.scene import Array, Scene
-from rigidarea.study.user_space import space_of
+
+Joints = Callable[[dict[str, pymunk.Body]], list[pymunk.Constraint]]
+"""Joints between bodies by name; "" is the space's static body."""
+
+
+@dataclass(frozen=True)
+class Tied(Scene):
+    """A scene with joints of pymunk's own: springs, strings, motors, grooves."""
+
+    ties: Joints = lambda _: []
+
+
+def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A scene as a user would build it."""
+    space, bodies = user_space.space_of(scene)
+    if isinstance(scene, Tied):
+        named = {body.name: made for body, made in zip(scene.bodies, bodies)}
+        space.add(*scene.ties({**named, "": space.static_body}))
+    return space, bodies
 
 
 class Trial(SpaceRun):

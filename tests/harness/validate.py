@@ -29,10 +29,10 @@ from rigidarea.study.records import Progress, Row, append_rows, read_rows
 from rigidarea.study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
 from rigidarea.study.sweep import key
 from rigidarea.study.timing import one_core, timed
-from rigidarea.study.user_space import space_of
 
-from .trial import Trial, at_settings, planned
-from .unseen import unseen
+from .judged import JUDGED
+from .trial import Trial, at_settings, planned, space_of
+from .unseen import UNSEEN
 from .variations import variations
 
 TOLERANCES = (0.1, 0.01, 0.001)
@@ -53,6 +53,10 @@ SWEEPS, SWEEPS_PILE = (5,), (5, 10, 20)
 SAMPLINGS = (1e-3, 1e-4, 1e-5, 1e-6)
 SLOPS = (1e-2, 1e-3, 1e-4)
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
+JUDGES = {
+    kind: {make().name: make for make in made} for kind, made in (("unseen", UNSEEN), ("judged", JUDGED))
+}
+"""Scenes without an exact answer, by name: see `unseen` and `judged`."""
 FINEST = {"level": "rigid", "steps": 128, "sweeps": 20, "penetration": 1e-8}
 NEXT_TO_FINEST = {"level": "rigid", "steps": 64, "sweeps": 20, "penetration": 1e-8}
 
@@ -172,6 +176,7 @@ def study(
         chosen = plan(space_of(scene)[0], tolerance, scene.duration, frame=scene.frame)
         told = (chosen.level, chosen.steps, chosen.sweeps, chosen.penetration, *sorted(chosen.finer.values()))
         task = {**name, "tolerance": tolerance, "plan": told, "sampling": sorted(chosen.sampling.values())}
+        task |= {"reachable": chosen.reachable, "unpromised": chosen.unpromised}
         look = partial(judge, scene, tolerance, swept, varied, reference)
         rows.append({k: v for k, v in kept(task, look).items() if k != "task"})
     return rows
@@ -342,10 +347,11 @@ def validate(
     if fresh:
         store.unlink(missing_ok=True)
     known = {key(row["task"]): row for row in read_rows(store)}
-    names = list(scene_names) or [name for name, scene in scenes().items() if not scene.deforms]
-    chosen = [(get_scene(name), False) for name in names]
+    judges = {name: make for made in JUDGES.values() for name, make in made.items()}
+    names = list(scene_names) or [*(name for name, scene in scenes().items() if not scene.deforms), *judges]
+    chosen = [(get_scene(name), False) for name in names if name not in judges]
     chosen += [(scene, True) for scene in variations(count, scene_names)]
-    chosen += [(scene, True) for scene in unseen() if not scene_names]
+    chosen += [(judges[name](), True) for name in names if name in judges]
     progress = Progress("plan", len(chosen))
     rows: list[Row] = []
     for scene, varied in chosen:
@@ -358,11 +364,11 @@ def validate(
 def report(rows: Sequence[Row], settings: Row) -> Row:
     """The object of the command: what the issue asks, then every row."""
     tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
-    judging = {scene.name for scene in unseen()}
+    judging = {name for made in JUDGES.values() for name in made}
     told = {
         "scenes": summary([row for row in rows if not row["varied"]]),
         "variations": summary([row for row in rows if row["varied"] and row["scene"] not in judging]),
-        "unseen": summary([row for row in rows if row["scene"] in judging]),
+        **{kind: summary([row for row in rows if row["scene"] in made]) for kind, made in JUDGES.items()},
         "by_tolerance": {
             str(t): summary([r for r in rows if not r["varied"] and r["tolerance"] == t]) for t in tolerances
         },

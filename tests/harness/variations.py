@@ -71,4 +71,4 @@ def vary(scene: Scene, seed: int) -> Scene:
 def variations(count: int, names: Sequence[str] = ()) -> list[Scene]:
     """Seeded variations, the scenes in turn."""
     known = [scene for name, scene in scenes().items() if not scene.deforms and (not names or name in names)]
-    return [vary(known[seed % len(known)], seed) for seed in range(count)]
+    return [vary(known[seed % len(known)], seed) for seed in range(count if known else 0)]

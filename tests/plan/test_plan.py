@@ -181,9 +181,9 @@ def test_a_shape_sampled_as_asked():
 @pytest.mark.parametrize(
     ("target", "settings", "message"),
     [
-        (None, {"steps": 0}, "whole number >= 1, got 0"),
-        (None, {"steps": 1.5}, "whole number >= 1, got 1.5"),
-        (None, {"level": "modal"}, "rigid, pymunk, got 'modal'"),
+        (None, {"steps": 0}, "whole number of at least 1, got 0"),
+        (None, {"steps": 1.5}, "whole number of at least 1, got 1.5"),
+        (None, {"level": "modal"}, "'rigid', 'pymunk', got 'modal'"),
         (None, {"colour": 3}, "got 'colour'"),
         (None, {"penetration": -1.0}, "penetration"),
         ("body", {"level": "rigid"}, "one of steps to override"),
@@ -395,5 +395,5 @@ def test_a_body_may_be_given_more_substeps():
     assert contact.step(1 / 60, steps=made.steps) == 24
     made.override(ball, steps=None).apply()
     assert contact.step(1 / 60, steps=made.steps) == max(made.finer.values())
-    with pytest.raises(ValueError, match="whole number >= 1, got 0"):
+    with pytest.raises(ValueError, match="whole number of at least 1, got 0"):
         made.override(ball, steps=0)

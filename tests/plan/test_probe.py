@@ -10,7 +10,7 @@ import pytest
 import rigidarea as ra
 from harness.trial import at_settings
 from harness.unseen import box_dropped_askew, chain_on_a_peg, heavy_dropped, over_a_step
-from rigidarea.plan.probe import LADDER, RATIO, Original, Probe, Setting, reference
+from rigidarea.plan.probe import LADDER, RATIO, Probe, Setting, copied, reference
 from rigidarea.study.peers.base import record
 from rigidarea.study.user_space import space_of
 
@@ -45,7 +45,7 @@ def test_a_copy_has_joints_filters_and_outlines():
     motor = pymunk.SimpleMotor(wheel, other, 2.0)
     motor.max_force, motor.pre_solve = 6.0, lambda *_: None
     space.add(wheel, other, shape, motor)
-    made, bodies = Original(space, {}, space.bodies).copy(1e-3)
+    made, bodies = copied(space, space.bodies, {}, 1e-3)
     (twin,), (joint,) = made.shapes, made.constraints
     assert twin.friction == 0.7 and twin.filter == shape.filter
     assert len(twin.outline.rings[0]) == len(gear.sample(1e-3 * gear.smallest_extent).rings[0])

@@ -10,12 +10,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import rigidarea as ra
+from harness.judged import JUDGED
+from harness.trial import space_of
 from harness.unseen import UNSEEN, billiard, chain_on_a_peg, islands
 from rigidarea.flexible import Material
 from rigidarea.plan import estimates as est
 from rigidarea.plan.probe import Probe, Setting
 from rigidarea.plan.promise import name_of
-from rigidarea.study.user_space import space_of
 
 STEEL = Material(207e9, 0.29, 7800.0, 0.02)
 RUBBER = Material(2e6, 0.45, 1100.0, 0.02)
@@ -61,6 +62,7 @@ def test_names():
     made = ra.plan(space, 0.01).override(crate, steps=3).override(other, steps=3)
     named = {line.what for line in made.lines}
     assert {"the crate", "disc at (3, 0.5)"} <= named and "bodies[" not in str(made)
+    assert "their island is outside" not in str(made)  # the user says so, not the plan
     assert (
         name_of(space, round_) == "disc of disc at (3, 0.5)"
         and name_of(space, space.static_body) == "static_body"
@@ -91,6 +93,12 @@ def test_what_is_not_promised():
     made.apply()
     made.step(frames=60)
     assert called
+    (crate, shape), (other, round_) = box(1.0, 1.0, 1.0, (0.0, 0.5)), disc(0.5, 1.0, (3.0, 0.5))
+    space = space_with((crate, shape), (other, round_), gravity=9.81)
+    spring = pymunk.DampedSpring(crate, other, (0, 0), (0, 0), 3.0, 1.0, 0.0)
+    spring.force_func = lambda *_: 0.0
+    space.add(spring)
+    assert ra.plan(space, 0.01, 1.0).unpromised == ["what your callbacks do: they were not run"]
 
 
 @pytest.mark.parametrize("make", [billiard, chain_on_a_peg])
@@ -166,6 +174,6 @@ def test_a_program_says_what_its_bodies_are_made_of(tmp_path):
 
 
 def test_unseen_scenes_can_be_run():
-    for make in UNSEEN:
+    for make in (*UNSEEN, *JUDGED):
         space, bodies = space_of(make())
         assert ra.plan(space, 0.05, 0.5).steps >= 1 and len(bodies) == len(make().bodies)
