@@ -226,7 +226,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     for joint, impulse in zip(space.constraints, memory.joints):
         made_of, did = joint_numbers(joint)
         made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
-    _keep_apart(store, space)
+    _keep_apart(store, space, memory)
     _put_to_sleep(space, memory)
 
 
@@ -252,11 +252,11 @@ def take_arbiters(store: Store, space: pymunk.Space) -> None:
             pairs[p]["arbiter"] = address_of(arbiter)
 
 
-def _keep_apart(store: Store, space: pymunk.Space) -> None:
-    """The bodies that joints keep from colliding, as `joints.take_joints` lists them: else pairs are searched anew."""
+def _keep_apart(store: Store, space: pymunk.Space, memory: Memory) -> None:
+    """The bodies that joints keep from colliding, as `joints.take_joints` lists them: else pairs are sorted anew."""
     store.grow_joints(len(space.constraints) + 1)
-    tables, n = store.tables, 0
-    for joint in space.constraints:
+    tables, n, joints = store.tables, 0, list(space.constraints)
+    for joint in (joints[i] for i in memory.joint_order if i >= 0):
         rows = [store.row_of(address_of(body._body)) for body in (joint.a, joint.b)]
         if not joint.collide_bodies and min(rows) >= 0:
             tables.apart[n] = rows

@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 Row = dict[str, Any]
+PACKAGE = Path(__file__).parents[1]
 
 
 def write_csv(target: Path, rows: Sequence[Row]) -> None:
@@ -55,8 +56,14 @@ class Progress:
 
 
 def read_rows(path: Path) -> list[Row]:
-    """Rows of a JSON-lines file; a last line cut short by a kill is dropped."""
+    """Rows of a JSON-lines file; a last line cut short by a kill is dropped.
+
+    What was written before this package last changed is of other code: it is removed.
+    """
     if not path.exists():
+        return []
+    if path.stat().st_mtime < max(file.stat().st_mtime for file in PACKAGE.rglob("*.py")):
+        path.unlink()
         return []
     rows = []
     for line in path.read_text().splitlines():

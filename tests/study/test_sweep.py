@@ -34,6 +34,17 @@ def slow_pid(x):
     return {"y": x * x, "pid": os.getpid()}
 
 
+def test_what_is_of_other_code_is_made_anew(tmp_path):
+    """A store that is older than the package was left by other code."""
+    log, store = str(tmp_path / "log"), tmp_path / "rows.jsonl"
+    tasks = [{"x": 3, "log": log}]
+    run_tasks(square, tasks, store, workers=0)
+    os.utime(store, (0, 0))
+    assert [row["y"] for row in run_tasks(square, tasks, store, workers=0)] == [9]
+    assert (tmp_path / "log").read_text().split() == ["3", "3"]
+    assert len(read_rows(store)) == 1
+
+
 def test_resumes(tmp_path):
     """Results found are not computed again; a line cut short is computed again; order is that of the
     tasks.
