@@ -26,7 +26,7 @@ from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
 from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
-from rigidarea.flexible.pace import pace
+from rigidarea.flexible.pace import WHOLE, pace, whole_tangent
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
 from rigidarea.flexible.tension import draw, slack, tighten
 
@@ -248,6 +248,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     change, before, regions = 1.0, 0.0, -1
     first = slowest = 0.0
     earlier = np.inf
+    rate, whole = 0.0, whole_tangent(buf)
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
@@ -292,7 +293,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             reference = max(reference, abs(state.mu[b, 0]), abs(state.mu[b, 1]), abs(hub.moment) / sy.size[b])
             force, left = mode_rows(body, w, sy, buf, state, b, hub)
             reference, worst = max(reference, force), max(worst, left)
-        off = eliminate_loads(bodies, sy, buf, state, s.load, not st.sts)
+        off = eliminate_loads(bodies, sy, buf, state, s.load, not st.sts and (whole or rate > FAST))
         worst = max(worst, off)
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)
@@ -312,6 +313,8 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         if before > 0.0:
             rate = worst / before
             slowest = max(slowest, rate)
+            if rate > FAST:
+                buf.pace[4] = max(buf.pace[4], WHOLE)
             buf.pace[0], buf.pace[1], buf.pace[2], buf.pace[3] = slowest, first, regions, 0.0
         else:
             first = worst

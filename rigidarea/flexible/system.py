@@ -125,7 +125,7 @@ class Buffers(NamedTuple):
     held: Ints  # (3,) how many
     joint: Array  # (j, 3) force and moment of each joint on its body b
     modes: Array  # (4, most modes of a body) see ``frame.inertia_forces``
-    pace: Array  # (4,) of Newton's method, see ``pace``
+    pace: Array  # (5,) of Newton's method, see ``pace``
 
 
 def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -> Buffers:
@@ -146,5 +146,5 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros(unknowns),
         np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
-        np.zeros((4, most)), np.zeros(4),
+        np.zeros((4, most)), np.zeros(5),
     )  # fmt: skip

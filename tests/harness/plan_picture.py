@@ -46,6 +46,9 @@ def costs_and_errors(rows: Sequence[Row], target: Path) -> Path:
         xlabel="cost over the cheapest adequate setting's",
         ylabel="share of all that is planned (%)",
     )
+    ticks = (1.0, 1.5, 2.0, 3.0, 5.0)
+    right.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
+    right.set_xticks([], minor=True)
     right.set_ylim(0.0, 100.0)
     target.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(target, dpi=110)
