@@ -27,8 +27,9 @@ def pace(buf, worst):  # type: ignore[no-untyped-def]
 def whole_tangent(buf):  # type: ignore[no-untyped-def]
     """Whether a step begins with the whole tangent of the loads, or leaves out what moves them across.
 
-    That costs a quarter less, and where bodies are stiff beside their contacts it is as good. Where it left too much
-    the whole tangent is taken for so many steps (``buf.pace[4]``), and then the other is tried again.
+    Where bodies are stiff beside their contacts that is as good, and cheaper (gears, by a fifth to a quarter of a run).
+    Where it left too much the whole tangent is taken for so many steps (``buf.pace[4]``), and then the other is tried
+    again.
     """
     if buf.pace[4] == 0.0:
         return False

@@ -314,7 +314,7 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
             rate = worst / before
             slowest = max(slowest, rate)
             if rate > FAST:
-                buf.pace[4] = max(buf.pace[4], WHOLE)
+                buf.pace[4] = WHOLE
             buf.pace[0], buf.pace[1], buf.pace[2], buf.pace[3] = slowest, first, regions, 0.0
         else:
             first = worst
