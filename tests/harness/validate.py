@@ -54,9 +54,11 @@ SAMPLINGS = (1e-3, 1e-4, 1e-5, 1e-6)
 SLOPS = (1e-2, 1e-3, 1e-4)
 NATIVE_STEPS = (1, 2, 4, 8, 16, 32, 64)
 JUDGES = {
-    kind: {make().name: make for make in made} for kind, made in (("unseen", UNSEEN), ("judged", JUDGED))
+    kind: {make.__name__: make for make in made} for kind, made in (("unseen", UNSEEN), ("judged", JUDGED))
 }
 """Scenes without an exact answer, by name: see `unseen` and `judged`."""
+JUDGING = {name: make for made in JUDGES.values() for name, make in made.items()}
+"""All of them."""
 FINEST = {"level": "rigid", "steps": 128, "sweeps": 20, "penetration": 1e-8}
 NEXT_TO_FINEST = {"level": "rigid", "steps": 64, "sweeps": 20, "penetration": 1e-8}
 
@@ -347,11 +349,10 @@ def validate(
     if fresh:
         store.unlink(missing_ok=True)
     known = {key(row["task"]): row for row in read_rows(store)}
-    judges = {name: make for made in JUDGES.values() for name, make in made.items()}
-    names = list(scene_names) or [*(name for name, scene in scenes().items() if not scene.deforms), *judges]
-    chosen = [(get_scene(name), False) for name in names if name not in judges]
+    names = list(scene_names) or [*(name for name, scene in scenes().items() if not scene.deforms), *JUDGING]
+    chosen = [(get_scene(name), False) for name in names if name not in JUDGING]
     chosen += [(scene, True) for scene in variations(count, scene_names)]
-    chosen += [(judges[name](), True) for name in names if name in judges]
+    chosen += [(JUDGING[name](), True) for name in names if name in JUDGING]
     progress = Progress("plan", len(chosen))
     rows: list[Row] = []
     for scene, varied in chosen:
@@ -364,10 +365,9 @@ def validate(
 def report(rows: Sequence[Row], settings: Row) -> Row:
     """The object of the command: what the issue asks, then every row."""
     tolerances = sorted({row["tolerance"] for row in rows}, reverse=True)
-    judging = {name for made in JUDGES.values() for name in made}
     told = {
         "scenes": summary([row for row in rows if not row["varied"]]),
-        "variations": summary([row for row in rows if row["varied"] and row["scene"] not in judging]),
+        "variations": summary([row for row in rows if row["varied"] and row["scene"] not in JUDGING]),
         **{kind: summary([row for row in rows if row["scene"] in made]) for kind, made in JUDGES.items()},
         "by_tolerance": {
             str(t): summary([r for r in rows if not r["varied"] and r["tolerance"] == t]) for t in tolerances
