@@ -18,12 +18,21 @@ SHOT = {22: 60, 98: 90, 117: 40, 129: 160, 159: 240, 196: 40, 216: 240}
 SHOT |= {195: 60, 247: 280, 273: 20, 631: 100, 864: 80, 1179: 40, 1239: 10, 1327: 300, 2296: 300}
 
 
+def fastest(seed: int, frames: int, attached: bool) -> float:
+    """The fastest body's speed (px/s); infinite where one is not finite."""
+    seen = run(seed, frames, attached)
+    return seen.fastest if seen.finite else np.inf
+
+
+def flies_off(speed: float, other: float) -> bool:
+    """Whether a body was faster than 1,500 px/s and three times the fastest by the other response; or not finite."""
+    return not np.isfinite(speed) or speed > max(1500.0, 3 * other)
+
+
 def shot(seed: int, frames: int) -> bool:
-    """Whether a body was faster than 1,500 px/s and three times the fastest by pymunk's own response; or not finite."""
-    seen = run(seed, frames, True)
-    if seen.fastest <= 1500.0:
-        return not seen.finite
-    return not seen.finite or seen.fastest > 3 * run(seed, frames, False).fastest
+    """Whether a body flies off, beside pymunk's own response."""
+    speed = fastest(seed, frames, True)
+    return speed > 1500.0 and flies_off(speed, fastest(seed, frames, False))
 
 
 @pytest.mark.parametrize("seed", SHOT)
@@ -34,12 +43,17 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 3,000 at most 24: measured 20, of pymunk's own response 505 by the same measure the other way round.
+    """Of 3,000 at most 24: measured 20. By pymunk's own response one in seven or more, the other way round: 505.
 
     (75 while joints that nearly contradict each other were all held. What is left: paddles and platforms that wedge
     bodies in corners.)
     """
-    assert sum(shot(seed, FRAMES) for seed in range(3000)) <= 24
+    speeds = [(fastest(seed, FRAMES, True), fastest(seed, FRAMES, False)) for seed in range(3000)]
+    ours = sum(flies_off(here, there) for here, there in speeds)
+    theirs = sum(flies_off(there, here) for here, there in speeds)
+    print(f"of {len(speeds)} scenes a body flies off in {ours}, by pymunk's own response in {theirs}")
+    assert ours <= 24
+    assert theirs >= len(speeds) / 7
 
 
 def test_there_is_room_for_joints_whose_bodies_do_not_collide():
