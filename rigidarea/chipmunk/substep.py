@@ -14,7 +14,6 @@ from ..contact.join import any_pair_touches, gather, has_room, join, no_pair_com
 from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
 from ..contact.solve import (
-    clamp_warm_start,
     drift,
     finish,
     fly,
@@ -23,6 +22,7 @@ from ..contact.solve import (
     kinetic,
     sweep,
     warm_start,
+    warm_start_in_part,
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
 from ..contact.tables import BOUNCES, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
@@ -86,9 +86,10 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     law = load_law(s)
     came = kinetic(tables) if tables.counters[BOUNCES] > 0 else 0.0
     form_islands(tables, law, h, 0)
-    warm_start(tables)
     if jointed:
-        clamp_warm_start(tables, h)
+        warm_start_in_part(tables)
+    else:
+        warm_start(tables)
     searches = whole // SEARCH_SWEEPS
     sweeps = max(1, whole - 2 * searches - _relaxing(whole))
     for more in range(1 + MORE_SWEEPS):

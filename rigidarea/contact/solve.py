@@ -12,8 +12,8 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.place import place, shift
-from .active import held_by, kinetic_of
-from .constants import HIT, ROUNDING
+from .active import held_by, island_of, kinetic_of
+from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
 from .tables import AWAKE, DRIFTS, FIXED, ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
@@ -92,34 +92,67 @@ def warm_start(tables: Tables) -> None:
 
 
 @kernel(forceinline=True)
-def usable(body: Any, h: float) -> float:
-    """Which part of what a body begins a substep with moves it by no more than HIT of itself, the kick counted in.
-
-    What balances kicks, and itself, is usable; what has borne against something that has come off since would shoot
-    the body.
-    """
-    way = abs(body.vx - body.came_vx + body.kick_x) + abs(body.vy - body.came_vy + body.kick_y)
-    way += abs(body.w - body.came_w + body.kick_w) * body.extent
-    most = HIT * body.extent
-    return float(most / (h * way)) if body.mobile and h * way > most > 0.0 else 1.0
+def _left_to_solve(row: Any, a: Any, b: Any) -> float:
+    """A row's impulses times what they lack at the present velocities: nothing where a visit would change nothing."""
+    ux = a.vx - b.vx
+    uy = a.vy - b.vy
+    v = ux * row.nx + uy * row.ny + (a.w * row.arm_a - b.w * row.arm_b)
+    slip = uy * row.nx - ux * row.ny + (a.w * row.lean_a - b.w * row.lean_b)
+    give = row.alpha / row.gamma
+    left = 0.0
+    if row.lt != 0.0:
+        left += row.lt * (row.alpha_t / row.gamma_t * (row.ft - row.lt) + slip - row.tt)
+    if row.ends < 2:
+        return float(left + row.l1 * (give * (row.f1 - row.l1) + v - row.t1))
+    turn = a.w - b.w
+    gap1 = row.f1 - row.l1
+    gap2 = row.f2 - row.l2
+    left += row.l1 * (give * (row.own * gap1 + row.other * gap2) + v - turn * row.e1 - row.t1)
+    return float(left + row.l2 * (give * (row.other * gap1 + row.own * gap2) + v - turn * row.e2 - row.t2))
 
 
 @kernel
-def clamp_warm_start(tables: Tables, h: float) -> None:
-    """Of what rows begin with where bodies hang in joints, which hold what they press, only what is usable."""
+def warm_start_in_part(tables: Tables) -> None:
+    """Begin with so much of the impulses of the substep before as leaves each island the least to solve.
+
+    What balances kicks and itself is used whole, and what has borne against something that has come off since is not.
+    (The length of a step along a direction, as in `conjugate`.)
+    """
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].ahead = 0.0
+        tables.islands[k].curvature = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        a = tables.bodies[row.a]
-        b = tables.bodies[row.b]
-        if a.calm >= 0 and b.calm >= 0:
-            continue
-        part = min(usable(a, h), usable(b, h))
-        if part < 1.0:
+        if row.gamma > 0.0:
+            island = tables.islands[island_of(tables, row)]
+            give = row.alpha / row.gamma
+            own = give * (row.own if row.ends == 2 else 1.0)
+            other = give * (row.other if row.ends == 2 else 0.0)
+            island.ahead += _left_to_solve(row, tables.bodies[row.a], tables.bodies[row.b])
+            island.ahead += own * (row.l1 * row.l1 + row.l2 * row.l2) + 2.0 * other * row.l1 * row.l2
+            if row.lt != 0.0:
+                island.ahead += row.alpha_t / row.gamma_t * row.lt * row.lt
+    warm_start(tables)
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.gamma > 0.0:
+            left = _left_to_solve(row, tables.bodies[row.a], tables.bodies[row.b])
+            tables.islands[island_of(tables, row)].curvature -= left
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.curvature += island.ahead
+        island.part = 1.0
+        if island.curvature > island.ahead:
+            island.part = max(0.0, island.ahead) / island.curvature
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        part = tables.islands[island_of(tables, row)].part
+        if row.gamma > 0.0 and part < 1.0:
             d1, d2, dt = (part - 1.0) * row.l1, (part - 1.0) * row.l2, (part - 1.0) * row.lt
             row.l1 += d1
             row.l2 += d2
             row.lt += dt
-            push(row, a, b, d1, d2, dt)
+            push(row, tables.bodies[row.a], tables.bodies[row.b], d1, d2, dt)
 
 
 @kernel
