@@ -23,7 +23,7 @@ ISLAND = record(
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
-        ("still", "i1"),  # 1: neither its speeds nor its springs could do more than a kick: it is at rest
+        ("still", "i1"),  # 1: contacts bear it, and neither speeds nor springs could do more than a kick
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
         ("mass", "f8"),
         ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
@@ -160,7 +160,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
         island.small = LEFT * kick + MOVED * speed
         able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
-        island.still = able < kick
+        island.still = able < kick and island.held > 0.0
 
 
 @kernel(forceinline=True)
