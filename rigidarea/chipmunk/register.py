@@ -44,17 +44,15 @@ class Register:
         self._bodies_come = ffi.cast(
             "long long(*)(uintptr_t, void *, long long, long long)", entering.bodies_come.address
         )
-        self._body_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.body_goes.address)
+        self._body_goes = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.body_goes.address)
         self._placed_anew = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.placed_anew.address)
         self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
         self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
         self._new: dict[pymunk.Shape, None] = {}  # not entered yet
-        self._gone: list[int] = []  # ids of shapes that are entered still
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
-        self._left: list[int] = []  # bodies that are entered still
 
     def _pend(self) -> None:
-        """There is something to enter, or to forget, before the next frame."""
+        """There is something to enter before the next frame, or something has gone."""
         if self._pending[0] == 0:
             self._pending[0] = 1
 
@@ -66,21 +64,25 @@ class Register:
         self._new[shape] = None
         if shape.body is not None and shape.body.body_type == _STATIC:
             try:
-                read = self._outlines([shape])
-                self.forget()
-                self._enter([shape], *read)
+                drop_unused_outlines(self._store)
+                self._enter([shape], *self._outlines([shape]))
             # said when the space is stepped: pymunk is in the midst of adding
             except (ValueError, MemoryError):
                 return
             del self._new[shape]
 
-    def shape_goes(self, shape: pymunk.Shape) -> None:
-        """A shape is about to be removed."""
+    def shape_went(self, shape: pymunk.Shape, ident: int) -> None:
+        """A shape has been removed: nothing of it is read or written from now on. ident: its id until then."""
         if shape in self._new:
             del self._new[shape]
         else:
-            self._gone.append(shape._hashid)
+            self._forget(ident)
         self._pend()
+
+    def _forget(self, ident: int) -> None:
+        self._shape_goes(self._store.at, ident)
+        self.shapes.pop(ident, None)
+        self.proxies.discard(ident)
 
     def body_came(self, body: pymunk.Body) -> None:
         """A body has been added."""
@@ -88,13 +90,17 @@ class Register:
         self._pend()
 
     def body_goes(self, body: pymunk.Body) -> None:
-        """A body is about to be removed."""
+        """A body is about to be removed: it has its position function back."""
         if body in self._bodies:
             del self._bodies[body]
         else:
-            self._left.append(address_of(body._body))
-            self._hook.release(body)
+            self._hook.held.discard(body)
+            self._body_goes(self._store.at, body._body, True)
         self._pend()
+
+    def look_again(self) -> None:
+        """Something has gone in the midst of a step: the whole space is looked through before the next."""
+        self._pending[0] = 2
 
     def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
         """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
@@ -126,17 +132,16 @@ class Register:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         state = self._state
         pending = int(self._pending[0])
-        count = len(self.shapes) + len(self._new) - len(self._gone)
-        if count != len(space._shapes) or pending == 2:
+        if len(self.shapes) + len(self._new) != len(space._shapes) or pending == 2:
             self._look_through(space)
+        drop_unused_outlines(self._store)
         new = list(self._new)
         read = self._outlines(new)  # says what is wrong with one while nothing has changed
         self._pending[0] = 2  # until all is done: whoever is interrupted looks through the space
-        self.forget()
         if self._bodies:
             # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
             held = state["shape_count"] < 0 and not state["explicit"]
-            self._hook.hold(self._bodies)
+            self._hook.held.update(self._bodies)
             self._enter_bodies((body._body for body in self._bodies), held)
             self._bodies.clear()
         if (
@@ -152,37 +157,21 @@ class Register:
         state["shape_count"] = len(self.shapes)
         self._pending[0] = 0
 
-    def forget(self) -> None:
-        """What has gone is not in the tables any more: nothing of it is read or written from now on."""
-        for ident in self._gone:
-            if ident in self.proxies:
-                self._store.known_shapes["proxy"][self._store.slots[ident]] = 0
-                self.proxies.discard(ident)
-            self._shape_goes(self._store.at, ident)
-            self.shapes.pop(ident, None)
-        if self._gone:
-            self._gone.clear()
-            try:
-                drop_unused_outlines(self._store)
-            except MemoryError:  # another time: pymunk is in the midst of removing
-                pass
-        for address in self._left:
-            self._body_goes(self._store.at, address)
-        self._left.clear()
-
     def _look_through(self, space: pymunk.Space) -> None:
         """What there is that pymunk has not told of, and what is no more."""
         present = {shape._hashid: shape for shape in space._shapes}
         rows = self._store.known_shapes
         known = set(rows["ident"][rows["outline"] >= 0].tolist())
+        for ident in known - present.keys():
+            self._forget(ident)
         self.shapes = {ident: shape for ident, shape in present.items() if ident in known}
-        self._gone = [ident for ident in known if ident not in present]
         self._new = {shape: None for ident, shape in present.items() if ident not in known}
         bodies = {address_of(body._body): body for body in space._bodies}
         held = {address_of(body) for body in _held(space)}
         found = self._store.tables.bodies
         entered = set(found["address"][found["entered"] == 1].tolist())
-        self._left = [address for address in entered if address not in bodies and address not in held]
+        for address in entered - bodies.keys() - held:
+            self._body_goes(self._store.at, ffi.cast("void *", address), False)
         self._bodies = {body: None for address, body in bodies.items() if address not in entered}
 
     def _enter_bodies(self, bodies: Iterable[Any], hold: bool) -> None:
