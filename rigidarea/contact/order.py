@@ -80,15 +80,12 @@ def sieve(tables: Tables) -> None:
 @kernel
 def arrange(tables: Tables, gx: float, gy: float) -> None:
     """Sort the near pairs (after `sieve`) from the bottom to the top: by places alone, so that nothing depends on who
-    came first. Where a frame is made of turns (`islands`), turn by turn.
+    came first. Where a frame is made of turns (`islands`), turn by turn. And the bodies that are awake in the same way:
+    sums over them then do not depend on who came first either.
     """
     ux, uy = up(gx, gy)
-    near = tables.near
-    last = len(near) - 1  # room for one
-    n = tables.counters[NEAR]
-    sorted_already = True
-    for i in range(n):
-        one = near[i]
+    for i in range(tables.counters[NEAR]):
+        one = tables.near[i]
         a = tables.bodies[one.a]
         b = tables.bodies[one.b]
         x = 0.0
@@ -103,49 +100,81 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
         one.order = share * (ux * x + uy * y)
         one.beside = share * (ux * y - uy * x)
         one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
-        sorted_already = sorted_already and (i == 0 or not _after(tables, near[i - 1], one))
-    gap = 1
-    while gap < n and not sorted_already:
-        gap = 3 * gap + 1
-    while gap > 0 and not sorted_already:  # Shell's sort, in place
-        for i in range(gap, n):
-            if not _after(tables, near[i - gap], near[i]):
-                continue
-            _set(near[last], near[i])
-            j = i
-            while j >= gap and _after(tables, near[j - gap], near[last]):
-                _set(near[j], near[j - gap])
-                j -= gap
-            _set(near[j], near[last])
-        gap //= 3
+    _sort(tables, True, tables.counters[NEAR], tables.counters[BOXED], ux, uy)
+    _sort(tables, False, tables.counters[AWAKE], tables.counters[AWAKE], ux, uy)
     tables.counters[UNSORTED] = 0
-    line_up(tables, gx, gy)
     enlist(tables)
     bound(tables)
 
 
 @kernel
-def line_up(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the bodies that are awake in the same way: sums over them then do not depend on who came first either."""
-    ux, uy = up(gx, gy)
-    awake = tables.awake
-    n = tables.counters[AWAKE]
+def _sort(tables: Tables, pairs: bool, n: int, room: int, ux: float, uy: float) -> None:
+    """Sort near pairs, or bodies that are awake; the list has room from `room` on for n of them, and for one.
+
+    Most are in order: those that are not are taken out, sorted (Shell) and merged with the rest (C. R. Cook and
+    D. J. Kim, "Best sorting algorithm for nearly sorted lists", Comm. ACM 23 (1980)).
+    """
+    kept = 0
+    for i in range(n):
+        if kept > 0 and _later(tables, pairs, kept - 1, i, ux, uy):
+            kept -= 1  # either may be the one that is out of order
+            continue
+        if kept < i:
+            _set(tables, pairs, room, kept)
+            _set(tables, pairs, kept, i)
+            _set(tables, pairs, i, room)
+        kept += 1
     gap = 1
-    for i in range(1, n):
-        if _above(tables.bodies[awake[i - 1]], tables.bodies[awake[i]], ux, uy):
-            while gap < n:
-                gap = 3 * gap + 1
-            break
-    gap //= 3
+    while gap < n - kept:
+        gap = 3 * gap + 1
     while gap > 0:
-        for i in range(gap, n):
-            k = awake[i]
+        for i in range(kept + gap, n):
+            _set(tables, pairs, room, i)
             j = i
-            while j >= gap and _above(tables.bodies[awake[j - gap]], tables.bodies[k], ux, uy):
-                awake[j] = awake[j - gap]
+            while j >= kept + gap and _later(tables, pairs, j - gap, room, ux, uy):
+                _set(tables, pairs, j, j - gap)
                 j -= gap
-            awake[j] = k
+            if j < i:
+                _set(tables, pairs, j, room)
         gap //= 3
+    for i in range(kept, n):
+        _set(tables, pairs, room + i - kept, i)
+    left = n - kept
+    for i in range(n - 1, -1, -1):
+        if left == 0:
+            break
+        if kept > 0 and _later(tables, pairs, kept - 1, room + left - 1, ux, uy):
+            kept -= 1
+            _set(tables, pairs, i, kept)
+        else:
+            left -= 1
+            _set(tables, pairs, i, room + left)
+
+
+@kernel(forceinline=True)
+def _later(tables: Tables, pairs: bool, i: int, j: int, ux: float, uy: float) -> bool:
+    """Whether of two places in a list the first has what belongs behind what the second has."""
+    if pairs:
+        return bool(_after(tables, tables.near[i], tables.near[j]))
+    return bool(_above(tables.bodies[tables.awake[i]], tables.bodies[tables.awake[j]], ux, uy))
+
+
+@kernel(forceinline=True)
+def _set(tables: Tables, pairs: bool, i: int, j: int) -> None:
+    """Place i of a list as place j."""
+    if not pairs:
+        tables.awake[i] = tables.awake[j]
+        return
+    one = tables.near[i]
+    other = tables.near[j]
+    one.pair = other.pair
+    one.a = other.a
+    one.b = other.b
+    one.extent = other.extent
+    one.lined = other.lined
+    one.turn = other.turn
+    one.order = other.order
+    one.beside = other.beside
 
 
 @kernel
@@ -269,18 +298,6 @@ def bound(tables: Tables) -> None:
         last += 1
     counters[FIRST] = first
     counters[LAST] = last
-
-
-@kernel(forceinline=True)
-def _set(one: Any, other: Any) -> None:
-    one.pair = other.pair
-    one.a = other.a
-    one.b = other.b
-    one.extent = other.extent
-    one.lined = other.lined
-    one.turn = other.turn
-    one.order = other.order
-    one.beside = other.beside
 
 
 @kernel(forceinline=True)

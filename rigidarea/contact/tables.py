@@ -80,7 +80,7 @@ class Tables(NamedTuple):
     live: (
         np.ndarray
     )  # (n,) int32: bodies that go through the substeps now, and what does not move and they are near
-    awake: np.ndarray  # (n,) int32: bodies that are awake, in the order of sums over them
+    awake: np.ndarray  # (2 n,) int32: bodies that are awake, in the order of sums over them; room for sorting
     movers: np.ndarray  # (m,) int32: their shapes
     asked: np.ndarray  # (m,) int32: shapes whose box is to be asked whom it meets
     told: np.ndarray  # (k,) int32: pairs of which Chipmunk has told in this frame
@@ -88,7 +88,7 @@ class Tables(NamedTuple):
     roots: np.ndarray  # (3,) int32, see `tree`
     near: (
         np.ndarray
-    )  # (k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; the last for sorting
+    )  # (2 k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; room for sorting
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     joints: np.ndarray  # (n,) JOINT
     table: np.ndarray  # (m,) int32: hash table of pairs by their shapes; -1: empty
