@@ -1,8 +1,8 @@
 """Which bodies go through a frame together, and in how many substeps.
 
 An island is what may touch within the frame, or is jointed, directly or through others that move; what does not move
-parts islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast or
-delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
+parts islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast
+or delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
 (`tables.live`) and pairs (from counters[FIRST] to counters[LAST] of `tables.near`) alone.
 
 A blow within the frame may carry a body further than its own motion: where that could be into another turn, by all the

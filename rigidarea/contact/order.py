@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.pool import Pool
-from .broad import boxes_part, drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
+from .broad import boxes_part, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .tables import (
     ANEW,
     ASKED,
@@ -17,6 +17,7 @@ from .tables import (
     FIRST,
     FIXED,
     JOINTS,
+    KNOWN,
     LAST,
     LIVE,
     NEAR,
@@ -25,6 +26,8 @@ from .tables import (
     TURNED,
     UNSORTED,
     Tables,
+    end_pair,
+    forget_pair,
 )
 
 
@@ -32,7 +35,7 @@ from .tables import (
 def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> bool:
     """Bring the list of near pairs up to where bodies are, h before and after. False: no room for them.
 
-    To be sorted (`arrange`) where counters[UNSORTED] says so.
+    To be sieved and sorted (`sieve`, `arrange`) where counters[UNSORTED] says so.
     """
     counters = tables.counters
     if counters[ANEW] == 1:
@@ -44,8 +47,6 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> 
     if counters[ANEW]:
         end_unlisted(tables, frame)
         counters[ANEW] = 0
-    if counters[UNSORTED]:
-        drop_pairs(tables, frame)
     return True
 
 
@@ -57,23 +58,42 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 
 @kernel
-def sieve(tables: Tables) -> None:
-    """The near pairs that may collide before all others, and before those that are listed for Chipmunk alone."""
+def sieve(tables: Tables, frame: int) -> None:
+    """The near pairs that may collide before all others, and before those that are listed for Chipmunk alone.
+
+    Those whose boxes have parted are forgotten. Of these stay such as Chipmunk has told of in this frame, with nothing
+    remembered: it is yet to hear of them. Those of which nobody is awake are remembered, but near no more.
+    """
     near = tables.near
     n = 0
+    k = 0
     for i in range(tables.counters[BOXED]):
         p = near[i].pair
         pair = tables.pairs[p]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        if may_collide(tables, pair) and not boxes_part(sa, sb):
-            near[i].pair = near[n].pair
+        if pair.a < 0:
+            continue
+        one = tables.shapes[pair.a]
+        other = tables.shapes[pair.b]
+        parted = boxes_part(one, other)
+        if not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
+            pair.near = -1
+            continue
+        if parted and pair.stamp != frame:
+            end_pair(tables, p)
+            continue
+        if parted:
+            forget_pair(tables, p)
+        collides = not parted and may_collide(tables, pair)
+        near[k].pair = near[n].pair if collides else p
+        if collides:
             near[n].pair = p
-            near[n].a = sa.body
-            near[n].b = sb.body
-            near[n].extent = min(sa.extent, sb.extent)
-            near[n].lined = sa.mirror >= 0 or sb.mirror >= 0
+            near[n].a = one.body
+            near[n].b = other.body
+            near[n].extent = min(one.extent, other.extent)
+            near[n].lined = one.mirror >= 0 or other.mirror >= 0
             n += 1
+        k += 1
+    tables.counters[BOXED] = tables.counters[KNOWN] = k
     tables.counters[NEAR] = n
 
 

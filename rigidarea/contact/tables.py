@@ -38,7 +38,8 @@ PLACED, SPENT = 1, 2
 #: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
 #: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come. Islands of
-#: rows (`active`), rows in `queue`, bodies in `members`.
+#: rows (`active`), rows in `queue`, bodies in `members`. Pairs in `near` for whose regions there is room, and what the
+#: user may set of whose shapes has been read.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, TOOTHED, BOUNCES = range(12, 19)
@@ -46,8 +47,8 @@ BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CO
 JOINTS, REJOINED, GONE = range(29, 32)
 MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(32, 39)
 USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(39, 44)
-ISLANDS, QUEUE, MEMBERS = range(44, 47)
-COUNTERS = 47
+ISLANDS, QUEUE, MEMBERS, KNOWN = range(44, 48)
+COUNTERS = 48
 
 
 class Law(NamedTuple):
