@@ -14,7 +14,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..geometry.outline import Outline
+from ..geometry.outline import Outline, outline_on
 from .arrays import Store
 from .outline_pool import drop_unused_outlines, enter_outline, read_outlines
 from .structs import address_of
@@ -33,9 +33,9 @@ class Register:
 
         self._store = store
         self._state = store.state[0]
-        self._pending = store.state[
-            "pending"
-        ]  # a view: reading a field of a record takes twenty times as long
+        # views: reading a field of a record takes twenty times as long
+        views = (store.state[name] for name in ("pending", "shape_counter", "shape_count"))
+        self._pending, self._counter, self._count = views
         self._hook = hook
         self._shapes_come = ffi.cast(
             "long long(*)(uintptr_t, void *, int *, long long)", entering.shapes_come.address
@@ -140,9 +140,9 @@ class Register:
         self._pending[0] = 2  # until all is done: whoever is interrupted looks through the space
         if self._bodies:
             # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
-            held = state["shape_count"] < 0 and not state["explicit"]
+            held = self._count[0] < 0 and not state["explicit"]
             self._hook.held.update(self._bodies)
-            self._enter_bodies((body._body for body in self._bodies), held)
+            self._enter_bodies([body._body for body in self._bodies], held)
             self._bodies.clear()
         if (
             pending >= 2
@@ -153,8 +153,8 @@ class Register:
         if pending != 1:  # what begins a frame has noticed something else, of callbacks perhaps
             for name, value in self._hear(space).items():
                 state[name] = value
-        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
-        state["shape_count"] = len(self.shapes)
+        self._counter[0] = lib.cpSpaceGetShapeIDCounter(space._space)
+        self._count[0] = len(self.shapes)
         self._pending[0] = 0
 
     def _look_through(self, space: pymunk.Space) -> None:
@@ -184,24 +184,21 @@ class Register:
         ):
             self._store.grow()
 
-    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any]:
-        """Chipmunk's addresses of shapes, and the numbers in the pool of their outlines, in which they are then.
-
-        ValueError if one has no area.
+    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any, list[Outline | None]]:
+        """Chipmunk's addresses of shapes, the numbers in the pool of their outlines, in which they are then, and the
+        outlines that somebody has put on them. ValueError if one has no area.
         """
-        addresses = _pointers(shape._shape for shape in shapes)
-        heads = ffi.new("int[]", [self._given(shape) for shape in shapes])
+        addresses = ffi.new("void *[]", [shape._shape for shape in shapes])
+        given = [outline_on(shape) for shape in shapes]
+        heads = ffi.new("int[]", [self._packed(one) if one else -1 for one in given])
         bad = read_outlines(self._store, address_of(addresses), address_of(heads), len(shapes))
         if bad >= 0:
             Outline.from_pymunk(shapes[bad])  # says what is wrong
             raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
-        return addresses, heads
+        return addresses, heads, given
 
-    def _given(self, shape: pymunk.Shape) -> int:
-        """The number in the pool of the outline that somebody has put on a shape; -1: nobody has."""
-        if not isinstance(getattr(shape, "outline", None), Outline):
-            return -1
-        outline = Outline.from_pymunk(shape)
+    def _packed(self, outline: Outline) -> int:
+        """The number in the pool of an outline that somebody has put on a shape."""
         head = enter_outline(self._store, outline, outline.smallest_extent)
         if outline.mirror is not None:
             self._store.forms.mirror[head] = enter_outline(
@@ -209,19 +206,18 @@ class Register:
             )
         return head
 
-    def _enter(self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any) -> None:
+    def _enter(
+        self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any, given: list[Outline | None]
+    ) -> None:
         """Enter shapes into the tables (`_outlines`)."""
         done, n = 0, len(shapes)
         while done < n:
             done += self._shapes_come(self._store.at, addresses + done, heads + done, n - done)
             if done < n:
                 self._store.grow()
-        self.shapes.update((shape._hashid, shape) for shape in shapes)
-        proxies = [
-            shape._hashid
-            for shape in shapes
-            if isinstance(getattr(shape, "outline", None), Outline) and Outline.from_pymunk(shape).proxied
-        ]
+        idents = [shape._hashid for shape in shapes]
+        self.shapes.update(zip(idents, shapes))
+        proxies = [ident for ident, one in zip(idents, given) if one and one.proxied]
         if proxies:
             self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
             self.proxies.update(proxies)
