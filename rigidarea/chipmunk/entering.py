@@ -253,6 +253,7 @@ def shape_goes(state: int, ident: int) -> None:
     shape.body = counters[FREE_SHAPE]
     counters[FREE_SHAPE] = i
     counters[GONE] = 1
+    s.pending = max(1, s.pending)
 
 
 @callback("int64(uintp, uintp, int64, int64)")
@@ -293,6 +294,7 @@ def body_goes(state: int, address: int, there: int) -> None:
         tables.bodies[i].entered = 0
         _let_go_of_body(s, tables, i)
     tables.counters[GONE] = 1
+    s.pending = max(1, s.pending)
 
 
 @callback("void(uintp, uintp, int64)")

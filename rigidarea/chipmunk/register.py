@@ -33,9 +33,9 @@ class Register:
 
         self._store = store
         self._state = store.state[0]
-        # views: reading a field of a record takes twenty times as long
-        views = (store.state[name] for name in ("pending", "shape_counter", "shape_count"))
-        self._pending, self._counter, self._count = views
+        # pointers: reading a field of a record takes forty times as long
+        fields = (store.state[name] for name in ("pending", "shape_counter", "shape_count"))
+        self._pending, self._counter, self._count = (ffi.cast("long long *", at.ctypes.data) for at in fields)
         self._hook = hook
         self._shapes_come = ffi.cast(
             "long long(*)(uintptr_t, void *, int *, long long)", entering.shapes_come.address
@@ -52,7 +52,7 @@ class Register:
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
 
     def _pend(self) -> None:
-        """There is something to enter before the next frame, or something has gone."""
+        """There is something to enter before the next frame (what goes is noted in machine code)."""
         if self._pending[0] == 0:
             self._pending[0] = 1
 
@@ -77,7 +77,6 @@ class Register:
             del self._new[shape]
         else:
             self._forget(ident)
-        self._pend()
 
     def _forget(self, ident: int) -> None:
         self._shape_goes(self._store.at, ident)
@@ -96,7 +95,6 @@ class Register:
         else:
             self._hook.held.discard(body)
             self._body_goes(self._store.at, body._body, True)
-        self._pend()
 
     def look_again(self) -> None:
         """Something has gone in the midst of a step: the whole space is looked through before the next."""
@@ -131,7 +129,7 @@ class Register:
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         state = self._state
-        pending = int(self._pending[0])
+        pending = self._pending[0]
         if len(self.shapes) + len(self._new) != len(space._shapes) or pending == 2:
             self._look_through(space)
         drop_unused_outlines(self._store)
