@@ -131,9 +131,9 @@ def all_in_one_group(tables: Tables) -> None:
     if counters[TURNED]:
         counters[TURNED] = 0
         counters[UNSORTED] = 1
-    enlist(tables)
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
+    enlist(tables)
 
 
 @kernel
@@ -248,7 +248,8 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
         body = tables.bodies[tables.awake[k]]
         energy = 0.0
         if body.inverse_mass > 0.0:
-            speed = math.hypot(body.vx, body.vy) + math.hypot(body.gain_x, body.gain_y)
+            speed = math.sqrt(body.vx * body.vx + body.vy * body.vy)
+            speed += math.sqrt(body.gain_x * body.gain_x + body.gain_y * body.gain_y)
             energy += 0.5 * speed * speed / body.inverse_mass
         if body.inverse_moment > 0.0:
             spin = abs(body.w) + abs(body.gain_w)
@@ -325,8 +326,8 @@ def next_turn(tables: Tables, last: int) -> int:
             turn = max(turn, steps)
     counters[TURN] = turn
     if turn > 0:
-        enlist(tables)
         bound(tables)
+        enlist(tables)
     return turn
 
 

@@ -123,8 +123,8 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
     _sort(tables, True, tables.counters[NEAR], tables.counters[BOXED], ux, uy)
     _sort(tables, False, tables.counters[AWAKE], tables.counters[AWAKE], ux, uy)
     tables.counters[UNSORTED] = 0
-    enlist(tables)
     bound(tables)
+    enlist(tables)
 
 
 @kernel
@@ -264,7 +264,9 @@ def _enlist_fixed(tables: Tables, i: int, n: int) -> int:
 
 @kernel
 def enlist(tables: Tables) -> None:
-    """List the bodies that are live: those of the turn, then what does not move and is near or jointed to one."""
+    """List the bodies that are live: those of the turn, then what does not move and is near or jointed to one (after
+    `bound`).
+    """
     counters = tables.counters
     turn = counters[TURN]
     n = 0
@@ -274,7 +276,7 @@ def enlist(tables: Tables) -> None:
             tables.live[n] = i
             n += 1
     counters[ENLISTED] += 1
-    for k in range(counters[NEAR]):
+    for k in range(counters[FIRST], counters[LAST]):
         n = _enlist_fixed(tables, tables.near[k].a, n)
         n = _enlist_fixed(tables, tables.near[k].b, n)
     for k in range(counters[JOINTS]):
