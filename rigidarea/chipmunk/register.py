@@ -62,7 +62,8 @@ class Register:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
         self._pend()
         self._new[shape] = None
-        if shape.body is not None and shape.body.body_type == _STATIC:
+        body = shape.body
+        if body is not None and body.body_type == _STATIC:
             try:
                 drop_unused_outlines(self._store)
                 self._enter([shape], *self._outlines([shape]))
