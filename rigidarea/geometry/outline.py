@@ -260,7 +260,7 @@ class Outline(Solid):
 
 def outline_on(shape: pymunk.Shape) -> Outline | None:
     """The outline that somebody has put on a shape (`shape.outline`, see `Outline.add_to`); None: nobody has."""
-    outline = vars(shape).get("outline")  # (`getattr` takes 1 us to say no: pymunk's `__getattr__`)
+    outline = getattr(shape, "__dict__", {}).get("outline")  # (pymunk's `__getattr__` takes 1 us to say no)
     return outline if isinstance(outline, Outline) else None
 
 
