@@ -58,6 +58,7 @@ def searched(store: Store, h: float, time: float) -> set[tuple[int, int]]:
     while not order.find_near(store.pool, store.tables, 7, h, time):
         store.grow()
     t = store.tables
+    order.sieve(t, 7)
     near = t.pairs[t.near["pair"][: t.counters[tables.BOXED]]]
     found = {(min(a, b), max(a, b)) for a, b in zip(near["a"].tolist(), near["b"].tolist())}
     assert len(found) == len(near)  # none twice
@@ -125,7 +126,7 @@ def test_what_may_not_touch_is_not_near(kernel: Any) -> None:
                 t.apart[0] = j, i
                 t.counters[tables.APART] = 1
             searched(store, 0.0, 0.0)
-            order.sieve(t)
+            order.sieve(t, 7)
             order.arrange(t, 0.0, -1.0)
             near = t.pairs[t.near["pair"][: t.counters[tables.NEAR]]]
             assert len(near) == (what == "none"), (what, still)

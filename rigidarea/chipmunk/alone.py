@@ -20,7 +20,7 @@ from ..compile.raw_memory import array_at, caller, record
 from ..contact.broad import forget_the_gone
 from ..contact.join import roomy
 from ..contact.space_record import STATE, clear, enter_body, load_tables
-from ..contact.tables import BODIES, SHAPES, TOLD, Tables, rehash
+from ..contact.tables import BODIES, KNOWN, SHAPES, TOLD, Tables, rehash
 from .awake import watch_bodies
 from .begin import look_at_jointed
 from .joints import joints_of, read_joint, take_joints
@@ -99,6 +99,7 @@ def _begin(s: Any, space: int, world: Any, dt: float) -> bool:
     forget_the_gone(tables)
     if not watch_bodies(s, tables, space, dt):
         return False
+    tables.counters[KNOWN] = 0
     look_at_partners(s, tables)
     constraints = members(space, s.space_constraints)
     take_joints(s, tables, constraints)

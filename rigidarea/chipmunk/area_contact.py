@@ -240,7 +240,7 @@ class AreaContact:
     def ask(self, body: pymunk.Body, steps: int | None) -> None:
         """Have a body's island take at least so many substeps a frame; None takes it back.
 
-        An island is what is near one another within a frame, or jointed, directly or through others that move: gears
+        An island is what may touch within a frame, or is jointed, directly or through others that move: gears
         beside a pile may take sixteen while the pile takes two. Ignored where `step` is given a tolerance.
         Raises ValueError for a body that is not in the space, or steps that are no whole number from 1 to 1,024.
         """

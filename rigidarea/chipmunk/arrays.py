@@ -95,7 +95,7 @@ class Store:
             np.zeros(0, QUEUED),
             np.zeros(bodies, np.int32),
             np.zeros(bodies, np.int32),
-            np.zeros(bodies, np.int32),
+            np.zeros(2 * bodies, np.int32),
             np.zeros(shapes, np.int32),
             np.zeros(shapes, np.int32),
             np.zeros(0, np.int32),
@@ -205,7 +205,7 @@ class Store:
         size = 64
         while size < 2 * len(new):  # at most half full
             size *= 2
-        near = np.zeros(len(new) + 1, NEIGHBOURS)
+        near = np.zeros(2 * len(new) + 1, NEIGHBOURS)
         near[: len(self.tables.near)] = self.tables.near
         told = np.zeros(len(new), np.int32)
         told[: len(old)] = self.tables.told
@@ -249,7 +249,8 @@ class Store:
 
     def grow_bodies(self, n: int) -> None:
         """Room for n bodies."""
-        grown = {name: longer(getattr(self.tables, name), n) for name in ("bodies", "live", "awake")}
+        grown = {name: longer(getattr(self.tables, name), n) for name in ("bodies", "live")}
+        grown["awake"] = longer(self.tables.awake, 2 * n)
         mobility, islands, members = np.zeros(n, MOBILITY), np.zeros(n, ISLAND), np.zeros(n, np.int32)
         self.tables = self.tables._replace(**grown, mobility=mobility, islands=islands, members=members)
         used, keys, rows = self.body_keys != 0, self.body_keys, self.body_rows

@@ -16,7 +16,7 @@ from ..compile.raw_memory import array_at, caller
 from ..contact.broad import forget_the_gone
 from ..contact.join import roomy
 from ..contact.space_record import load_pool, load_tables, load_work
-from ..contact.tables import BOXED, MORE_JOINTS, MOVERS, TOLD, Tables
+from ..contact.tables import BOXED, KNOWN, MORE_JOINTS, MOVERS, TOLD, Tables
 from ..contact.verdict import lasts
 from .awake import put_to_rest, watch_bodies
 from .joints import joints_of, partners_known, take_joints
@@ -120,6 +120,7 @@ def begin(s: Any, space: int, dt: float) -> bool:
         s.pending = 2
         if not ask(s, REGISTER) or not watch_bodies(s, load_tables(s), space, dt):
             return False
+    load_tables(s).counters[KNOWN] = 0
     look_at_partners(s, load_tables(s))
     if listened(s):
         _last(s, load_tables(s), dt)

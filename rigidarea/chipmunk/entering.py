@@ -253,6 +253,7 @@ def shape_goes(state: int, ident: int) -> None:
     shape.body = counters[FREE_SHAPE]
     counters[FREE_SHAPE] = i
     counters[GONE] = 1
+    s.pending = max(1, s.pending)
 
 
 @callback("int64(uintp, uintp, int64, int64)")
@@ -281,16 +282,19 @@ def bodies_come(state: int, addresses: int, n: int, hold: int) -> int:
     return done
 
 
-@callback("void(uintp, uintp)")
-def body_goes(state: int, address: int) -> None:
-    """Forget one of Chipmunk's bodies, if it is known."""
+@callback("void(uintp, uintp, int64)")
+def body_goes(state: int, address: int, there: int) -> None:
+    """Forget one of Chipmunk's bodies, if it is known. there: its memory is, its position function is given back."""
     s = array_at(state, (1,), STATE)[0]
     tables = load_tables(s)
+    if there and words(address + s.body_position_func, 1)[0] == s.hold_at:
+        words(address + s.body_position_func, 1)[0] = s.position_func
     i = row_of_body(s, address)
     if i >= 0 and tables.bodies[i].entered:
         tables.bodies[i].entered = 0
         _let_go_of_body(s, tables, i)
     tables.counters[GONE] = 1
+    s.pending = max(1, s.pending)
 
 
 @callback("void(uintp, uintp, int64)")

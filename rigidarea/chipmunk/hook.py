@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import threading
 import weakref
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -61,7 +60,7 @@ class Hook:
         state["hold_at"] = begin.hold.address
         lib.cpSpaceSetUserData(space._space, ffi.cast("void *", store.state.ctypes.data))
         self.spy = Spy(state)
-        self._held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()
+        self.held: weakref.WeakSet[pymunk.Body] = weakref.WeakSet()  # whose position function may be ours
         names = ("body_position_func", "hold_at", "position_func")
         self._functions_of_bodies = tuple(int(state[name]) for name in names)
         # Before Chipmunk frees the space, and with what the constraint needs until then, whatever is collected first.
@@ -74,20 +73,11 @@ class Hook:
             space._space,
             own,
             constraints,
-            self._held,
+            self.held,
             self._functions_of_bodies,
             store,
             classes,
         )
-
-    def hold(self, bodies: Iterable[pymunk.Body]) -> None:
-        """The solve moves bodies, unless their position function is the user's: that is to be given back."""
-        self._held.update(bodies)
-
-    def release(self, body: pymunk.Body) -> None:
-        """Give a body its position function back."""
-        self._held.discard(body)
-        _release(body, *self._functions_of_bodies)
 
     def callbacks(self) -> dict[str, int]:
         """Which functions of its own the global handler has: `begin.begin` looks whether they are others."""

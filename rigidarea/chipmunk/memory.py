@@ -13,7 +13,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..contact.broad import ask_about, drop_pairs, put_in_tree
+from ..contact.broad import ask_about, drop_gone, put_in_tree
 from ..contact.dtypes import BODY, SHAPE
 from ..contact.space_record import LASTING, LASTING_STATE
 from ..contact.tables import (
@@ -214,7 +214,7 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
     tables.bodies["awake"][awake] = 1
     tables.awake[: len(awake)] = awake
     tables.counters[AWAKE] = len(awake)
-    drop_pairs(tables, -2)
+    drop_gone(tables)
     tables.counters[ANEW] = int(counters[ANEW] or lost.any() or not known.all())
     for name, value in memory.state.items():
         store.state[name] = value

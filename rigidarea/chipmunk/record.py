@@ -12,7 +12,7 @@ import numpy as np
 from ..compile.jit import kernel
 from ..compile.raw_memory import array_at, caller
 from ..contact.space_record import STATE
-from ..contact.tables import BOXED, UNSORTED, Tables
+from ..contact.tables import BOXED, KNOWN, UNSORTED, Tables
 from ..geometry.place import place, shift
 from .structs import function
 
@@ -187,8 +187,8 @@ def read_shape(s: Any, shape: Any) -> bool:
 
 @kernel
 def look_at_partners(s: Any, tables: Tables) -> None:
-    """What the user may set of shapes that do not move, of those that somebody who is awake is near."""
-    for n in range(tables.counters[BOXED]):
+    """What the user may set of shapes that do not move, of those that somebody who is awake is near: of new pairs."""
+    for n in range(tables.counters[KNOWN], tables.counters[BOXED]):
         pair = tables.pairs[tables.near[n].pair]
         if pair.a < 0:
             continue
@@ -199,3 +199,4 @@ def look_at_partners(s: Any, tables: Tables) -> None:
                     tables.counters[UNSORTED] = 1
                 body = tables.bodies[shape.body]
                 _read_velocity(s, body.address, body)
+    tables.counters[KNOWN] = tables.counters[BOXED]

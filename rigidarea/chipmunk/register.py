@@ -14,7 +14,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..geometry.outline import Outline
+from ..geometry.outline import Outline, outline_on
 from .arrays import Store
 from .outline_pool import drop_unused_outlines, enter_outline, read_outlines
 from .structs import address_of
@@ -33,9 +33,9 @@ class Register:
 
         self._store = store
         self._state = store.state[0]
-        self._pending = store.state[
-            "pending"
-        ]  # a view: reading a field of a record takes twenty times as long
+        # pointers: reading a field of a record takes forty times as long
+        fields = (store.state[name] for name in ("pending", "shape_counter", "shape_count"))
+        self._pending, self._counter, self._count = (ffi.cast("long long *", at.ctypes.data) for at in fields)
         self._hook = hook
         self._shapes_come = ffi.cast(
             "long long(*)(uintptr_t, void *, int *, long long)", entering.shapes_come.address
@@ -44,17 +44,15 @@ class Register:
         self._bodies_come = ffi.cast(
             "long long(*)(uintptr_t, void *, long long, long long)", entering.bodies_come.address
         )
-        self._body_goes = ffi.cast("void(*)(uintptr_t, uintptr_t)", entering.body_goes.address)
+        self._body_goes = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.body_goes.address)
         self._placed_anew = ffi.cast("void(*)(uintptr_t, void *, long long)", entering.placed_anew.address)
         self.shapes: dict[int, pymunk.Shape] = {}  # by Chipmunk's id
         self.proxies: set[int] = set()  # ids of those whose outline Chipmunk does not see
         self._new: dict[pymunk.Shape, None] = {}  # not entered yet
-        self._gone: list[int] = []  # ids of shapes that are entered still
         self._bodies: dict[pymunk.Body, None] = {}  # not entered yet
-        self._left: list[int] = []  # bodies that are entered still
 
     def _pend(self) -> None:
-        """There is something to enter, or to forget, before the next frame."""
+        """There is something to enter before the next frame (what goes is noted in machine code)."""
         if self._pending[0] == 0:
             self._pending[0] = 1
 
@@ -64,23 +62,27 @@ class Register:
         """A shape has been added: what does not move counts as it is now, until it is reindexed, as in pymunk."""
         self._pend()
         self._new[shape] = None
-        if shape.body is not None and shape.body.body_type == _STATIC:
+        body = shape.body
+        if body is not None and body.body_type == _STATIC:
             try:
-                read = self._outlines([shape])
-                self.forget()
-                self._enter([shape], *read)
+                drop_unused_outlines(self._store)
+                self._enter([shape], *self._outlines([shape]))
             # said when the space is stepped: pymunk is in the midst of adding
             except (ValueError, MemoryError):
                 return
             del self._new[shape]
 
-    def shape_goes(self, shape: pymunk.Shape) -> None:
-        """A shape is about to be removed."""
+    def shape_went(self, shape: pymunk.Shape, ident: int) -> None:
+        """A shape has been removed: nothing of it is read or written from now on. ident: its id until then."""
         if shape in self._new:
             del self._new[shape]
         else:
-            self._gone.append(shape._hashid)
-        self._pend()
+            self._forget(ident)
+
+    def _forget(self, ident: int) -> None:
+        self._shape_goes(self._store.at, ident)
+        self.shapes.pop(ident, None)
+        self.proxies.discard(ident)
 
     def body_came(self, body: pymunk.Body) -> None:
         """A body has been added."""
@@ -88,13 +90,16 @@ class Register:
         self._pend()
 
     def body_goes(self, body: pymunk.Body) -> None:
-        """A body is about to be removed."""
+        """A body is about to be removed: it has its position function back."""
         if body in self._bodies:
             del self._bodies[body]
         else:
-            self._left.append(address_of(body._body))
-            self._hook.release(body)
-        self._pend()
+            self._hook.held.discard(body)
+            self._body_goes(self._store.at, body._body, True)
+
+    def look_again(self) -> None:
+        """Something has gone in the midst of a step: the whole space is looked through before the next."""
+        self._pending[0] = 2
 
     def reread(self, shapes: Iterable[pymunk.Shape]) -> None:
         """These shapes have been reindexed: those of a changed geometry are read again, and what is static is where it
@@ -125,19 +130,18 @@ class Register:
     def update(self, space: pymunk.Space) -> None:
         """Bring the tables up to what the space holds: bodies, shapes, whose callbacks there are."""
         state = self._state
-        pending = int(self._pending[0])
-        count = len(self.shapes) + len(self._new) - len(self._gone)
-        if count != len(space._shapes) or pending == 2:
+        pending = self._pending[0]
+        if len(self.shapes) + len(self._new) != len(space._shapes) or pending == 2:
             self._look_through(space)
+        drop_unused_outlines(self._store)
         new = list(self._new)
         read = self._outlines(new)  # says what is wrong with one while nothing has changed
         self._pending[0] = 2  # until all is done: whoever is interrupted looks through the space
-        self.forget()
         if self._bodies:
             # (who comes later is moved by Chipmunk in its first frame, so that its index knows where that takes it)
-            held = state["shape_count"] < 0 and not state["explicit"]
-            self._hook.hold(self._bodies)
-            self._enter_bodies((body._body for body in self._bodies), held)
+            held = self._count[0] < 0 and not state["explicit"]
+            self._hook.held.update(self._bodies)
+            self._enter_bodies([body._body for body in self._bodies], held)
             self._bodies.clear()
         if (
             pending >= 2
@@ -148,41 +152,25 @@ class Register:
         if pending != 1:  # what begins a frame has noticed something else, of callbacks perhaps
             for name, value in self._hear(space).items():
                 state[name] = value
-        state["shape_counter"] = lib.cpSpaceGetShapeIDCounter(space._space)
-        state["shape_count"] = len(self.shapes)
+        self._counter[0] = lib.cpSpaceGetShapeIDCounter(space._space)
+        self._count[0] = len(self.shapes)
         self._pending[0] = 0
-
-    def forget(self) -> None:
-        """What has gone is not in the tables any more: nothing of it is read or written from now on."""
-        for ident in self._gone:
-            if ident in self.proxies:
-                self._store.known_shapes["proxy"][self._store.slots[ident]] = 0
-                self.proxies.discard(ident)
-            self._shape_goes(self._store.at, ident)
-            self.shapes.pop(ident, None)
-        if self._gone:
-            self._gone.clear()
-            try:
-                drop_unused_outlines(self._store)
-            except MemoryError:  # another time: pymunk is in the midst of removing
-                pass
-        for address in self._left:
-            self._body_goes(self._store.at, address)
-        self._left.clear()
 
     def _look_through(self, space: pymunk.Space) -> None:
         """What there is that pymunk has not told of, and what is no more."""
         present = {shape._hashid: shape for shape in space._shapes}
         rows = self._store.known_shapes
         known = set(rows["ident"][rows["outline"] >= 0].tolist())
+        for ident in known - present.keys():
+            self._forget(ident)
         self.shapes = {ident: shape for ident, shape in present.items() if ident in known}
-        self._gone = [ident for ident in known if ident not in present]
         self._new = {shape: None for ident, shape in present.items() if ident not in known}
         bodies = {address_of(body._body): body for body in space._bodies}
         held = {address_of(body) for body in _held(space)}
         found = self._store.tables.bodies
         entered = set(found["address"][found["entered"] == 1].tolist())
-        self._left = [address for address in entered if address not in bodies and address not in held]
+        for address in entered - bodies.keys() - held:
+            self._body_goes(self._store.at, ffi.cast("void *", address), False)
         self._bodies = {body: None for address, body in bodies.items() if address not in entered}
 
     def _enter_bodies(self, bodies: Iterable[Any], hold: bool) -> None:
@@ -195,24 +183,21 @@ class Register:
         ):
             self._store.grow()
 
-    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any]:
-        """Chipmunk's addresses of shapes, and the numbers in the pool of their outlines, in which they are then.
-
-        ValueError if one has no area.
+    def _outlines(self, shapes: Sequence[pymunk.Shape]) -> tuple[Any, Any, list[Outline | None]]:
+        """Chipmunk's addresses of shapes, the numbers in the pool of their outlines, in which they are then, and the
+        outlines that somebody has put on them. ValueError if one has no area.
         """
-        addresses = _pointers(shape._shape for shape in shapes)
-        heads = ffi.new("int[]", [self._given(shape) for shape in shapes])
+        addresses = ffi.new("void *[]", [shape._shape for shape in shapes])
+        given = [outline_on(shape) for shape in shapes]
+        heads = ffi.new("int[]", [self._packed(one) if one else -1 for one in given])
         bad = read_outlines(self._store, address_of(addresses), address_of(heads), len(shapes))
         if bad >= 0:
             Outline.from_pymunk(shapes[bad])  # says what is wrong
             raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
-        return addresses, heads
+        return addresses, heads, given
 
-    def _given(self, shape: pymunk.Shape) -> int:
-        """The number in the pool of the outline that somebody has put on a shape; -1: nobody has."""
-        if not isinstance(getattr(shape, "outline", None), Outline):
-            return -1
-        outline = Outline.from_pymunk(shape)
+    def _packed(self, outline: Outline) -> int:
+        """The number in the pool of an outline that somebody has put on a shape."""
         head = enter_outline(self._store, outline, outline.smallest_extent)
         if outline.mirror is not None:
             self._store.forms.mirror[head] = enter_outline(
@@ -220,19 +205,18 @@ class Register:
             )
         return head
 
-    def _enter(self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any) -> None:
+    def _enter(
+        self, shapes: Sequence[pymunk.Shape], addresses: Any, heads: Any, given: list[Outline | None]
+    ) -> None:
         """Enter shapes into the tables (`_outlines`)."""
         done, n = 0, len(shapes)
         while done < n:
             done += self._shapes_come(self._store.at, addresses + done, heads + done, n - done)
             if done < n:
                 self._store.grow()
-        self.shapes.update((shape._hashid, shape) for shape in shapes)
-        proxies = [
-            shape._hashid
-            for shape in shapes
-            if isinstance(getattr(shape, "outline", None), Outline) and Outline.from_pymunk(shape).proxied
-        ]
+        idents = [shape._hashid for shape in shapes]
+        self.shapes.update(zip(idents, shapes))
+        proxies = [ident for ident, one in zip(idents, given) if one and one.proxied]
         if proxies:
             self._store.known_shapes["proxy"][self._store.slots[proxies]] = 1
             self.proxies.update(proxies)

@@ -50,22 +50,19 @@ def attached_class(plain: Any) -> type:
             self.__dict__[KEY]._register.shape_came(shape)
 
         def _remove_shape(self: Any, shape: pymunk.Shape) -> None:
-            if shape in self._shapes:
-                self.__dict__[KEY]._register.shape_goes(shape)
+            register, ident = self.__dict__[KEY]._register, shape._hashid
             plain._remove_shape(self, shape)
-            if not self._locked:
-                self.__dict__[KEY]._register.forget()
+            register.look_again() if self._locked else register.shape_went(shape, ident)
 
         def _add_body(self: Any, body: pymunk.Body) -> None:
             plain._add_body(self, body)
             self.__dict__[KEY]._register.body_came(body)
 
         def _remove_body(self: Any, body: pymunk.Body) -> None:
+            register = self.__dict__[KEY]._register
             if body in self._bodies:
-                self.__dict__[KEY]._register.body_goes(body)
+                register.look_again() if self._locked else register.body_goes(body)
             plain._remove_body(self, body)
-            if not self._locked:
-                self.__dict__[KEY]._register.forget()
 
         def debug_draw(self: Any, options: pymunk.SpaceDebugDrawOptions) -> None:
             with true_outlines(options):

@@ -10,7 +10,7 @@ from ..contact.blows import blows, bound_bounces
 from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.islands import note, share_kicks
-from ..contact.join import any_pair_touches, gather, has_room, join, no_pair_comes_near
+from ..contact.join import SPARE, any_pair_touches, gather, has_room, join, no_pair_comes_near
 from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
 from ..contact.solve import (
@@ -25,7 +25,7 @@ from ..contact.solve import (
     warm_start_in_part,
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
-from ..contact.tables import BOUNCES, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
+from ..contact.tables import BOUNCES, BOXED, KNOWN, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
 from ..contact.taut import free_turning, geometric_stiffness
 from .joints import ask_springs, own_joints
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
@@ -38,14 +38,15 @@ def near_pairs(s: Any, space: int, h: float, time: float, ordered: bool = True) 
     tables = load_tables(s)
     if not find_near(load_pool(s), tables, s.frame, h, time):
         return False
+    more = tables.counters[BOXED] - tables.counters[KNOWN]
     if tables.counters[UNSORTED]:
         look_at_partners(s, tables)
-        sieve(tables)
+        sieve(tables, s.frame)
         if ordered:
             g = floats(space + s.space_gravity, 2)
             arrange(tables, g[0], g[1])
     lap(s, PAIRS)
-    return bool(s.begun or has_room(tables, time))
+    return bool(s.begun or more <= SPARE // 2 or has_room(tables, time))
 
 
 @kernel

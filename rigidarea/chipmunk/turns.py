@@ -42,13 +42,12 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
             if joint.taken:
                 spare(tables, joint.a, s.substeps)
                 spare(tables, joint.b, s.substeps)
-    part(tables)
+    part(tables, dt)
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
     numbers = number(tables)
-    if numbers > 1:
-        connect_in_reach(tables, dt)
+    if numbers > 1 and connect_in_reach(tables, dt):
         numbers = number(tables)
     if numbers < 2:
         all_in_one_group(load_tables(s))

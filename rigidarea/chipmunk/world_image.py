@@ -106,7 +106,7 @@ class Image:
 
 def _lay_out(offsets: dict[str, int], lengths: dict[str, int], kinds: dict[str, Any], at: int) -> int:
     """Where the tables that grow begin, one behind the other from `at` on; how many bytes that makes."""
-    lengths["near"], lengths["told"] = lengths["pairs"] + 1, lengths["pairs"]
+    lengths["near"], lengths["told"] = 2 * lengths["pairs"] + 1, lengths["pairs"]
     lengths["table"] = max(64, 1 << (2 * lengths["pairs"] - 1).bit_length())
     for name in GROWING:
         offsets[name] = at

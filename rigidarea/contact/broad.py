@@ -21,6 +21,7 @@ from .tables import (
     DRIFTS,
     FREE_PAIRS,
     GONE,
+    KNOWN,
     MORE_PAIRS,
     MOVERS,
     SEARCH,
@@ -29,7 +30,6 @@ from .tables import (
     Tables,
     end_pair,
     find_pair,
-    forget_pair,
     new_pair,
 )
 from .tree import MOVING, STILL, insert, move, next_met, remove
@@ -234,35 +234,20 @@ def boxes_part(one: Any, other: Any) -> bool:
 
 
 @entry
-def drop_pairs(tables: Tables, frame: int) -> None:
-    """Forget the pairs of what has gone, or whose boxes have parted.
-
-    Those that Chipmunk has told of in this frame stay, with nothing remembered: it is yet to hear of them. Those of
-    which nobody is awake are remembered, but near no more.
-    """
-    counters = tables.counters
-    k = 0
-    for n in range(counters[BOXED]):
-        p = tables.near[n].pair
+def drop_gone(tables: Tables) -> None:
+    """Forget the near pairs of shapes that have gone."""
+    n = 0
+    for i in range(tables.counters[BOXED]):
+        p = tables.near[i].pair
         pair = tables.pairs[p]
         if pair.a < 0:
             continue
-        one = tables.shapes[pair.a]
-        other = tables.shapes[pair.b]
-        if one.outline < 0 or other.outline < 0:
+        if tables.shapes[pair.a].outline < 0 or tables.shapes[pair.b].outline < 0:
             end_pair(tables, p)
-        elif not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
-            pair.near = -1
-        elif not boxes_part(one, other):
-            tables.near[k].pair = p
-            k += 1
-        elif pair.stamp != frame:
-            end_pair(tables, p)
-        else:
-            forget_pair(tables, p)
-            tables.near[k].pair = p
-            k += 1
-    counters[BOXED] = k
+            continue
+        tables.near[n].pair = p
+        n += 1
+    tables.counters[BOXED] = n
 
 
 @kernel
@@ -273,7 +258,7 @@ def forget_the_gone(tables: Tables) -> None:
         return
     counters[GONE] = 0
     counters[UNSORTED] = 1
-    drop_pairs(tables, -2)
+    drop_gone(tables)
     n = 0
     for k in range(counters[AWAKE]):
         i = tables.awake[k]
@@ -316,7 +301,7 @@ def list_anew(tables: Tables) -> None:
     """All pairs are to be found again, since the tables are not as the list was made of them."""
     counters = tables.counters
     counters[SEARCH] += 1
-    counters[BOXED] = 0
+    counters[BOXED] = counters[KNOWN] = 0
     for k in range(counters[MOVERS]):
         ask_about(tables, tables.movers[k])
 

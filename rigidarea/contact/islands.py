@@ -1,12 +1,12 @@
 """Which bodies go through a frame together, and in how many substeps.
 
-An island is what is near one another, or jointed, directly or through others that move; what does not move parts
-islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast or
-delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
+An island is what may touch within the frame, or is jointed, directly or through others that move; what does not move
+parts islands. Two islands share nothing within a frame, so that each may take substeps of its own number: what is fast
+or delicate makes nobody else pay. Islands of one number go together, in one *turn*; the kernels see a turn's bodies
 (`tables.live`) and pairs (from counters[FIRST] to counters[LAST] of `tables.near`) alone.
 
-Near is what a search has found for the whole frame. A blow within it may carry a body further: where that could be into
-another turn, by all the kinetic energy of its island, the two islands are one (`connect_in_reach`).
+A blow within the frame may carry a body further than its own motion: where that could be into another turn, by all the
+kinetic energy of its island, the two islands are one (`connect_in_reach`).
 """
 
 from __future__ import annotations
@@ -131,9 +131,9 @@ def all_in_one_group(tables: Tables) -> None:
     if counters[TURNED]:
         counters[TURNED] = 0
         counters[UNSORTED] = 1
-    enlist(tables)
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
+    enlist(tables)
 
 
 @kernel
@@ -179,13 +179,36 @@ def connect(tables: Tables, i: int, j: int) -> None:
         tables.bodies[max(i, j)].island = min(i, j)
 
 
+@kernel(forceinline=True)
+def _meet(tables: Tables, near: Any) -> bool:
+    """Whether the two of a near pair, both of which move, touch, or might within their `way`."""
+    a = tables.bodies[near.a]
+    b = tables.bodies[near.b]
+    if a.kind == FIXED or b.kind == FIXED:
+        return False
+    pair = tables.pairs[near.pair]
+    if pair.head >= 0:
+        return True
+    one = tables.shapes[pair.a]
+    other = tables.shapes[pair.b]
+    apart_x = max(one.left - other.right, other.left - one.right)
+    apart_y = max(one.bottom - other.top, other.bottom - one.top)
+    return bool(max(apart_x, apart_y) <= a.way + b.way)
+
+
 @kernel
-def part(tables: Tables) -> None:
-    """Every body for itself, then what is near is one."""
+def part(tables: Tables, dt: float) -> None:
+    """Every body for itself, then what touches, or comes to by its own motion within a frame of dt, is one."""
     for k in range(tables.counters[AWAKE]):
-        tables.bodies[tables.awake[k]].island = tables.awake[k]
+        body = tables.bodies[tables.awake[k]]
+        body.island = tables.awake[k]
+        body.steps = body.wants
+        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        speed = abs(body.vx) + abs(body.vy) + abs(body.gain_x) + abs(body.gain_y)
+        body.way = dt * (speed + (abs(body.w) + abs(body.gain_w)) * arm)
     for k in range(tables.counters[NEAR]):
-        connect(tables, tables.near[k].a, tables.near[k].b)
+        if _meet(tables, tables.near[k]):
+            connect(tables, tables.near[k].a, tables.near[k].b)
 
 
 @kernel
@@ -198,26 +221,21 @@ def number(tables: Tables) -> int:
     bodies = tables.bodies
     awake = tables.awake
     for k in range(counters[AWAKE]):
-        bodies[awake[k]].steps = bodies[awake[k]].wants
-    for k in range(counters[AWAKE]):
         root = _root(tables, awake[k])
         bodies[root].steps = max(bodies[root].steps, bodies[awake[k]].steps)
-    first = 0
-    numbers = 0
+    numbers = min(1, counters[AWAKE])
     for k in range(counters[AWAKE]):
         body = bodies[awake[k]]
         body.steps = bodies[_root(tables, awake[k])].steps
-        if numbers == 0:
-            first = body.steps
-            numbers = 1
-        elif body.steps != first:
+        if body.steps != bodies[awake[0]].steps:
             numbers = 2
-    return numbers
+    return int(numbers)
 
 
 @kernel
-def connect_in_reach(tables: Tables, dt: float) -> None:
-    """Islands of which one may send a body as far as another within a frame of dt, beyond what is near, are one.
+def connect_in_reach(tables: Tables, dt: float) -> bool:
+    """Islands of which one may send a body as far as another of another number within a frame of dt are one; whether
+    there were such.
 
     Contacts that do not bounce by more than they came with leave no body of an island more than its whole kinetic
     energy. Springs, motors and kinematic bodies may: who is met by those is met in the frame after, or by
@@ -230,25 +248,31 @@ def connect_in_reach(tables: Tables, dt: float) -> None:
         body = tables.bodies[tables.awake[k]]
         energy = 0.0
         if body.inverse_mass > 0.0:
-            speed = math.hypot(body.vx, body.vy) + math.hypot(body.gain_x, body.gain_y)
+            speed = math.sqrt(body.vx * body.vx + body.vy * body.vy)
+            speed += math.sqrt(body.gain_x * body.gain_x + body.gain_y * body.gain_y)
             energy += 0.5 * speed * speed / body.inverse_mass
         if body.inverse_moment > 0.0:
             spin = abs(body.w) + abs(body.gain_w)
             energy += 0.5 * spin * spin / body.inverse_moment
         tables.islands[_root(tables, tables.awake[k])].energy += energy
     for k in range(counters[AWAKE]):  # as it is now, whichever islands come to be one
-        i = tables.awake[k]
-        tables.mobility[i].x = tables.islands[_root(tables, i)].energy
+        body = tables.bodies[tables.awake[k]]
+        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
+        energy = tables.islands[_root(tables, tables.awake[k])].energy
+        body.way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
+    found = False
+    for k in range(counters[NEAR]):
+        near = tables.near[k]
+        if tables.bodies[near.a].steps != tables.bodies[near.b].steps and _meet(tables, near):
+            connect(tables, near.a, near.b)
+            found = True
     for k in range(counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
         body = tables.bodies[shape.body]
-        arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
-        energy = tables.mobility[shape.body].x
-        way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
-        low_x = shape.left - way
-        low_y = shape.bottom - way
-        high_x = shape.right + way
-        high_y = shape.top + way
+        low_x = shape.left - body.way
+        low_y = shape.bottom - body.way
+        high_x = shape.right + body.way
+        high_y = shape.top + body.way
         if (
             body.kind == FIXED
             or shape.sensor
@@ -269,6 +293,8 @@ def connect_in_reach(tables: Tables, dt: float) -> None:
             it = tables.bodies[other.body]
             if it.awake and it.steps != body.steps and shapes_collide(tables, shape, other):
                 connect(tables, shape.body, other.body)
+                found = True
+    return found
 
 
 @kernel
@@ -299,8 +325,9 @@ def next_turn(tables: Tables, last: int) -> int:
         if steps < last:
             turn = max(turn, steps)
     counters[TURN] = turn
-    enlist(tables)
-    bound(tables)
+    if turn > 0:
+        bound(tables)
+        enlist(tables)
     return turn
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.pool import Pool
-from .broad import boxes_part, drop_pairs, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
+from .broad import boxes_part, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
 from .tables import (
     ANEW,
     ASKED,
@@ -17,6 +17,7 @@ from .tables import (
     FIRST,
     FIXED,
     JOINTS,
+    KNOWN,
     LAST,
     LIVE,
     NEAR,
@@ -25,6 +26,8 @@ from .tables import (
     TURNED,
     UNSORTED,
     Tables,
+    end_pair,
+    forget_pair,
 )
 
 
@@ -32,7 +35,7 @@ from .tables import (
 def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> bool:
     """Bring the list of near pairs up to where bodies are, h before and after. False: no room for them.
 
-    To be sorted (`arrange`) where counters[UNSORTED] says so.
+    To be sieved and sorted (`sieve`, `arrange`) where counters[UNSORTED] says so.
     """
     counters = tables.counters
     if counters[ANEW] == 1:
@@ -44,8 +47,6 @@ def find_near(pool: Pool, tables: Tables, frame: int, h: float, time: float) -> 
     if counters[ANEW]:
         end_unlisted(tables, frame)
         counters[ANEW] = 0
-    if counters[UNSORTED]:
-        drop_pairs(tables, frame)
     return True
 
 
@@ -57,38 +58,54 @@ def up(gx: float, gy: float) -> tuple[float, float]:
 
 
 @kernel
-def sieve(tables: Tables) -> None:
-    """The near pairs that may collide before all others, and before those that are listed for Chipmunk alone."""
+def sieve(tables: Tables, frame: int) -> None:
+    """The near pairs that may collide before all others, and before those that are listed for Chipmunk alone.
+
+    Those whose boxes have parted are forgotten. Of these stay such as Chipmunk has told of in this frame, with nothing
+    remembered: it is yet to hear of them. Those of which nobody is awake are remembered, but near no more.
+    """
     near = tables.near
     n = 0
+    k = 0
     for i in range(tables.counters[BOXED]):
         p = near[i].pair
         pair = tables.pairs[p]
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        if may_collide(tables, pair) and not boxes_part(sa, sb):
-            near[i].pair = near[n].pair
+        if pair.a < 0:
+            continue
+        one = tables.shapes[pair.a]
+        other = tables.shapes[pair.b]
+        parted = boxes_part(one, other)
+        if not (tables.bodies[one.body].awake or tables.bodies[other.body].awake):
+            pair.near = -1
+            continue
+        if parted and pair.stamp != frame:
+            end_pair(tables, p)
+            continue
+        if parted:
+            forget_pair(tables, p)
+        collides = not parted and may_collide(tables, pair)
+        near[k].pair = near[n].pair if collides else p
+        if collides:
             near[n].pair = p
-            near[n].a = sa.body
-            near[n].b = sb.body
-            near[n].extent = min(sa.extent, sb.extent)
-            near[n].lined = sa.mirror >= 0 or sb.mirror >= 0
+            near[n].a = one.body
+            near[n].b = other.body
+            near[n].extent = min(one.extent, other.extent)
+            near[n].lined = one.mirror >= 0 or other.mirror >= 0
             n += 1
+        k += 1
+    tables.counters[BOXED] = tables.counters[KNOWN] = k
     tables.counters[NEAR] = n
 
 
 @kernel
 def arrange(tables: Tables, gx: float, gy: float) -> None:
     """Sort the near pairs (after `sieve`) from the bottom to the top: by places alone, so that nothing depends on who
-    came first. Where a frame is made of turns (`islands`), turn by turn.
+    came first. Where a frame is made of turns (`islands`), turn by turn. And the bodies that are awake in the same way:
+    sums over them then do not depend on who came first either.
     """
     ux, uy = up(gx, gy)
-    near = tables.near
-    last = len(near) - 1  # room for one
-    n = tables.counters[NEAR]
-    sorted_already = True
-    for i in range(n):
-        one = near[i]
+    for i in range(tables.counters[NEAR]):
+        one = tables.near[i]
         a = tables.bodies[one.a]
         b = tables.bodies[one.b]
         x = 0.0
@@ -103,49 +120,81 @@ def arrange(tables: Tables, gx: float, gy: float) -> None:
         one.order = share * (ux * x + uy * y)
         one.beside = share * (ux * y - uy * x)
         one.turn = turn_of(a, b) if tables.counters[TURNED] else 0
-        sorted_already = sorted_already and (i == 0 or not _after(tables, near[i - 1], one))
-    gap = 1
-    while gap < n and not sorted_already:
-        gap = 3 * gap + 1
-    while gap > 0 and not sorted_already:  # Shell's sort, in place
-        for i in range(gap, n):
-            if not _after(tables, near[i - gap], near[i]):
-                continue
-            _set(near[last], near[i])
-            j = i
-            while j >= gap and _after(tables, near[j - gap], near[last]):
-                _set(near[j], near[j - gap])
-                j -= gap
-            _set(near[j], near[last])
-        gap //= 3
+    _sort(tables, True, tables.counters[NEAR], tables.counters[BOXED], ux, uy)
+    _sort(tables, False, tables.counters[AWAKE], tables.counters[AWAKE], ux, uy)
     tables.counters[UNSORTED] = 0
-    line_up(tables, gx, gy)
-    enlist(tables)
     bound(tables)
+    enlist(tables)
 
 
 @kernel
-def line_up(tables: Tables, gx: float, gy: float) -> None:
-    """Sort the bodies that are awake in the same way: sums over them then do not depend on who came first either."""
-    ux, uy = up(gx, gy)
-    awake = tables.awake
-    n = tables.counters[AWAKE]
+def _sort(tables: Tables, pairs: bool, n: int, room: int, ux: float, uy: float) -> None:
+    """Sort near pairs, or bodies that are awake; the list has room from `room` on for n of them, and for one.
+
+    Most are in order: those that are not are taken out, sorted (Shell) and merged with the rest (C. R. Cook and
+    D. J. Kim, "Best sorting algorithm for nearly sorted lists", Comm. ACM 23 (1980)).
+    """
+    kept = 0
+    for i in range(n):
+        if kept > 0 and _later(tables, pairs, kept - 1, i, ux, uy):
+            kept -= 1  # either may be the one that is out of order
+            continue
+        if kept < i:
+            _set(tables, pairs, room, kept)
+            _set(tables, pairs, kept, i)
+            _set(tables, pairs, i, room)
+        kept += 1
     gap = 1
-    for i in range(1, n):
-        if _above(tables.bodies[awake[i - 1]], tables.bodies[awake[i]], ux, uy):
-            while gap < n:
-                gap = 3 * gap + 1
-            break
-    gap //= 3
+    while gap < n - kept:
+        gap = 3 * gap + 1
     while gap > 0:
-        for i in range(gap, n):
-            k = awake[i]
+        for i in range(kept + gap, n):
+            _set(tables, pairs, room, i)
             j = i
-            while j >= gap and _above(tables.bodies[awake[j - gap]], tables.bodies[k], ux, uy):
-                awake[j] = awake[j - gap]
+            while j >= kept + gap and _later(tables, pairs, j - gap, room, ux, uy):
+                _set(tables, pairs, j, j - gap)
                 j -= gap
-            awake[j] = k
+            if j < i:
+                _set(tables, pairs, j, room)
         gap //= 3
+    for i in range(kept, n):
+        _set(tables, pairs, room + i - kept, i)
+    left = n - kept
+    for i in range(n - 1, -1, -1):
+        if left == 0:
+            break
+        if kept > 0 and _later(tables, pairs, kept - 1, room + left - 1, ux, uy):
+            kept -= 1
+            _set(tables, pairs, i, kept)
+        else:
+            left -= 1
+            _set(tables, pairs, i, room + left)
+
+
+@kernel(forceinline=True)
+def _later(tables: Tables, pairs: bool, i: int, j: int, ux: float, uy: float) -> bool:
+    """Whether of two places in a list the first has what belongs behind what the second has."""
+    if pairs:
+        return bool(_after(tables, tables.near[i], tables.near[j]))
+    return bool(_above(tables.bodies[tables.awake[i]], tables.bodies[tables.awake[j]], ux, uy))
+
+
+@kernel(forceinline=True)
+def _set(tables: Tables, pairs: bool, i: int, j: int) -> None:
+    """Place i of a list as place j."""
+    if not pairs:
+        tables.awake[i] = tables.awake[j]
+        return
+    one = tables.near[i]
+    other = tables.near[j]
+    one.pair = other.pair
+    one.a = other.a
+    one.b = other.b
+    one.extent = other.extent
+    one.lined = other.lined
+    one.turn = other.turn
+    one.order = other.order
+    one.beside = other.beside
 
 
 @kernel
@@ -215,7 +264,9 @@ def _enlist_fixed(tables: Tables, i: int, n: int) -> int:
 
 @kernel
 def enlist(tables: Tables) -> None:
-    """List the bodies that are live: those of the turn, then what does not move and is near or jointed to one."""
+    """List the bodies that are live: those of the turn, then what does not move and is near or jointed to one (after
+    `bound`).
+    """
     counters = tables.counters
     turn = counters[TURN]
     n = 0
@@ -225,7 +276,7 @@ def enlist(tables: Tables) -> None:
             tables.live[n] = i
             n += 1
     counters[ENLISTED] += 1
-    for k in range(counters[NEAR]):
+    for k in range(counters[FIRST], counters[LAST]):
         n = _enlist_fixed(tables, tables.near[k].a, n)
         n = _enlist_fixed(tables, tables.near[k].b, n)
     for k in range(counters[JOINTS]):
@@ -269,18 +320,6 @@ def bound(tables: Tables) -> None:
         last += 1
     counters[FIRST] = first
     counters[LAST] = last
-
-
-@kernel(forceinline=True)
-def _set(one: Any, other: Any) -> None:
-    one.pair = other.pair
-    one.a = other.a
-    one.b = other.b
-    one.extent = other.extent
-    one.lined = other.lined
-    one.turn = other.turn
-    one.order = other.order
-    one.beside = other.beside
 
 
 @kernel(forceinline=True)

@@ -38,7 +38,8 @@ PLACED, SPENT = 1, 2
 #: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
 #: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come. Islands of
-#: rows (`active`), rows in `queue`, bodies in `members`.
+#: rows (`active`), rows in `queue`, bodies in `members`. Pairs in `near` for whose regions there is room, and what the
+#: user may set of whose shapes has been read.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, TOOTHED, BOUNCES = range(12, 19)
@@ -46,8 +47,8 @@ BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CO
 JOINTS, REJOINED, GONE = range(29, 32)
 MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(32, 39)
 USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(39, 44)
-ISLANDS, QUEUE, MEMBERS = range(44, 47)
-COUNTERS = 47
+ISLANDS, QUEUE, MEMBERS, KNOWN = range(44, 48)
+COUNTERS = 48
 
 
 class Law(NamedTuple):
@@ -80,7 +81,7 @@ class Tables(NamedTuple):
     live: (
         np.ndarray
     )  # (n,) int32: bodies that go through the substeps now, and what does not move and they are near
-    awake: np.ndarray  # (n,) int32: bodies that are awake, in the order of sums over them
+    awake: np.ndarray  # (2 n,) int32: bodies that are awake, in the order of sums over them; room for sorting
     movers: np.ndarray  # (m,) int32: their shapes
     asked: np.ndarray  # (m,) int32: shapes whose box is to be asked whom it meets
     told: np.ndarray  # (k,) int32: pairs of which Chipmunk has told in this frame
@@ -88,7 +89,7 @@ class Tables(NamedTuple):
     roots: np.ndarray  # (3,) int32, see `tree`
     near: (
         np.ndarray
-    )  # (k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; the last for sorting
+    )  # (2 k + 1,) NEIGHBOURS: pairs whose boxes meet, in the order of the sweeps; room for sorting
     apart: np.ndarray  # (n, 2) int32: bodies that a joint keeps from colliding
     joints: np.ndarray  # (n,) JOINT
     table: np.ndarray  # (m,) int32: hash table of pairs by their shapes; -1: empty

@@ -180,8 +180,7 @@ class Outline(Solid):
             positive(tolerance, "tolerance")
         if side not in ("both", "left", "right"):
             raise ValueError(f"side must be 'both', 'left' or 'right', got {side!r}")
-        outline = getattr(shape, "outline", None)
-        if isinstance(outline, Outline):
+        if outline := outline_on(shape):
             return outline
         if isinstance(shape, pymunk.Circle):
             return _rounded((tuple(shape.offset),), shape.radius, tolerance)
@@ -257,6 +256,12 @@ class Outline(Solid):
 
 
 # --- pymunk's shapes ---
+
+
+def outline_on(shape: pymunk.Shape) -> Outline | None:
+    """The outline that somebody has put on a shape (`shape.outline`, see `Outline.add_to`); None: nobody has."""
+    outline = getattr(shape, "__dict__", {}).get("outline")  # (pymunk's `__getattr__` takes 1 us to say no)
+    return outline if isinstance(outline, Outline) else None
 
 
 @lru_cache(maxsize=512)  # outlines are immutable: ten thousand equal boxes share one
