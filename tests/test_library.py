@@ -9,6 +9,7 @@ import subprocess
 import sys
 import time
 import types
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ import pytest
 
 import rigidarea
 from rigidarea.compile.raw_memory import record
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 
 POINT = record([("x", "f8"), ("n", "i4")])
 
@@ -72,7 +75,8 @@ def both(tmp_path_factory: Any) -> Any:
         pytest.skip("nothing here links a library")
     import numba
 
-    from rigidarea.compile import ahead, compiled, whole
+    from machine_code import ahead
+    from rigidarea.compile import compiled, whole
     from rigidarea.compile.library import Library
 
     functions = {}
@@ -171,14 +175,14 @@ def test_arrays_that_a_library_gives_are_freed(both: Any) -> None:
 
 def kernels() -> dict[str, Any]:
     """All that Python calls, in this back end, by their names."""
-    from rigidarea.compile.callers import called_from_python, modules
+    from machine_code.callers import called_from_python, modules
 
     if rigidarea.backend() == "library":
         from rigidarea.compile.library import Function, Text
 
         return called_from_python(lambda thing: isinstance(thing, (Function, Text)), modules())
     if rigidarea.backend() == "compiled":
-        from rigidarea.compile.ahead import is_kernel
+        from machine_code.ahead import is_kernel
 
         return called_from_python(is_kernel, modules())
     pytest.skip("kernels are functions as others")
@@ -198,16 +202,16 @@ def test_what_python_calls_is_found() -> None:
 
 CALLING = """
 import functools
-from rigidarea.compile import callers
-from rigidarea.compile.callers import name_of as by_name, modules as not_called
+from rigidarea import report
+from rigidarea.report import align as by_name, plain as not_called
 def plain(): return by_name(1)
-def attribute(): return callers.name_of(1)
+def attribute(): return report.align(1)
 def imported():
-    from rigidarea.compile.callers import name_of as here
+    from rigidarea.report import align as here
     return here(1)
 def imported_module():
-    from rigidarea.compile import callers as there
-    return [there.name_of(x) for x in ()]
+    from rigidarea import report as there
+    return [there.align(x) for x in ()]
 @functools.cache
 def cached(): return by_name(1)
 class Method:
@@ -222,7 +226,8 @@ class Method:
 
 @pytest.mark.parametrize("way", ["plain", "attribute", "imported", "imported_module", "cached", "Method"])
 def test_callers_are_found_however_they_name_a_kernel(way: str) -> None:
-    from rigidarea.compile import callers
+    from machine_code import callers
+    from rigidarea import report
 
     module = types.ModuleType("rigidarea.calling")
     vars(module)["__package__"] = "rigidarea"
@@ -230,11 +235,11 @@ def test_callers_are_found_however_they_name_a_kernel(way: str) -> None:
     for name in set(vars(module)) & {"plain", "attribute", "imported", "imported_module", "cached", "Method"}:
         if name != way:
             delattr(module, name)
-    kernel = {callers.name_of, callers.modules}
+    kernel = {report.align, report.plain}
     found = callers.called_from_python(
         lambda thing: isinstance(thing, types.FunctionType) and thing in kernel, [module]
     )
-    assert set(found) == {"rigidarea.compile.callers.name_of"}
+    assert set(found) == {"rigidarea.report.align"}
 
 
 def test_the_library_has_all_that_python_calls() -> None:
@@ -251,7 +256,7 @@ def test_the_rehearsal_calls_all_that_python_calls() -> None:
     """So a kernel that is new is in the next library, or this says that `rehearsal` does not know it."""
     if rigidarea.backend() != "compiled":
         pytest.skip("where numba compiles")
-    from rigidarea.compile import ahead, rehearsal
+    from machine_code import ahead, rehearsal
 
     calls = ahead.Calls()
     with calls:

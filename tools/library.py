@@ -23,7 +23,7 @@ def main() -> int:
         tempfile.TemporaryDirectory() as cache
     ):  # what is on disk is machine code already: all is compiled here
         os.environ |= {"RIGIDAREA_BACKEND": "compiled", "RIGIDAREA_AHEAD": "1", "NUMBA_CACHE_DIR": cache}
-        from rigidarea.compile import ahead, rehearsal
+        from machine_code import ahead, rehearsal
 
         made = ahead.make(folder, rehearsal.rehearse)
     size = sum(path.stat().st_size for path in made)

@@ -23,7 +23,7 @@ BESIDE = (
 
 def modules() -> list[ModuleType]:
     """All modules of the package whose users' calls are machine code."""
-    package = importlib.import_module(__name__.split(".")[0])
+    package = importlib.import_module("rigidarea")
     names = [m.name for m in pkgutil.walk_packages(package.__path__, f"{package.__name__}.")]
     return [importlib.import_module(name) for name in names if name.split(".")[1] not in BESIDE]
 

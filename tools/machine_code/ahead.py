@@ -1,4 +1,4 @@
-"""Machine code ahead of time: what Python or Chipmunk calls, as functions of C, in one library beside this file.
+"""Machine code ahead of time: what Python or Chipmunk calls, as functions of C, in one library.
 
 Nothing is listed. Callbacks are all that are decorated so. What Python calls is found by looking at the code of all
 functions of the package that are no kernels (`called_from_python`), and with which types by calling it: `rehearsal`
@@ -10,7 +10,7 @@ callback is the callback. That of the others takes two addresses: of its argumen
 other (an array is its address and its shape, and its strides if it may have any; a tuple is what is in it), and of what
 it returns, likewise. It returns 0, or what numba's calling convention has for an exception, whose address is then
 returned.
-`library` is the other side of it.
+`rigidarea.compile.library` is the other side of it.
 """
 
 from __future__ import annotations
@@ -36,9 +36,10 @@ from numba.core.registry import cpu_target
 from numba.np import arrayobj
 from numba.np.numpy_support import as_dtype
 
-from . import compiled, whole
+from rigidarea.compile import compiled, whole
+from rigidarea.compile.chosen import FILES
+
 from .callers import called_from_python, modules, name_of
-from .chosen import FILES
 
 #: Instruction sets by processor: the first is what every one has that is worth while, `runtime.c` says which is best.
 LEVELS = {"x86_64": ("x86-64-v2", "x86-64-v3")}
@@ -337,7 +338,9 @@ def make(folder: Path, rehearse: Callable[[], None]) -> tuple[Path, Path]:
         rehearse()
     missed = sorted(set(called_from_python(is_kernel, modules())) - set(calls.noted))
     if missed:
-        raise RuntimeError(f"expected compile.rehearsal to call {', '.join(missed)}, it does not")
+        raise RuntimeError(
+            f"expected tools/machine_code/rehearsal.py to call {', '.join(missed)}, it does not"
+        )
     back, called = units(calls, callbacks(), whole.kept)
     folder.mkdir(parents=True, exist_ok=True)
     write(folder, back, called)
