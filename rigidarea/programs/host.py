@@ -8,7 +8,6 @@ are not put back.
 from __future__ import annotations
 
 import gc
-import random
 import runpy
 import sys
 import time
@@ -17,12 +16,11 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
 import pymunk
 
 from ..chipmunk import AreaContact, attach, attached
 from . import null_pyglet
-from .screen import Input, Screen
+from .screen import Screen
 
 ENGINES = ("area", "pymunk")
 PHASES = ("begin", "pre_solve", "post_solve", "separate")
@@ -39,26 +37,19 @@ class Host:
     frames: how many frames to run (None: until the program ends). A frame is what is shown: one
         `pygame.display.flip`, `Clock.tick` or turn of pyglet's loop (whichever comes oftener), and where nothing is
         ever shown one `space.step`.
-    headless: no window, a clock that never waits, input by `script`; else the program meets the real ones.
+    headless: no window, a clock that never waits, no user; else the program meets the real ones.
 
     `after_frame`, if somebody sets it, is called after every frame; it may look at everything.
 
     Raises ValueError for an unknown engine or a negative number of frames.
     """
 
-    def __init__(
-        self,
-        engine: str = "area",
-        frames: int | None = None,
-        *,
-        headless: bool = True,
-        script: Sequence[Input] = (),
-    ) -> None:
+    def __init__(self, engine: str = "area", frames: int | None = None, *, headless: bool = True) -> None:
         if engine not in ENGINES:
             raise ValueError(f"engine must be one of {', '.join(ENGINES)}, got {engine!r}")
         if frames is not None and frames < 1:
             raise ValueError(f"frames must be at least 1, got {frames}")
-        self.engine, self.frames, self.headless, self.script = engine, frames, headless, script
+        self.engine, self.frames, self.headless = engine, frames, headless
         self.after_frame: Callable[[], None] | None = None
         self.spaces: list[pymunk.Space] = []
         """Every space that was stepped, in the order of their first steps."""
@@ -143,10 +134,14 @@ class Host:
         Space.on_collision = counted_on_collision
         Contact.step = counted_contact_step
         if self.headless:
-            Screen(self.script, self._count, lambda: self.frame).install()
-            null_pyglet.install(self.script, self._count)
+            self._install_stand_ins()
         elif self.frames is not None or self.after_frame is not None:
             self._count_flips()
+
+    def _install_stand_ins(self) -> None:
+        """In the place of a screen and its clock."""
+        Screen(self._count).install()
+        null_pyglet.install(null_pyglet.Loop(self._count))
 
     def _count_flips(self) -> None:
         """In a real window: count what it shows."""
@@ -230,9 +225,3 @@ class _Counted:
 
 def _itself(callback: Any) -> Any:
     return callback
-
-
-def seed_everything(seed: int) -> None:
-    """Seed `random` and NumPy's global generator."""
-    random.seed(seed)
-    np.random.seed(seed)  # noqa: NPY002 - the program's own choice of generator is what has to be met

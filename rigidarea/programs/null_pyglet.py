@@ -1,17 +1,17 @@
 """pyglet without a screen: its clock, its application loop and its events; everything that draws does nothing.
 
 pyglet needs OpenGL even off screen. A program's physics needs none of that: scheduled functions are called at their
-own pace on a time that never waits, event handlers get the script's input, `on_draw` runs with calls that go nowhere.
+own pace on a time that never waits, `on_draw` runs with calls that go nowhere.
 """
 
 from __future__ import annotations
 
 import sys
 import types
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from typing import Any
 
-from .screen import FRAME_MS, Input
+from .screen import FRAME_MS
 
 
 class _Nothing(type):
@@ -77,7 +77,7 @@ class Window:
 windows: list[Window] = []
 
 
-class _Key:
+class Keys:
     """Key codes: a number for every name."""
 
     def __getattr__(self, name: str) -> int:
@@ -93,13 +93,10 @@ class _Leave(Exception):
 class Loop:
     """pyglet's clock and application loop."""
 
-    def __init__(self, script: Sequence[Input], counted: Callable[[str], None]) -> None:
-        self._script = sorted(script, key=lambda given: given.frame)
+    def __init__(self, counted: Callable[[str], None]) -> None:
         self._counted = counted
         self._now = 0.0
         self._jobs: list[list[Any]] = []  # due (seconds), interval or None, function, arguments
-        self._mouse = (0, 0)
-        self._buttons = 0
 
     def schedule_interval(self, function: Callable[..., Any], interval: float, *more: Any) -> None:
         """Call function(dt, ...) every `interval` seconds."""
@@ -119,19 +116,19 @@ class Loop:
 
     def run(self, *arguments: Any) -> None:
         """Frame after frame, until somebody ends it."""
-        frame = 0
         try:
             while True:
-                while self._script and self._script[0].frame <= frame:
-                    self._dispatch(self._script.pop(0))
-                self._now += FRAME_MS / 1000
-                self._call_due()
-                for window in windows:
-                    window.dispatch_event("on_draw")
-                frame += 1
-                self._counted("flip")
+                self.turn()
         except _Leave:
             pass
+
+    def turn(self) -> None:
+        """One frame."""
+        self._now += FRAME_MS / 1000
+        self._call_due()
+        for window in windows:
+            window.dispatch_event("on_draw")
+        self._counted("flip")
 
     def leave(self) -> None:
         """End the loop."""
@@ -147,25 +144,6 @@ class Loop:
                 job[0] += job[1]
             job[2](job[1] or 0.0, *job[3])
 
-    def _dispatch(self, given: Input) -> None:
-        name: str
-        arguments: tuple[Any, ...]
-        if given.kind == "key":
-            name = "on_key_press" if given.down else "on_key_release"
-            arguments = (getattr(_Key(), given.what), 0)
-        elif given.kind == "button":
-            name = "on_mouse_press" if given.down else "on_mouse_release"
-            self._buttons = given.what if given.down else 0
-            arguments = (*self._mouse, given.what, 0)
-        else:
-            x, y = given.what
-            moved = (x - self._mouse[0], y - self._mouse[1])
-            self._mouse = (x, y)
-            name = "on_mouse_drag" if self._buttons else "on_mouse_motion"
-            arguments = (x, y, *moved, *((self._buttons, 0) if self._buttons else ()))
-        for window in windows:
-            window.dispatch_event(name, *arguments)
-
 
 class _Module(types.ModuleType):
     """A module in which every name is there: modules as listed, classes that do nothing otherwise."""
@@ -176,9 +154,8 @@ class _Module(types.ModuleType):
         return Nothing
 
 
-def install(script: Sequence[Input], counted: Callable[[str], None]) -> None:
+def install(loop: Loop) -> None:
     """Put the stand-in in pyglet's place, whether pyglet is installed or not."""
-    loop = Loop(script, counted)
     parts = ("window", "clock", "app", "gl", "graphics", "shapes", "sprite", "text", "image", "resource")
     root: Any = _Module("pyglet")
     root.__path__ = []
@@ -191,7 +168,7 @@ def install(script: Sequence[Input], counted: Callable[[str], None]) -> None:
         parent, _, last = f"pyglet.{name}".rpartition(".")
         setattr(sys.modules[parent], last, module)
     root.window.Window = Window
-    root.window.key = sys.modules["pyglet.window.key"] = _Key()  # type: ignore[assignment]
+    root.window.key = sys.modules["pyglet.window.key"] = Keys()  # type: ignore[assignment]
     root.clock.schedule_interval = loop.schedule_interval
     root.clock.schedule_once = loop.schedule_once
     root.clock.schedule = loop.schedule

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from harness.hands import Input, drag, tap
 from rigidarea.programs.host import Host
-from rigidarea.programs.screen import Input, drag, tap
 
 ROOT = Path(__file__).parents[2]
-ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+ENVIRONMENT = {**os.environ, "PYTHONPATH": os.pathsep.join((str(ROOT), str(ROOT / "tests")))}
 
 GAME = """
 import sys
@@ -50,10 +50,8 @@ while True:
 HOSTED = """
 import json, sys
 from rigidarea import attached
-from rigidarea.programs.host import Host
-from rigidarea.programs.screen import drag, tap
-import rigidarea.programs.host as host_module
-host = Host(sys.argv[1], 20, script=[*tap(3, "SPACE"), *tap(5, "LEFT", 2), *drag(8, 1, [(10, 20), (30, 40)])])
+from harness.hands import PlayedHost, drag, tap
+host = PlayedHost(sys.argv[1], 20, [*tap(3, "SPACE"), *tap(5, "LEFT", 2), *drag(8, 1, [(10, 20), (30, 40)])])
 import runpy
 keep = {}
 real = runpy.run_path

@@ -21,11 +21,10 @@ from typing import Any, NamedTuple
 import pymunk
 import pymunk.examples
 
-from rigidarea.programs.host import Host, seed_everything
-from rigidarea.programs.screen import Input, drag, tap
 from rigidarea.report import plain
 
 from . import environment, facts
+from .hands import Input, PlayedHost, drag, seed_everything, tap
 from .watch import Watch
 
 FRAMES = 300
@@ -148,7 +147,7 @@ def record(name: str, engine: str, frames: int, file: str, seed: int = 0) -> Non
     """
     example = EXAMPLES[name]
     seed_everything(seed)
-    host = Host(engine, frames, script=by_hand(example.script, seed))
+    host = PlayedHost(engine, frames, by_hand(example.script, seed))
     watch = Watch(host, example.probe)
     error: str | None = None
     target = str(Path(pymunk.examples.__file__).parent / f"{name}.py")
