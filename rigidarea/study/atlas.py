@@ -7,9 +7,7 @@ task of a sweep, and independent of all others.
 
 from __future__ import annotations
 
-import importlib
 import math
-import pkgutil
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cache
@@ -21,7 +19,7 @@ import numpy as np
 from ..report import envelope
 from .peers import get_peer, record
 from .records import Row
-from .scene import Array, Scene, Trace
+from .scene import Array, Scene, Trace, check_known, registered
 from .sweep import run_tasks
 
 PASS = "pass"
@@ -117,21 +115,12 @@ def maps() -> dict[str, Map]:
     """Every map by name."""
     from . import maps as package
 
-    found = {}
-    for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
-        if info.name.startswith("_"):
-            continue
-        made: Map = importlib.import_module(f"{package.__name__}.{info.name}").atlas_map()
-        if f"{made.name}_map" != info.name:
-            raise ValueError(f"map module {info.name!r} defines a map called {made.name!r}")
-        found[made.name] = made
-    return found
+    return registered(package, "atlas_map")
 
 
 def get_map(name: str) -> Map:
     """The map called `name`; `ValueError` lists the known ones."""
-    if name not in maps():
-        raise ValueError(f"unknown map {name!r}; expected one of {', '.join(maps())}")
+    check_known([name], maps(), "map")
     return maps()[name]
 
 

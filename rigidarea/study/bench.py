@@ -20,7 +20,7 @@ from .crowds import CROWDS
 from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
 from .records import Progress, Row
-from .scene import Scene
+from .scene import Scene, check_known
 from .timing import median_times, one_core
 
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
@@ -45,9 +45,7 @@ def frames(names: Sequence[str] = (), sizes: Sequence[int] = SIZES, peer_names: 
     """
     chosen = list(names) or list(CROWDS)
     wanted = [name for name in USUAL if not peer_names or name in peer_names]
-    for name in chosen:
-        if name not in CROWDS:
-            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(CROWDS)}")
+    check_known(chosen, CROWDS, "scene")
     rows: list[Row] = []
     progress = Progress("frames", len(chosen) * len(sizes) * len(wanted))
     for name in chosen:
@@ -198,9 +196,7 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
             "bench kernels compiles a loop of its own: expected RIGIDAREA_BACKEND=compiled (numba), got library"
         )
     pairs = kernel_pairs()
-    for name in names:
-        if name not in pairs:
-            raise ValueError(f"unknown pair {name!r}; expected one of {', '.join(pairs)}")
+    check_known(names, pairs, "pair")
     chosen = list(names or pairs)
     progress = Progress("kernels", len(chosen))
     queries, areas = [], []

@@ -20,7 +20,7 @@ import numpy as np
 from ..report import envelope
 from .convergence import ring_energy, studies
 from .records import Progress, Row
-from .scene import Array
+from .scene import Array, check_known
 from .timing import one_core
 
 LEVELS = ("rigid", "compliant", "modal")
@@ -184,9 +184,7 @@ def compare(names: Sequence[str] = (), cache: Path | None = None, repeats: int =
     report's ``convergence`` has a row for every `convergence.Study`, and the energy that a spinning ring loses.
     """
     chosen = list(names) or list(COMPARISONS)
-    for name in chosen:
-        if name not in COMPARISONS:
-            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(COMPARISONS)}")
+    check_known(chosen, COMPARISONS, "scene")
     rows: list[Row] = []
     traces: Row = {}
     progress = Progress("compare", len(chosen) * len(LEVELS))

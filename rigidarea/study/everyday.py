@@ -19,7 +19,7 @@ from ..report import envelope
 from .everyday_scenes import EVERYDAY, Everyday, metre_pyramid
 from .peers import Run, Settings, get_peer
 from .records import Progress, Row
-from .scene import VX, VY, Array, Scene, Trace, X
+from .scene import VX, VY, Array, Scene, Trace, X, check_known
 from .timing import one_core
 
 OURS = "rigidarea"
@@ -151,12 +151,8 @@ def everyday(
     and engine. `summary`: median and worst ratio of the judged scenes, and which fell short in what.
     """
     chosen = list(names) or list(EVERYDAY)
-    for name in chosen:
-        if name not in EVERYDAY:
-            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(EVERYDAY)}")
-    for name in peer_names:
-        if name not in PEERS:
-            raise ValueError(f"unknown engine {name!r}; expected one of {', '.join(PEERS)}")
+    check_known(chosen, EVERYDAY, "scene")
+    check_known(peer_names, PEERS, "engine")
     if seconds is not None and not seconds >= LAST_S:
         raise ValueError(f"seconds must be at least {LAST_S:g}, got {seconds!r}")
     engines: dict[str, tuple[str, Settings]] = {
@@ -203,15 +199,14 @@ def summed(described: Everyday, here: Sequence[Mapping[str, Row]]) -> Row:
         for found in here
         if OURS in found and "native_1" in found
     ]
+    others = ("native_1", "native_4", "box2d")
     row = {
         "steps_per_frame": over(OURS, "steps_per_frame", max),
         "frame_ms_median": over(OURS, "frame_ms_median", middle),
         "frame_ms_worst": over(OURS, "frame_ms_worst", max),
         "moving_ms": over(OURS, "moving_ms", middle),
         "moving_worst_ms": over(OURS, "moving_worst_ms", middle),
-        "native_1_ms": over("native_1", "frame_ms_median", middle),
-        "native_4_ms": over("native_4", "frame_ms_median", middle),
-        "box2d_ms": over("box2d", "frame_ms_median", middle),
+        **{f"{engine}_ms": over(engine, "frame_ms_median", middle) for engine in others},
         "ratio": middle(ratios) if ratios else None,
         "ratio_worst": max(ratios, default=None),
         "speed_left": over(OURS, "speed_left", max),
@@ -224,13 +219,8 @@ def summed(described: Everyday, here: Sequence[Mapping[str, Row]]) -> Row:
         "stands": described.stands,
         "judged": described.judged,
     }
-    for engine in ("native_1", "native_4", "box2d"):
-        row[f"{engine}_moving_ms"] = over(engine, "moving_ms", middle)
-        row[f"{engine}_moving_worst_ms"] = over(engine, "moving_worst_ms", middle)
-        row[f"{engine}_speed_left"] = over(engine, "speed_left", max)
-        row[f"{engine}_inside"] = over(engine, "inside", all)
-        row[f"{engine}_shift"] = over(engine, "shift", max)
-    return row
+    ways = {"moving_ms": middle, "moving_worst_ms": middle, "speed_left": max, "inside": all, "shift": max}
+    return row | {f"{engine}_{key}": over(engine, key, how) for engine in others for key, how in ways.items()}
 
 
 def summary(rows: Sequence[Row]) -> Row:

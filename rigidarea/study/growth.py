@@ -29,7 +29,7 @@ from .growing_scenes import (
 from .peers import get_peer
 from .peers.pymunk_peer import make_body, plain_shape, surface
 from .records import Progress, Row
-from .scene import Body, Scene
+from .scene import Body, Scene, check_known, set_up
 from .timing import one_core
 
 BOX2D = {"steps": 1, "substeps": 4, "stiff": False, "length": 1}
@@ -113,9 +113,9 @@ class _World:
 
 def _scene(growing: Growing, name: str, size: int, course: int = 0) -> Scene:
     made = growing.make(size, seed=growing.seeds[course]) if growing.seeds else growing.make(size)
-    return Scene(
-        name, growing.title, tuple(made), 1.0, "none", lambda trace: 0.0, "bench growth",
-        gravity=(0.0, -GRAVITY), friction=0.5, elasticity=growing.elasticity, size=SIDE, pressure=GRAVITY / SIDE,
+    return set_up(
+        name, made, 1.0, gravity=(0.0, -GRAVITY), friction=0.5, elasticity=growing.elasticity, size=SIDE,
+        pressure=GRAVITY / SIDE,
     )  # fmt: skip
 
 
@@ -222,9 +222,7 @@ def growth(names: Sequence[str] = (), sizes: Sequence[int] = (), peer_names: Seq
     over log(size).
     """
     known = [*GROWING, "small spaces"]
-    for name in names:
-        if name not in known:
-            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(known)}")
+    check_known(names, known, "scene")
     engines = [engine for engine in ("native_1", "frame", "box2d") if not peer_names or engine in peer_names]
     if "box2d" in engines and get_peer("box2d").refuses(_scene(GROWING["lift"], "lift", 0)):
         engines.remove("box2d")

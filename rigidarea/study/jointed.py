@@ -17,6 +17,7 @@ import pymunk
 from ..chipmunk import attach
 from ..report import envelope
 from .records import Progress, Row
+from .scene import check_known
 
 DT = 1 / 60
 FRAMES = 360
@@ -171,9 +172,7 @@ def joints(names: Sequence[str] = ()) -> dict[str, Any]:
 
     Raises ValueError for a name that is none of SCENES.
     """
-    for name in names:
-        if name not in SCENES:
-            raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(SCENES)}")
+    check_known(names, SCENES, "scene")
     measured(chain, 1, True)  # compiled before anything is timed
     rows: list[Row] = []
     progress = Progress("joints", len(names or SCENES))

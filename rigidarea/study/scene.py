@@ -13,7 +13,8 @@ import pkgutil
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import cache
-from typing import Literal
+from types import ModuleType
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -271,7 +272,40 @@ def rest_error(trace: Trace, names: Iterable[str], size: float, last: float = 1.
     return worst
 
 
+def set_up(
+    name: str,
+    bodies: Iterable[Body],
+    duration: float,
+    error: Callable[[Trace], float] = lambda trace: 0.0,
+    **more: Any,
+) -> Scene:
+    """A scene that is measured by whoever made it: without title, name of the error, source. more: fields of `Scene`"""
+    return Scene(name, "", tuple(bodies), duration, "", error, "", **more)
+
+
 # Registry ---------------------------------------------------------------------------------------------------
+
+
+def check_known(names: Iterable[str], known: Iterable[str], what: str) -> None:
+    """Raise ValueError for a name that is not among the known ones, which it lists; what: what they are names of."""
+    for name in names:
+        if name not in known:
+            raise ValueError(f"unknown {what} {name!r}; expected one of {', '.join(known)}")
+
+
+def registered(package: ModuleType, function: str) -> dict[str, Any]:
+    """What each module of a package makes by its `function()`, by name: `rest` is made in `rest_scene`, and so on.
+
+    Modules whose names begin with _ make nothing. Raises ValueError for what is not called as its module.
+    """
+    found: dict[str, Any] = {}
+    for name in sorted(info.name for info in pkgutil.iter_modules(package.__path__)):
+        if not name.startswith("_"):
+            made = getattr(importlib.import_module(f"{package.__name__}.{name}"), function)()
+            if made.name != name.rpartition("_")[0]:
+                raise ValueError(f"module {name!r} defines one called {made.name!r}")
+            found[made.name] = made
+    return found
 
 
 @cache
@@ -279,20 +313,10 @@ def scenes() -> dict[str, Scene]:
     """Every scene by name: each module of `rigidarea.study.scenes` has one function `scene()`."""
     from . import scenes as package
 
-    found = {}
-    for info in sorted(pkgutil.iter_modules(package.__path__), key=lambda info: info.name):
-        if info.name.startswith("_"):
-            continue
-        scene = importlib.import_module(f"{package.__name__}.{info.name}").scene()
-        if f"{scene.name}_scene" != info.name:
-            raise ValueError(f"scene module {info.name!r} defines a scene called {scene.name!r}")
-        found[scene.name] = scene
-    return found
+    return registered(package, "scene")
 
 
 def get_scene(name: str) -> Scene:
     """The scene called `name`; `ValueError` lists the known ones."""
-    known = scenes()
-    if name not in known:
-        raise ValueError(f"unknown scene {name!r}; expected one of {', '.join(known)}")
-    return known[name]
+    check_known([name], scenes(), "scene")
+    return scenes()[name]

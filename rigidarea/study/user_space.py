@@ -7,8 +7,8 @@ from functools import cache, partial
 import pymunk
 
 from ..geometry.outline import Outline
-from .peers.pymunk_peer import add_joints, make_body, plain_shape, surface
-from .scene import Curve, Scene
+from .peers.pymunk_peer import make_space, plain_shape
+from .scene import Curve, Scene, Shape
 
 
 @cache
@@ -20,21 +20,11 @@ def _outline(curve: Curve, tolerance: float) -> Outline:
 
 def space_of(scene: Scene) -> tuple[pymunk.Space, list[pymunk.Body]]:
     """A scene as a user would build it: arcs are arcs, other curves are sampled to a thousandth of its size."""
-    space = pymunk.Space()
-    space.gravity = scene.gravity
-    made: dict[str, pymunk.Body] = {}
-    for body in scene.bodies:
-        made[body.name] = here = make_body(body)
-        shapes: list[pymunk.Shape] = []
-        for shape in body.shapes:
-            if not isinstance(shape, Curve):
-                shapes.append(plain_shape(shape, here))
-            elif shape.exact is not None:
-                shapes.append(shape.exact().add_to(here))
-            else:
-                shapes.append(_outline(shape, 1e-3 * scene.size).add_to(here))
-        for made_shape in shapes:
-            surface(made_shape, scene, body)
-        space.add(here, *shapes)
-    add_joints(scene, space, made)
-    return space, list(made.values())
+
+    def shape_of(shape: Shape, made: pymunk.Body) -> pymunk.Shape:
+        if not isinstance(shape, Curve):
+            return plain_shape(shape, made)
+        outline = shape.exact() if shape.exact is not None else _outline(shape, 1e-3 * scene.size)
+        return outline.add_to(made)
+
+    return make_space(scene, lambda body, made: [shape_of(shape, made) for shape in body.shapes])

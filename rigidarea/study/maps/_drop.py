@@ -2,7 +2,7 @@
 
 import math
 
-from ..scene import Body, Scene, box, box_moment, floor
+from ..scene import Body, Scene, box, box_moment, floor, set_up
 
 
 def dropped(name: str, tilt: float, drop: float, elasticity: float, frame: float = 1 / 60) -> Scene:
@@ -10,15 +10,11 @@ def dropped(name: str, tilt: float, drop: float, elasticity: float, frame: float
     angle = math.radians(tilt)
     reach = math.sqrt(0.5) * math.cos(math.radians(45) - angle)
     body = Body("box", (box(1.0, 1.0),), (0.0, reach + drop), angle, moment=box_moment(1.0, 1.0, 1.0))
-    return Scene(
+    return set_up(
         name=name,
-        title="",
         bodies=(floor(), body),
         friction=0.5,
         elasticity=elasticity,
         duration=2.0,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         frame=frame,
     )

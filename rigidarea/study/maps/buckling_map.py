@@ -10,7 +10,7 @@ import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge
 from ..peers import get_peer
-from ..scene import Array, G, Scene, X, block, floor
+from ..scene import Array, G, Scene, X, block, floor, set_up
 
 LIMIT, SECONDS, IMPERFECTION = 0.5, 30.0, 1e-4
 """Boxes of displacement that count as toppled; simulated time; sideways gravity over gravity."""
@@ -38,16 +38,12 @@ def tallest(sinking: float) -> int:
 def tower(count: int) -> Scene:
     """Unit boxes, gravity leaning by a ten-thousandth."""
     boxes = tuple(block(f"box{i}", 1.0, 1.0, (0.0, i + 0.5)) for i in range(count))
-    return Scene(
+    return set_up(
         name="tower",
-        title="",
         bodies=(floor(10.0), *boxes),
         gravity=(IMPERFECTION * G, -G),
         friction=0.9,
         duration=SECONDS,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         frame=1 / 6,
     )
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, Body, G, Scene, disc, slab_with_hole
+from ..scene import Array, Body, G, disc, set_up, slab_with_hole
 from ..scenes.bowl_slide_scene import path_error, period, swing
 
 HOLE, START, LIMIT = 1.0, math.radians(60), 0.2
@@ -19,14 +19,11 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     body = Body("journal", (slab_with_hole(HOLE, 1.5),), kind="static")
     pin = disc("pin", HOLE - rho, (rho * math.sin(START), -rho * math.cos(START)))
     whole = period(rho, START)
-    scene = Scene(
+    scene = set_up(
         name="clearance",
-        title="",
         bodies=(body, pin),
         duration=whole,
-        error_name="",
         error=lambda trace: path_error(trace, "pin", rho, swing(trace.times, rho, START)),
-        source="",
         frame=whole / 40,
         pressure=G / y,
     )

@@ -3,7 +3,7 @@
 import math
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import OMEGA, VX, VY, Body, Scene, box, box_moment
+from ..scene import OMEGA, VX, VY, Body, box, box_moment, set_up
 
 LIMIT, V = 0.02, 2.0
 MOMENT = box_moment(1.0, 1.0, 1.0)
@@ -17,16 +17,12 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body("a", (box(1.0, 1.0),), (-diagonal - 0.05, 0.0), tilt, (V, 0.0), moment=MOMENT),
         Body("b", (box(1.0, 1.0),), (diagonal, x), tilt + math.radians(y), moment=MOMENT),
     )
-    scene = Scene(
+    scene = set_up(
         name="corner_corner",
-        title="",
         bodies=bodies,
         gravity=(0.0, 0.0),
         elasticity=1.0,
         duration=0.6,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         pressure=V**2,
     )
     settings = {"stiffness": 1e4} if variant.area else {}

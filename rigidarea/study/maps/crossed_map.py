@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas import PASS, Axis, Map, Outcome, Variant, engines, run_scene
-from ..scene import ANGLE, Body, Scene, X, Y, block, box
+from ..scene import ANGLE, Body, X, Y, block, box, set_up
 
 LENGTH, THICK = 2.0, 0.3
 
@@ -13,15 +13,11 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     plate = Body("plate", (box(10.0, THICK),), (0.0, 0.0), kind="static")
     # lower end of the bar at depth x · THICK below the plate's upper face
     bar = block("bar", y * THICK, LENGTH, (0.0, THICK / 2 - x * THICK + LENGTH / 2))
-    scene = Scene(
+    scene = set_up(
         name="crossed",
-        title="",
         bodies=(plate, bar),
         gravity=(0.0, 0.0),
         duration=0.1,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         size=THICK,
     )
     settings = {"stiffness": 10.0} if variant.area else {}

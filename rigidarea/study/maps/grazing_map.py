@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import VX, VY, Body, Scene, box, disc
+from ..scene import VX, VY, Body, box, disc, set_up
 
 RADIUS, LIMIT = 0.5, 0.1
 
@@ -20,16 +20,12 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body("box", (box(2.0, 2.0),), (1.0, -1.0), kind="static"),
         disc("disc", RADIUS, (-1.2, height), velocity=(y, 0.0)),
     )
-    scene = Scene(
+    scene = set_up(
         name="grazing",
-        title="",
         bodies=bodies,
         gravity=(0.0, 0.0),
         elasticity=1.0,
         duration=1.2 / y + 0.4 / y,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         pressure=y**2,
         frame=1 / 60,
     )

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, G, Scene, block, floor, rest_error
+from ..scene import Array, G, Scene, block, floor, rest_error, set_up
 
 SINKING, LIMIT = 1e-3, 0.02
 """Allowed sinking under the heavy box (sides), from which rigidarea's stiffness; displacement that counts."""
@@ -16,15 +16,12 @@ def scene(ratio: float) -> Scene:
         block("light", 1.0, 1.0, (0.0, 0.5)),
         block("heavy", 1.0, 1.0, (0.0, 1.5), mass=ratio),
     )
-    return Scene(
+    return set_up(
         name="mass_ratio",
-        title="",
         bodies=bodies,
         friction=0.5,
         duration=3.0,
-        error_name="",
         error=lambda trace: rest_error(trace, ["light", "heavy"], 1.0),
-        source="",
         pressure=ratio * G,
     )
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from ..atlas import PASS, Axis, Map, Outcome, Variant, engines, run_scene
-from ..scene import Body, Circle, Curve, Polygon, Scene, Shape, box, full_circle
+from ..scene import Body, Circle, Curve, Polygon, Shape, box, full_circle, set_up
 
 SHAPES = ("box", "flat bar", "disc", "triangle", "ring", "L")
 SLAB = 2.0
@@ -41,15 +41,11 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     height = 2 * below if round(y) != 3 else 3 * below
     slab = Body("slab", (box(20.0, SLAB),), (0.0, -SLAB / 2), kind="static")
     body = Body("body", (shape,), (0.0, below - x * height), moment=0.2)
-    scene = Scene(
+    scene = set_up(
         name="overlap_depth",
-        title="",
         bodies=(slab, body),
         friction=0.3,
         duration=4.0,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
     )
     settings = {"stiffness": 1e3} if variant.given else {}
     path = run_scene(variant, scene, **settings)["body"]

@@ -3,7 +3,7 @@
 import math
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Body, Scene, block, box
+from ..scene import Body, block, box, set_up
 from ..scenes.tiles_scene import SIDE, error
 
 LIMIT, WAY = 0.05, 5.0
@@ -17,14 +17,11 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body(f"tile{i}", (box(tile, 0.5),), (i * tile - 1.0, -0.25), kind="static") for i in range(count)
     )
     sliding = block("box", SIDE, SIDE, (0.013, SIDE / 2), velocity=(x, 0.0))
-    scene = Scene(
+    scene = set_up(
         name="seams",
-        title="",
         bodies=(*tiles, sliding),
         duration=min(WAY / x, 10.0),
-        error_name="",
         error=lambda trace: error(trace, x),
-        source="",
         size=SIDE,
         pressure=9.81 / SIDE**2,
     )

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge
 from ..peers import get_peer
-from ..scene import VY, Array, G, Scene, block, floor
+from ..scene import VY, Array, G, block, floor, set_up
 
 STEPS, LAST, K = 3000, 50, 1e5
 OMEGA = math.sqrt(K)
@@ -27,15 +27,11 @@ def growth(phase: float, elasticity: float, variant: Variant) -> float:
     """
     sunk = G / K
     kick = 1e-3 * sunk * OMEGA
-    scene = Scene(
+    scene = set_up(
         name="step_size",
-        title="",
         bodies=(floor(10.0), block("box", 1.0, 1.0, (0.0, 0.5 - sunk), velocity=(0.0, kick))),
         elasticity=elasticity,
         duration=1.0,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         pressure=1.0,
         frame=phase / OMEGA,
     )

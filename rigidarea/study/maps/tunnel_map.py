@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, Body, Scene, X, block, box
+from ..scene import Array, Body, Scene, X, block, box, set_up
 
 SIDE, STARTS = 0.5, 4
 """Side of the box; how many starting distances, spread over one frame's way, are tried."""
@@ -15,16 +15,12 @@ def scene(speed: float, thickness: float, share: float) -> Scene:
     start = -SIDE / 2 - 0.2 - share * speed * frame
     wall = Body("wall", (box(thickness, 20.0),), (thickness / 2, 0.0), kind="static")
     flying = block("box", SIDE, SIDE, (start, 0.0), velocity=(speed, 0.0))
-    return Scene(
+    return set_up(
         name="tunnel",
-        title="",
         bodies=(wall, flying),
         gravity=(0.0, 0.0),
         elasticity=0.3,
         duration=2 * (0.2 + speed * frame) / speed + 0.3,
-        error_name="",
-        error=lambda trace: 0.0,
-        source="",
         size=SIDE,
         pressure=speed**2 / SIDE**3,
     )

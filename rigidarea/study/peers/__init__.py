@@ -27,6 +27,7 @@ import importlib
 import pkgutil
 from functools import cache
 
+from ..scene import check_known
 from .base import Peer, Run, Settings, drive, record
 
 KNOWN_WELL: dict[str, dict[str, str]] = {
@@ -61,10 +62,8 @@ def peers() -> dict[str, Peer]:
 
 def get_peer(name: str) -> Peer:
     """The peer called `name`; `ValueError` lists the known ones."""
-    known = peers()
-    if name not in known:
-        raise ValueError(f"unknown peer {name!r}; expected one of {', '.join(known)}")
-    return known[name]
+    check_known([name], peers(), "peer")
+    return peers()[name]
 
 
 __all__ = ["Peer", "Run", "Settings", "drive", "get_peer", "peers", "record"]

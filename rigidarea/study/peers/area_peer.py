@@ -13,8 +13,8 @@ from pymunk._chipmunk_cffi import lib
 import rigidarea
 
 from ..scene import Array, Body, Circle, Curve, Scene
-from .base import Run, Settings, drive, rigid_only
-from .pymunk_peer import SpaceRun, add_joints, make_body, plain_shape, surface
+from .base import Run, Settings, combined, drive, knob, rigid_only
+from .pymunk_peer import SpaceRun, make_space, plain_shape
 
 STEPPING = ("steps", "tolerance", "phase")
 """Settings that say how the space is stepped."""
@@ -46,23 +46,14 @@ def area_space(scene: Scene, settings: Settings) -> tuple[pymunk.Space, list[pym
     the body size; `iterations` of the solver; those of `STEPPING` are for whoever steps; any other goes to
     `rigidarea.attach`.
     """
-    space = pymunk.Space()
-    space.gravity = scene.gravity
+    tolerance = settings["sampling"] * scene.size if "sampling" in settings else None
+    space, bodies = make_space(scene, lambda body, made: area_shapes(body, made, tolerance))
     if "iterations" in settings:
         space.iterations = settings["iterations"]
-    sampling = settings.get("sampling")
-    made: dict[str, pymunk.Body] = {}
-    for body in scene.bodies:
-        made[body.name] = make_body(body)
-        shapes = area_shapes(body, made[body.name], None if sampling is None else sampling * scene.size)
-        for shape in shapes:
-            surface(shape, scene, body)
-        space.add(made[body.name], *shapes)
-    add_joints(scene, space, made)
     more = {k: v for k, v in settings.items() if k not in (*STEPPING, *BUILDING)}
     stiffness = settings.get("stiffness")
     contact = rigidarea.attach(space, None if stiffness is None else stiffness * scene.pressure, **more)
-    return space, list(made.values()), contact
+    return space, bodies, contact
 
 
 class FrameRun(SpaceRun):
@@ -148,7 +139,7 @@ def area_samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
     shapes = [shape for body in scene.bodies for shape in body.shapes]
     if all(shape.exact is not None for shape in shapes if isinstance(shape, Curve)):
         return [{}]
-    return [{"sampling": value} for value in ((1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))]
+    return knob("sampling", (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5))
 
 
 class Area:
@@ -172,20 +163,14 @@ class Area:
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Stiffness or penetration × steps × iterations × sampling."""
         stiffness = (1e6, 1e12) if quick else (1e4, 1e6, 1e8, 1e12)
-        knobs: list[dict[str, float]] = [{"stiffness": value} for value in stiffness]
+        soft = knob("stiffness", stiffness)
         if scene.gravity != (0.0, 0.0) and not quick:
-            knobs += [{"penetration": value} for value in (1e-3, 1e-5)]
+            soft += knob("penetration", (1e-3, 1e-5))
         steps = (1, 4, 16) if quick else (1, 2, 4, 8, 16, 32, 64)
         # one body's contacts are solved in a few sweeps; piles and trains want more, as pymunk's do
         more = scene.tags & {"stack", "gears"} and not quick
         iterations: list[dict[str, int]] = [{}, {"iterations": 40}] if more else [{}]
-        return [
-            {**knob, "steps": n, **sweeps, **sampling}
-            for knob in knobs
-            for n in steps
-            for sweeps in iterations
-            for sampling in area_samplings(scene, quick)
-        ]
+        return combined(soft, knob("steps", steps), iterations, area_samplings(scene, quick))
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by frames."""
@@ -227,12 +212,7 @@ class AreaExplicit(Area):
         phases = (3.0,) if quick else (0.5, 3.0)
         if "impact" in scene.tags:  # restitution wants several steps within a contact
             phases = (0.5,) if quick else (0.25, 1.0)
-        return [
-            {"stiffness": k, "phase": phase, **sampling}
-            for k in stiffness
-            for phase in phases
-            for sampling in area_samplings(scene, quick)
-        ]
+        return combined(knob("stiffness", stiffness), knob("phase", phases), area_samplings(scene, quick))
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by Chipmunk's own function."""

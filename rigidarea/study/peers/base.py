@@ -8,8 +8,8 @@ measures what is left.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
-from itertools import repeat, starmap
+from collections.abc import Callable, Iterable, Mapping
+from itertools import product, repeat, starmap
 from typing import Any, Protocol
 
 import numpy as np
@@ -55,6 +55,16 @@ class Peer(Protocol):
         """Set the scene up."""
 
 
+def knob(name: str, values: Iterable[Any]) -> list[dict[str, Any]]:
+    """One setting at some values."""
+    return [{name: value} for value in values]
+
+
+def combined(*knobs: Iterable[Settings]) -> list[Settings]:
+    """Every combination of some settings, the last ones changing first."""
+    return [{k: v for part in parts for k, v in part.items()} for parts in product(*knobs)]
+
+
 def rigid_only(scene: Scene) -> str:
     """Why an engine of rigid bodies cannot do the scene; empty if it can."""
     return "bodies are rigid: they give back the restitution that is put in" if scene.deforms else ""
@@ -96,4 +106,4 @@ def samplings(scene: Scene, quick: bool) -> list[dict[str, float]]:
         values = (1e-3, 1e-5) if quick else (1e-2, 1e-3, 1e-4, 1e-5)
     else:
         return [{}]
-    return [{"sampling": value} for value in values]
+    return knob("sampling", values)

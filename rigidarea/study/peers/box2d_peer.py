@@ -9,7 +9,7 @@ import numpy as np
 
 from ..decompose import convex_pieces
 from ..scene import Array, Body, Circle, Polygon, Scene, Segment
-from .base import Run, Settings, drive, rigid_only, samplings
+from .base import Run, Settings, combined, drive, rigid_only, samplings
 
 MOST_VERTICES = 8
 """Of a Box2D polygon (B2_MAX_POLYGON_VERTICES)."""
@@ -181,12 +181,9 @@ class Box2D:
                 (64, 4),
             )
             kinds = ((False, 1), (True, 1), (False, 10), (True, 10))
-        return [
-            {"steps": n, "substeps": m, "stiff": stiff, "length": length, **sampling}
-            for n, m in pairs
-            for stiff, length in kinds
-            for sampling in samplings(scene, quick)
-        ]
+        stepping = [{"steps": n, "substeps": m} for n, m in pairs]
+        contact = [{"stiff": stiff, "length": length} for stiff, length in kinds]
+        return combined(stepping, contact, samplings(scene, quick))
 
     def default(self, scene: Scene) -> Settings:
         """One step of four substeps a frame, contacts of 30 Hz, bodies about a metre in size."""

@@ -14,7 +14,7 @@ import numpy as np
 
 from ...geometry.outline import Outline
 from ..scene import ANGLE, Array, Body, Circle, Polygon, Scene, Segment, Shape, full_circle, get_scene
-from .base import Run, Settings, has_curves
+from .base import Run, Settings, combined, has_curves, knob
 
 MARGIN = 0.05
 """How far bodies move before contact is searched anew, in body sizes."""
@@ -178,13 +178,7 @@ class Flexible:
             finer = [{"modes": 40}] if quick else [{"modes": 10}, {"modes": 40}]
         elif self.level == "rigid" and has_curves(scene):
             finer = [{"sampling": 1e-4}] if quick else [{"sampling": 1e-4}, {"sampling": 1e-5}]
-        return [
-            {"stiffness": k, "steps": n, "rho": rho, **more}
-            for k in stiffness
-            for n in steps
-            for rho in rhos
-            for more in finer
-        ]
+        return combined(knob("stiffness", stiffness), knob("steps", steps), knob("rho", rhos), finer)
 
     def default(self, scene: Scene) -> None:
         """A submodule that is set up by hand."""

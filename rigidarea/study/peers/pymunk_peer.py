@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Callable
 
 import numpy as np
 import pymunk
@@ -11,7 +11,7 @@ from pymunk._chipmunk_cffi import lib
 
 from ..decompose import convex_pieces
 from ..scene import Array, Body, Circle, Curve, Polygon, Scene, Segment
-from .base import Run, Settings, drive, rigid_only, samplings
+from .base import Run, Settings, combined, drive, knob, rigid_only, samplings
 
 
 def make_body(body: Body) -> pymunk.Body:
@@ -119,6 +119,24 @@ def surface(shape: pymunk.Shape, scene: Scene, body: Body) -> None:
         shape.surface_velocity = (body.surface_speed, 0.0)
 
 
+def make_space(
+    scene: Scene, shapes_of: Callable[[Body, pymunk.Body], list[pymunk.Shape]]
+) -> tuple[pymunk.Space, list[pymunk.Body]]:
+    """A space with the scene's bodies, the shapes of each as `shapes_of(body, its pymunk body)` makes them, and joints;
+    and the bodies."""
+    space = pymunk.Space()
+    space.gravity = scene.gravity
+    made: dict[str, pymunk.Body] = {}
+    for body in scene.bodies:
+        made[body.name] = make_body(body)
+        shapes = shapes_of(body, made[body.name])
+        for shape in shapes:
+            surface(shape, scene, body)
+        space.add(made[body.name], *shapes)
+    add_joints(scene, space, made)
+    return space, list(made.values())
+
+
 class Chipmunk:
     """pymunk as its users tune it: smaller steps, more iterations, a slop that suits the scene's size.
 
@@ -138,13 +156,8 @@ class Chipmunk:
         steps = (1, 4, 16, 64) if quick else (1, 2, 4, 8, 16, 32, 64)
         iterations = (10, 40) if not quick and scene.tags & {"stack", "gears"} else (10,)
         slops = (1e-3,) if quick else (1e-2, 1e-3, 1e-5)
-        return [
-            {"steps": n, "iterations": i, "slop": slop, **sampling}
-            for n in steps
-            for i in iterations
-            for slop in slops
-            for sampling in samplings(scene, quick)
-        ]
+        knobs = knob("steps", steps), knob("iterations", iterations), knob("slop", slops)
+        return combined(*knobs, samplings(scene, quick))
 
     def default(self, scene: Scene) -> Settings:
         """One step a frame, ten iterations; the slop, 0.1 by default, as on bodies of 100 pixels."""
@@ -153,21 +166,11 @@ class Chipmunk:
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """A space of pymunk's own shapes."""
-        space = pymunk.Space()
-        space.gravity = scene.gravity
+        tolerance = settings.get("sampling", 1e-3) * scene.size
+        space, bodies = make_space(scene, lambda body, made: convex_shapes(body, made, tolerance))
         space.iterations = settings["iterations"]
         space.collision_slop = settings["slop"] * scene.size
-        tolerance = settings.get("sampling", 1e-3) * scene.size
-        made: dict[str, Any] = {}
-        for body in scene.bodies:
-            made[body.name] = make_body(body)
-            shapes = convex_shapes(body, made[body.name], tolerance)
-            for shape in shapes:
-                surface(shape, scene, body)
-            space.add(made[body.name], *shapes)
-        add_joints(scene, space, made)
-        return SpaceRun(scene, space, list(made.values()), settings["steps"])
+        return SpaceRun(scene, space, bodies, settings["steps"])
 
 
 PEER = Chipmunk()
-__all__ = ["PEER", "Chipmunk", "Curve", "SpaceRun", "add_joints", "make_body", "surface"]
