@@ -18,7 +18,7 @@ from typing import Any, Protocol
 import numpy as np
 import pymunk
 import shapely
-from pymunk.space_debug_draw_options import SpaceDebugColor
+from pymunk.space_debug_draw_options import SpaceDebugColor as Color
 
 from .geometry.arcs import Points
 from .geometry.outline import Outline
@@ -63,45 +63,36 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
     and its boundary as segments. Where your library fills rings with holes, override `draw_rings`.
     """
 
-    region_color = SpaceDebugColor(213, 94, 0, 255)
+    region_color = Color(213, 94, 0, 255)
     """Of contact regions, where there is a `contact`."""
-    force_color = SpaceDebugColor(120, 30, 0, 255)
+    force_color = Color(120, 30, 0, 255)
     """Of the forces in them."""
     contact: HasRegions | None = None
     """Its regions and forces are drawn over the shapes; None: they are not."""
     _shape: pymunk.Shape | None = None
 
-    def color_for_shape(self, shape: pymunk.Shape) -> SpaceDebugColor:
+    def color_for_shape(self, shape: pymunk.Shape) -> Color:
         """The colour of a shape: Chipmunk asks for it before it draws the shape."""
         outline = getattr(shape, "outline", None)
         self._shape = shape if isinstance(outline, Outline) and outline.proxied else None
         return super().color_for_shape(shape)
 
     def draw_circle(
-        self,
-        pos: pymunk.Vec2d,
-        angle: float,
-        radius: float,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, pos: pymunk.Vec2d, angle: float, radius: float, outline_color: Color, fill_color: Color
     ) -> None:
         """A circle, or the outline whose proxy it is."""
         if not self._draw_outline(outline_color, fill_color):
             super().draw_circle(pos, angle, radius, outline_color, fill_color)
 
     def draw_polygon(
-        self,
-        verts: Sequence[tuple[float, float]],
-        radius: float,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, verts: Sequence[tuple[float, float]], radius: float, outline_color: Color, fill_color: Color
     ) -> None:
         """A convex polygon, or the outline whose proxy it is."""
         if not self._draw_outline(outline_color, fill_color):
             corners = [pymunk.Vec2d(*corner) for corner in verts]
             super().draw_polygon(corners, radius, outline_color, fill_color)
 
-    def _draw_outline(self, outline_color: SpaceDebugColor, fill_color: SpaceDebugColor) -> bool:
+    def _draw_outline(self, outline_color: Color, fill_color: Color) -> bool:
         """Draw the outline of the shape that is being drawn; False: it has none but what pymunk sees."""
         shape, self._shape = self._shape, None
         if shape is None or shape.body is None:
@@ -127,11 +118,7 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
         return points @ np.array([[t.a, t.b], [t.c, t.d]]) + (t.tx, t.ty)
 
     def draw_rings(
-        self,
-        rings: Sequence[Points],
-        triangles: Points,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, rings: Sequence[Points], triangles: Points, outline_color: Color, fill_color: Color
     ) -> None:
         """Fill a polygon with holes: its rings, (n, 2) each, or the triangles (m, 3, 2) that it consists of."""
         for triangle in triangles.tolist():

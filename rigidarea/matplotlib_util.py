@@ -12,7 +12,7 @@ import numpy as np
 import pymunk.matplotlib_util
 from matplotlib.patches import PathPatch
 from matplotlib.path import Path
-from pymunk.space_debug_draw_options import SpaceDebugColor
+from pymunk.space_debug_draw_options import SpaceDebugColor as Color
 
 from .debug_draw import OutlineOptions
 from .geometry.arcs import Points
@@ -29,11 +29,7 @@ class Rings(OutlineOptions):
     ax: Any
 
     def draw_rings(
-        self,
-        rings: Sequence[Points],
-        triangles: Points,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, rings: Sequence[Points], triangles: Points, outline_color: Color, fill_color: Color
     ) -> None:
         """Fill, with a line around it that stays inside."""
         closed = [np.concatenate((ring, ring[:1])) for ring in rings]

@@ -13,7 +13,7 @@ import numpy as np
 import pygame
 import pymunk.pygame_util
 from numpy.typing import NDArray
-from pymunk.space_debug_draw_options import SpaceDebugColor
+from pymunk.space_debug_draw_options import SpaceDebugColor as Color
 
 from .debug_draw import OutlineOptions
 from .geometry.arcs import Points
@@ -30,11 +30,7 @@ class Rings(OutlineOptions):
     surface: pygame.Surface
 
     def draw_rings(
-        self,
-        rings: Sequence[Points],
-        triangles: Points,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, rings: Sequence[Points], triangles: Points, outline_color: Color, fill_color: Color
     ) -> None:
         """Fill, and paint the outermost pixels in the outline's colour."""
         if pymunk.pygame_util.positive_y_is_up:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import pyglet
 import pymunk.pyglet_util
-from pymunk.space_debug_draw_options import SpaceDebugColor
+from pymunk.space_debug_draw_options import SpaceDebugColor as Color
 
 from .debug_draw import OutlineOptions
 from .geometry.arcs import Points
@@ -68,11 +68,7 @@ class Rings(OutlineOptions):
     draw_shapes: list[Any]
 
     def draw_rings(
-        self,
-        rings: Sequence[Points],
-        triangles: Points,
-        outline_color: SpaceDebugColor,
-        fill_color: SpaceDebugColor,
+        self, rings: Sequence[Points], triangles: Points, outline_color: Color, fill_color: Color
     ) -> None:
         """Fill; as pymunk's polygons, without a line around it."""
         self.draw_shapes.append(_Mesh(triangles, fill_color.as_int(), self.batch))

@@ -44,28 +44,6 @@ def say(text: str) -> None:
     print(text, file=sys.stderr, flush=True)
 
 
-def result(
-    name: str,
-    settings: Mapping[str, Any],
-    results: Any,
-    paper: Any,
-    clock: Clock,
-    simulated_s: float,
-    complete: bool = True,
-) -> dict[str, Any]:
-    """The JSON object of a case; ``complete`` is false in the file of a run that was interrupted."""
-    return envelope(
-        f"case {name}",
-        settings,
-        results,
-        paper=paper,
-        wall_s=clock.wall(),
-        setup_s=clock.setup_s,
-        simulated_s=simulated_s,
-        complete=complete,
-    )
-
-
 class Case:
     """One run of a case. What ``keep`` is given is at once on disk, in ``out``/NAME.json (None: nowhere).
 
@@ -75,15 +53,11 @@ class Case:
     def __init__(
         self, name: str, settings: Mapping[str, Any], paper: Any, simulated_s: float, out: Path | None
     ) -> None:
-        self.name, self.settings, self.paper, self.simulated_s, self.out = (
-            name,
-            settings,
-            paper,
-            simulated_s,
-            out,
-        )
+        self.name, self.settings, self.paper, self.simulated_s = name, settings, paper, simulated_s
+        self.out = out
         self.clock = Clock()
-        self.results: dict[str, Any] = {}
+        self.results: Any = {}
+        """A mapping, or, put there at once, rows."""
 
     def keep(self, **parts: Any) -> None:
         """Adds results, or replaces those of the same name (rows that have grown), and writes the file."""
@@ -95,8 +69,15 @@ class Case:
         return self._write(True)
 
     def _write(self, complete: bool) -> dict[str, Any]:
-        told = result(
-            self.name, self.settings, self.results, self.paper, self.clock, self.simulated_s, complete
+        told = envelope(
+            f"case {self.name}",
+            self.settings,
+            self.results,
+            paper=self.paper,
+            wall_s=self.clock.wall(),
+            setup_s=self.clock.setup_s,
+            simulated_s=self.simulated_s,
+            complete=complete,
         )
         if self.out is not None:
             write_json(told, self.out / f"{self.name}.json")

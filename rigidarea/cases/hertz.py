@@ -95,22 +95,8 @@ def graded_ring(fine: float, shift: float, top: bool) -> Array:
     return RADIUS * np.column_stack([np.cos(t), np.sin(t)])
 
 
-def discs(division: int, cache: Path | None = None) -> tuple[Boundary, Boundary, int]:
-    """Two elastic discs, a/division the node spacing in the contact, meshes not matching; and the nodes of one."""
-    bodies, nodes = [], 0
-    for shift, top in ((0.0, True), (0.5, False)):
-        ring = graded_ring(half_width(0.5 * RADIUS) / division, shift, top)
-        mesh = triangulate([ring], growth=0.12, max_size=1.0)
-        body = reduce(mesh, Material(YOUNG, POISSON, 1.0, 1.0, "strain"), cache=cache)
-        bodies.append(build([ring - body.centre], flexibility=body.how_it_yields))
-        nodes = len(mesh.points)
-    return bodies[0], bodies[1], nodes
-
-
-def pressed(
-    division: int, approach: float, cache: Path | None = None
-) -> tuple[tuple[State, State], tuple[Array, Array]]:
-    """Both discs of ``predicted`` at an approach (length): their states, stresses among them, and contact loads."""
+def discs(division: int, cache: Path | None = None) -> tuple[tuple[Shape, Boundary], tuple[Shape, Boundary]]:
+    """Two elastic discs, a/division the node spacing in the contact, meshes not matching."""
     made = []
     for shift, top in ((0.0, True), (0.5, False)):
         ring = graded_ring(half_width(0.5 * RADIUS) / division, shift, top)
@@ -119,7 +105,14 @@ def pressed(
         reduced = reduce(mesh, material, cache=cache)
         boundary = build([ring - reduced.centre], flexibility=reduced.how_it_yields)
         made.append((Shape(mesh, material, (0,), None, None, reduced), boundary))
-    (shape_a, a), (shape_b, b) = made
+    return made[0], made[1]
+
+
+def pressed(
+    division: int, approach: float, cache: Path | None = None
+) -> tuple[tuple[State, State], tuple[Array, Array]]:
+    """Both discs of ``predicted`` at an approach (length): their states, stresses among them, and contact loads."""
+    (shape_a, a), (shape_b, b) = discs(division, cache)
     solution = solve(a, (0, 0, 0), b, (0, 2 * RADIUS - approach, 0), STIFF, (0.0, 1.0))
     states, loads = [], []
     for shape, at, force in zip(
@@ -135,7 +128,7 @@ def pressed(
 
 def predicted(division: int, full: bool = False, cache: Path | None = None) -> dict[str, Any]:
     """Full FE statics under the force F; half-width and peak pressure against Hertz."""
-    a, b, nodes = discs(division, cache)
+    (_, a), (shape, b) = discs(division, cache)
     along = None if full else (0.0, 1.0)
 
     def press(approach: float):  # type: ignore[no-untyped-def]
@@ -157,7 +150,7 @@ def predicted(division: int, full: bool = False, cache: Path | None = None) -> d
     off = np.sqrt((s.weight @ (s.pressure - exact) ** 2) / (s.weight @ exact**2))
     return {
         "division": division,
-        "nodes": nodes,
+        "nodes": len(shape.mesh.points),
         "approach_m": float(d1),
         "half_width_m": float(width),
         "p_max_pa": float(top),

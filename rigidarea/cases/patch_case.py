@@ -150,8 +150,9 @@ def stress_spread(ring: Array, loads: Array, force: float) -> float:
 
 def run(out: Path | None = None) -> dict[str, Any]:
     """All gaps and meshes; figures 11 to 13 redrawn."""
-    clock = case_report.Clock()
-    clock.setup()
+    settings = {"slave_m": SLAVE, "master_m": MASTER, "k": K, "q": 1.0, "gaps_m": GAPS}
+    case = case_report.Case("patch", settings, PAPER, 0.0, out)
+    case.clock.setup()
     rows, states = [], []
     for gap in GAPS:
         for mesh in MESHES:
@@ -160,8 +161,8 @@ def run(out: Path | None = None) -> dict[str, Any]:
             states.append(state)
     if out is not None:
         _figures(out, rows, states)
-    settings = {"slave_m": SLAVE, "master_m": MASTER, "k": K, "q": 1.0, "gaps_m": GAPS}
-    return case_report.result("patch", settings, rows, PAPER, clock, 0.0)
+    case.results = rows
+    return case.finish()
 
 
 def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:

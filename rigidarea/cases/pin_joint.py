@@ -263,14 +263,24 @@ def run(
     duration: float = 1.2,
 ) -> dict[str, Any]:
     """Ten bounces at one level, beside the exact rigid answers; then area and STS on the paper's three meshes."""
-    clock = case_report.Clock()
+    settings = {
+        "mode": mode,
+        "mesh_mm": mesh_mm,
+        "contact": contact,
+        "step_s": STEP,
+        "duration_s": duration,
+        "k": K,
+        "young_pa": STEEL.young,
+        "rim_radius_mm": 1e3 * RIM,
+    }
+    case = case_report.Case("pin-joint", settings, PAPER, duration, out)
     reference = exact()
     if mode == "rigid" and contact == "area":
-        clock.setup()
+        case.clock.setup()
         t, y, force, level = run_hook(duration)
     else:
         sim = simulation(mesh_mm, mode, contact, refine=4, cache=cache)
-        clock.setup()
+        case.clock.setup()
         r = sim.run(duration, STEP)
         t, y, force = r.t, r.x[:, 0, 1], -r.force[:, 1]
         level = y + 0.5 * (r.v[:, 0, :2] ** 2).sum(1) / GRAVITY
@@ -288,17 +298,8 @@ def run(
     }
     if out is not None:
         _figures(out, rows, mode, cache)
-    settings = {
-        "mode": mode,
-        "mesh_mm": mesh_mm,
-        "contact": contact,
-        "step_s": STEP,
-        "duration_s": duration,
-        "k": K,
-        "young_pa": STEEL.young,
-        "rim_radius_mm": 1e3 * RIM,
-    }
-    return case_report.result("pin-joint", settings, results, PAPER, clock, duration)
+    case.results = results
+    return case.finish()
 
 
 def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | None) -> None:

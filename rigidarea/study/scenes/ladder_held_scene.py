@@ -2,8 +2,8 @@
 
 import math
 
-from ..scene import Body, G, Polygon, Scene, floor, rest_error
-from .ladder_scene import LENGTH, THICK, moment
+from ..scene import G, Scene, floor, rest_error
+from .ladder_scene import LENGTH, leaning
 
 STEEP, MARGIN = math.radians(60), 1.05
 
@@ -20,15 +20,10 @@ def least_friction(steep: float) -> float:
 
 def scene() -> Scene:
     """2 m, 60 degrees, 1.05 of the least friction at both ends: nothing moves."""
-    h = LENGTH / 2
-    shape = Polygon(((-h, 0.0), (0.0, -THICK / 2), (h, 0.0), (0.0, THICK / 2)))
-    wall = Body("wall", (Polygon(((-1.0, -5.0), (0.0, -5.0), (0.0, 5.0), (-1.0, 5.0))),), kind="static")
-    centre = (h * math.cos(STEEP), h * math.sin(STEEP))
-    ladder = Body("ladder", (shape,), centre, math.pi - STEEP, moment=moment(1.0))
     return Scene(
         name="ladder_held",
         title="ladder held by friction at 1.05 of the limit",
-        bodies=(floor(), wall, ladder),
+        bodies=(floor(), *leaning(STEEP)),
         friction=MARGIN * least_friction(STEEP),
         duration=5.0,
         error_name="displacement after 5 s / length",

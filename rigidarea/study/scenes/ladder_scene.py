@@ -51,18 +51,22 @@ def error(trace: Trace) -> float:
     return float(np.max(np.abs(found - exact)) / (START - leaving_angle()))
 
 
-def scene() -> Scene:
-    """2 m, released at 60 degrees; leaning to the left on the wall x = 0."""
+def leaning(steep: float) -> tuple[Body, Body]:
+    """The wall x = 0, and a ladder that leans on it to the left, at the angle `steep` above the floor."""
     h = LENGTH / 2
     shape = Polygon(((-h, 0.0), (0.0, -THICK / 2), (h, 0.0), (0.0, THICK / 2)))
     wall = Body("wall", (Polygon(((-1.0, -5.0), (0.0, -5.0), (0.0, 5.0), (-1.0, 5.0))),), kind="static")
-    # The body's +x axis points from the floor end up to the wall end: angle π − START.
-    centre = (h * math.cos(START), h * math.sin(START))
-    ladder = Body("ladder", (shape,), centre, math.pi - START, moment=moment(1.0))
+    # The body's +x axis points from the floor end up to the wall end.
+    centre = (h * math.cos(steep), h * math.sin(steep))
+    return wall, Body("ladder", (shape,), centre, math.pi - steep, moment=moment(1.0))
+
+
+def scene() -> Scene:
+    """2 m, released at 60 degrees."""
     return Scene(
         name="ladder",
         title="ladder sliding down a wall",
-        bodies=(floor(), wall, ladder),
+        bodies=(floor(), *leaning(START)),
         duration=0.75,
         error_name="angle before leaving, relative",
         error=error,
