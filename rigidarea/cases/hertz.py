@@ -47,8 +47,7 @@ def half_width(radius: float) -> float:
 
 
 def calibrated(nodes: int, a: float) -> dict[str, Any]:
-    """The paper's benchmark for discs of ``nodes`` boundary nodes: pressures of its Alg. 3 and of the balanced
-    one."""
+    """The paper's benchmark for discs of ``nodes`` boundary nodes: pressures of its Alg. 3 and of the balanced one."""
     t = 2 * np.pi * np.arange(nodes) / nodes
     ring = RADIUS * np.column_stack([np.cos(t), np.sin(t)])
     disc = build([ring])

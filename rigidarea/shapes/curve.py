@@ -49,8 +49,7 @@ def sample_curve(
 
 
 def _ideal_count(points: NDArray[np.float64], tolerance: float, spacing: float | None) -> NDArray[np.float64]:
-    """How many chords there should be up to each of finely spaced points (n, 2) of a curve; (n,), starting
-    at 0."""
+    """How many chords there should be up to each of finely spaced points (n, 2) of a curve; (n,), starting at 0."""
     step = np.diff(points, axis=0)
     length = np.hypot(step[:, 0], step[:, 1])
     heading = np.unwrap(np.arctan2(step[:, 1], step[:, 0]))

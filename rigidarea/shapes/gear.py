@@ -211,8 +211,7 @@ class _Tooth(NamedTuple):
         return self.pitch_radius - self.rack.depth - self.rack.radius
 
     def roll(self, radius: float) -> float:
-        """Roll angle t of the involute at a radius: r = r_b sqrt(1 + t²), t the tangent of the pressure
-        angle there."""
+        """Roll angle t of the involute at a radius: r = r_b sqrt(1 + t²), t the tangent of the pressure angle there."""
         return math.sqrt(max(0.0, (radius / self.base_radius) ** 2 - 1))
 
     def half_angle(self, roll: float) -> float:

@@ -184,6 +184,5 @@ def _checked(rings: list[tuple[np.ndarray, np.ndarray]], tolerance: float | None
 
 
 def _meeting_angle(own: float, distance: float, other: float) -> float:
-    """Angle at the centre of a circle of radius `own` between the line of centres and where the two circles
-    meet."""
+    """Angle at the centre of a circle of radius `own` between the line of centres and where the two circles meet."""
     return math.acos((own**2 + distance**2 - other**2) / (2 * own * distance))

@@ -27,9 +27,7 @@ PASS = "pass"
 
 @dataclass(frozen=True)
 class Axis:
-    """One knob: `label` with its unit, `values`, a coarser choice for quick runs; words in `names` if it has
-    any.
-    """
+    """One knob: `label` with its unit, `values`, a coarser choice for quick runs; words in `names` if it has any."""
 
     label: str
     values: tuple[float, ...]
@@ -141,9 +139,7 @@ def atlas(
     workers: int | None = None,
     resume: bool = True,
 ) -> Row:
-    """Run the maps; returns the object written to `out`/atlas.json, rows map, peer, x, y, verdict,
-    measure.
-    """
+    """Run the maps; returns the object written to `out`/atlas.json, rows map, peer, x, y, verdict, measure."""
     chosen = [get_map(name) for name in (map_names or maps())]
     tasks = []
     for chart in chosen:

@@ -92,9 +92,7 @@ def frame_row(scene: Scene, peer: str, settings: dict[str, Any]) -> Row:
 
 
 def growth(rows: Sequence[Row]) -> list[Row]:
-    """Slope of log(median frame time) over log(bodies), for every scene, peer and setting with two sizes or
-    more.
-    """
+    """Slope of log(median frame time) over log(bodies), for every scene, peer and setting with two sizes or more."""
     groups: dict[tuple[str, str, str], list[Row]] = {}
     for row in rows:
         groups.setdefault((row["scene"], row["peer"], str(row["settings"])), []).append(row)
@@ -108,9 +106,7 @@ def growth(rows: Sequence[Row]) -> list[Row]:
 
 
 def call_overhead(count: int = 20000) -> Row:
-    """What a step of an empty world costs in each engine (µs): the foreign call and the engine's own least
-    work.
-    """
+    """What a step of an empty world costs in each engine (µs): the foreign call and the engine's own least work."""
     import pymunk
     from pymunk._chipmunk_cffi import lib
 
@@ -248,9 +244,7 @@ def _sampled(outline: Outline) -> Any:
 
 
 class Query:
-    """One overlap, asked again and again in a compiled loop with the second outline moved by rounding
-    errors.
-    """
+    """One overlap, asked again and again in a compiled loop with the second outline moved by rounding errors."""
 
     def __init__(self, a: Any, b: Any, pose: tuple[float, float, float]) -> None:
         from ..geometry.pool import pack

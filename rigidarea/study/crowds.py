@@ -1,6 +1,4 @@
-"""Scenes of any number of bodies with a known answer: towers that stand, a pyramid, a gas that keeps its
-energy.
-"""
+"""Scenes of any number of bodies with a known answer: towers that stand, a pyramid, a gas that keeps its energy."""
 
 from __future__ import annotations
 
@@ -81,9 +79,7 @@ def gas(bodies: int) -> Scene:
     )
 
     def error(trace: Trace) -> float:
-        """Relative change of kinetic energy at the end, contacts under way left out by the median of ten
-        frames.
-        """
+        """Relative change of kinetic energy at the end, contacts under way left out by the median of ten frames."""
         moving = trace.states[:, len(walls) :]
         energy = np.sum(moving[:, :, VX] ** 2 + moving[:, :, VY] ** 2, axis=1)
         energy += np.sum(moving[:, :, OMEGA] ** 2, axis=1) * radius**2 / 2

@@ -13,13 +13,7 @@ import pymunk
 
 from ..checkout import harness, pages
 from ..plan.plan import Plan, plan
-from ..report import envelope, lines, output_arguments, write_json
-
-TOLD = (
-    *("scene", "tolerance", "verdict", "error", "predicted_error", "decided_by", "level", "steps", "sweeps"),
-    *("penetration", "cost_ratio", "cheapest"),
-)
-"""Columns of --validate's table; the files have all."""
+from ..report import envelope, output_arguments, write_json
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -63,7 +57,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Run `rigidarea plan`."""
     if arguments.validate:
-        return _validate(arguments)
+        code: int = harness("validate_command", "plan --validate").run(arguments)
+        return code
     if len(arguments.what) != 1:
         raise ValueError(f"expected one scene or program (or --validate), got {len(arguments.what)}")
     what = arguments.what[0]
@@ -155,26 +150,3 @@ def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
                 out[body] = given
                 break
     return out
-
-
-def _validate(arguments: argparse.Namespace) -> int:
-    from .records import write_csv
-
-    validate, plan_picture, page = (
-        harness(name, "plan --validate") for name in ("validate", "plan_picture", "page")
-    )
-
-    report = validate.validate(arguments.out, arguments.what, arguments.variations, fresh=arguments.fresh)
-    write_json(report, arguments.out / "plan-validate.json")
-    write_csv(arguments.out / "plan-validate.csv", report["rows"])
-    shown = plan_picture.costs_and_errors(report["rows"], arguments.out / "plan.png")
-    if arguments.docs:
-        page.keep(arguments.docs, "plan", report, {"plan.png": shown})
-    write_json(report, arguments.json)
-    if arguments.json != "-":
-        print("\n".join(lines([{k: row.get(k) for k in TOLD} for row in report["rows"]])))
-        for kind, found in report["summary"].items():
-            print(f"\n{kind}")
-            print("\n".join(lines(found)))
-        print(f"\nFiles: {arguments.out}/")
-    return 0

@@ -189,9 +189,7 @@ class Scene:
         return round(self.duration / self.frame)
 
     def measure(self, trace: Trace) -> float:
-        """The error of a trace: a finite number >= 0, or infinity if the run left the numbers or the
-        scene.
-        """
+        """The error of a trace: a finite number >= 0, or infinity if the run left the numbers or the scene."""
         if not np.all(np.isfinite(trace.states)):
             return math.inf
         value = float(self.error(trace))

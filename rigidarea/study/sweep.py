@@ -29,9 +29,7 @@ def key(task: Task) -> str:
 
 @contextmanager
 def open_executor(scheduler: str | None = None, workers: int | None = None) -> Iterator[Executor]:
-    """A Dask cluster at `scheduler` ("tcp://host:port"), or `workers` local processes (default: one a
-    core).
-    """
+    """A Dask cluster at `scheduler` ("tcp://host:port"), or `workers` local processes (default: one a core)."""
     if scheduler:
         from dask.distributed import Client
 

@@ -25,7 +25,6 @@ from typing import Any
 from rigidarea.report import solver, write_json
 from rigidarea.study import front
 from rigidarea.study.chart import points
-from rigidarea.study.peers import KNOWN_WELL
 from rigidarea.study.records import Row
 
 from .causes import CAUSES
@@ -362,6 +361,25 @@ def dominated(report: Row) -> str:
     for peer in dict.fromkeys(row["peer"] for row in report["summary"]):
         columns += [f"{peer}'s", f"cost ratio, {peer}"]
     return markdown([*columns, "why"], rows)
+
+
+KNOWN_WELL: dict[str, dict[str, str]] = {
+    "pymunk": {
+        "cradle": "elastic impacts one by one: impulses are exact",
+        "off_centre_hit": "masses, moment and arm of one impulse",
+        "rest": "one box, persistent contact",
+        "v_groove_spin": "sliding friction on terrain",
+        "conveyor": "sliding friction, a moving surface",
+    },
+    "box2d": {
+        "cradle": "elastic impacts one by one, to single precision",
+        "rest": "one box, persistent contact",
+        "rocking": "rotation about a corner",
+        "incline_slide": "sliding friction",
+        "conveyor": "sliding friction, a moving surface",
+    },
+}
+"""Scenes that a foreign peer is known to do well, and why: a wrong set-up would show there first."""
 
 
 def known_well(report: Row) -> str:

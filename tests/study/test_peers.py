@@ -7,7 +7,8 @@ engine did when this was written, with the settings given.
 import numpy as np
 import pytest
 
-from rigidarea.study.peers import KNOWN_WELL, drive, get_peer, peers, record
+from harness.page import KNOWN_WELL
+from rigidarea.study.peers import drive, get_peer, peers, record
 from rigidarea.study.scene import get_scene, scenes
 
 PYMUNK = {"steps": 16, "iterations": 40, "slop": 1e-3, "sampling": 1e-3}

@@ -12,9 +12,7 @@ HOLE, START, LIMIT = 1.0, math.radians(60), 0.2
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
-    """Error of the pin's path over one period, relative to its arc; `x` is the chord tolerance, `y` the
-    clearance.
-    """
+    """Error of the pin's path over one period, relative to its arc; `x` is the chord tolerance, `y` the clearance."""
     rho = y * HOLE
     body = Body("journal", (slab_with_hole(HOLE, 1.5),), kind="static")
     pin = disc("pin", HOLE - rho, (rho * math.sin(START), -rho * math.cos(START)))

@@ -1,6 +1,4 @@
-"""Bodies that start inside each other: pushed out the short way, gently, or shot, swallowed, or pushed
-through?
-"""
+"""Bodies that start inside each other: pushed out the short way, gently, or shot, swallowed, or pushed through?"""
 
 import math
 
@@ -34,9 +32,7 @@ def _shape(index: int) -> tuple[Shape, float]:
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
-    """The speed with which the body leaves (its height a second); fails by direction, speed, or staying
-    inside.
-    """
+    """The speed with which the body leaves (its height a second); fails by direction, speed, or staying inside."""
     shape, below = _shape(round(y))
     height = 2 * below if round(y) != 3 else 3 * below
     slab = Body("slab", (box(20.0, SLAB),), (0.0, -SLAB / 2), kind="static")

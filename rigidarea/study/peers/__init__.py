@@ -17,7 +17,7 @@ How they are set, so that each does what it can:
   exactly (`decompose`), of at most eight vertices for Box2D. The sampling is swept. Circles are exact for the peers.
 - *Sleeping* is off everywhere; friction and elasticity are those of the pair, however an engine mixes them.
 - Single precision and one solver in Box2D, double in the others. `tests/study/test_peers.py` checks every peer's
-  set-up on scenes that it is known to do well (`KNOWN_WELL`).
+  set-up on scenes that it is known to do well.
 - Engines of rigid bodies are spared scenes whose answer is that of elastic ones.
 """
 
@@ -29,24 +29,6 @@ from functools import cache
 
 from ..scene import check_known
 from .base import Peer, Run, Settings, drive, record
-
-KNOWN_WELL: dict[str, dict[str, str]] = {
-    "pymunk": {
-        "cradle": "elastic impacts one by one: impulses are exact",
-        "off_centre_hit": "masses, moment and arm of one impulse",
-        "rest": "one box, persistent contact",
-        "v_groove_spin": "sliding friction on terrain",
-        "conveyor": "sliding friction, a moving surface",
-    },
-    "box2d": {
-        "cradle": "elastic impacts one by one, to single precision",
-        "rest": "one box, persistent contact",
-        "rocking": "rotation about a corner",
-        "incline_slide": "sliding friction",
-        "conveyor": "sliding friction, a moving surface",
-    },
-}
-"""Scenes that a foreign peer is known to do well, and why: a wrong set-up would show there first."""
 
 
 @cache

@@ -30,9 +30,7 @@ class Run(Protocol):
         """Simulate `frames` more frames. Timed: no Python of ours per step."""
 
     def state(self) -> Array:
-        """States (n_body, 6) of all bodies in the scene's order and units (columns: `scene.X` …
-        `scene.OMEGA`).
-        """
+        """States (n_body, 6) of all bodies in the scene's order and units (columns: `scene.X` … `scene.OMEGA`)."""
 
 
 class Peer(Protocol):
@@ -76,9 +74,7 @@ def drive(step: Callable[..., object], count: int, *arguments: object) -> None:
 
 
 def record(run: Run, scene: Scene, frames: int | None = None) -> Trace:
-    """Run a scene, or its first `frames`, frame by frame and keep every state; stops at one that is not
-    finite.
-    """
+    """Run a scene, or its first `frames`, frame by frame and keep every state; stops at one that is not finite."""
     states = [run.state()]
     for _ in range(scene.frames if frames is None else frames):
         run.advance(1)

@@ -16,9 +16,7 @@ MOST_VERTICES = 8
 
 
 def _rotation(b2: Any, angle: float) -> Any:
-    """Exact cosine and sine: Box2D's own `b2MakeRot` approximates them, which would shift the start by 2e-3
-    rad.
-    """
+    """Exact cosine and sine: Box2D's own `b2MakeRot` approximates them, which would shift the start by 2e-3 rad."""
     rotation = b2.make_rot(0.0)
     rotation.c, rotation.s = math.cos(angle), math.sin(angle)
     return rotation
@@ -56,8 +54,7 @@ class WorldRun:
             linear_velocity=self._scaled(body.velocity),
             angular_velocity=body.angular_velocity,
         )
-        # Box2D mixes friction by the geometric mean and restitution by the maximum: equal values stay as
-        # they are.
+        # Box2D mixes friction by the geometric mean and restitution by the maximum: equal values stay as they are.
         material = b2.surface_material(
             friction=scene.friction,
             restitution=scene.elasticity,
@@ -76,8 +73,7 @@ class WorldRun:
             elif body.kind == "static":
                 outer, holes = shape.rings(tolerance)
                 for ring in (outer, *holes):
-                    # Box2D collides with the right-hand side of a chain; our rings have the solid on their
-                    # left.
+                    # Box2D collides with the right-hand side of a chain; our rings have the solid on their left.
                     made.create_chain(
                         b2.chain_def(self._ccw(ring, hole=ring is not outer), material=material, is_loop=True)
                     )

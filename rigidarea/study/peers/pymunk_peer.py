@@ -36,9 +36,7 @@ def plain_shape(shape: Circle | Polygon | Segment, made: pymunk.Body) -> pymunk.
 
 
 def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymunk.Shape]:
-    """Shapes for an engine of convex shapes: terrain as chains of segments, moving outlines as convex
-    pieces.
-    """
+    """Shapes for an engine of convex shapes: terrain as chains of segments, moving outlines as convex pieces."""
     shapes: list[pymunk.Shape] = []
     for shape in body.shapes:
         if not isinstance(shape, Curve):

@@ -17,9 +17,7 @@ def flight(n: int, drop: float = DROP, e: float = E) -> tuple[float, float]:
 
 
 def apex(trace: Trace, n: int, drop: float = DROP, e: float = E, radius: float = RADIUS) -> float:
-    """Height above the floor that the ball reaches in flight n, from its energy in the middle half of the
-    flight.
-    """
+    """Height above the floor that the ball reaches in flight n, from its energy in the middle half of the flight."""
     start, stop = flight(n, drop, e)
     quarter = (stop - start) / 4
     inside = (trace.times > start + quarter) & (trace.times < stop - quarter)

@@ -24,9 +24,7 @@ def angle_at(t: Array) -> Array:
 
 
 def error(trace: Trace) -> float:
-    """Largest error of the angle (relative to the angle turned) or sideways drift (relative to the
-    length).
-    """
+    """Largest error of the angle (relative to the angle turned) or sideways drift (relative to the length)."""
     exact = angle_at(trace.times)
     rod = trace["rod"]
     turn = np.max(np.abs(rod[:, ANGLE] - exact)) / (exact[0] - exact[-1])

@@ -32,9 +32,7 @@ def _curve(teeth: int) -> Curve:
 
 
 def error(trace: Trace) -> float:
-    """Root mean square of the driven speed's error after a quarter of the run, relative to its exact
-    value.
-    """
+    """Root mean square of the driven speed's error after a quarter of the run, relative to its exact value."""
     exact = -SPEED * TEETH[0] / TEETH[1]
     late = trace.times > trace.times[-1] / 4
     return float(np.sqrt(np.mean((trace["driven"][late, OMEGA] / exact - 1) ** 2)))

@@ -12,9 +12,7 @@ from ..scene import ANGLE, Body, Circle, Curve, Elastic, Pivot, Rings, Scene, Tr
 
 SLOTS, CENTRES, PIN = 6, 0.05, 0.008
 SPEED, LEAD, MASS, BRAKE = math.pi, 0.3, 0.1, 2e-3
-"""Driver's speed (rad/s); how far before entry and after exit it runs (rad); wheel's mass (kg); brake (N
-m).
-"""
+"""Driver's speed (rad/s); how far before entry and after exit it runs (rad); wheel's mass (kg); brake (N m)."""
 STEEL = Elastic(207e9, 0.29, 0.005, 0.002)
 """Of the wheel."""
 

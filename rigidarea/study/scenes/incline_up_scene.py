@@ -24,9 +24,7 @@ def error(trace: Trace) -> float:
 
 
 def scene() -> Scene:
-    """4 m/s up a slope of tan θ = 0.3 with μ = 0.5 (it must not slide back); gravity is turned, not the
-    floor.
-    """
+    """4 m/s up a slope of tan θ = 0.3 with μ = 0.5 (it must not slide back); gravity is turned, not the floor."""
     return Scene(
         name="incline_up",
         title="block pushed up an incline",

@@ -12,9 +12,7 @@ MASSES = (1.0, 0.5, 0.25, 0.125)
 
 
 def after() -> Array:
-    """Velocities (n,) after every pair has met once; each disc ends slower than the next, so none meet
-    again.
-    """
+    """Velocities (n,) after every pair has met once; each disc ends slower than the next, so none meet again."""
     speeds = np.zeros(len(MASSES))
     speeds[0] = V
     for i, (m, n) in enumerate(itertools.pairwise(MASSES)):

@@ -10,9 +10,7 @@ RADIUS, E, V, SLANT = 0.5, 0.9, 2.0, math.radians(30)
 
 
 def after() -> np.ndarray:
-    """Velocities (2, 2) after the impact: the components along the line of centres change, the others do
-    not.
-    """
+    """Velocities (2, 2) after the impact: the components along the line of centres change, the others do not."""
     normal = np.array((math.cos(SLANT), math.sin(SLANT)))
     impulse = (1 + E) / 2 * V * normal[0]
     return np.array(((V, 0.0) - impulse * normal, impulse * normal))

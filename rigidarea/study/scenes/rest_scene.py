@@ -4,9 +4,7 @@ from ..scene import Scene, block, floor, rest_error
 
 
 def scene() -> Scene:
-    """Unit box placed exactly on the floor; the rigid answer is no motion at all (sinking counts as
-    error).
-    """
+    """Unit box placed exactly on the floor; the rigid answer is no motion at all (sinking counts as error)."""
     return Scene(
         name="rest",
         title="box at rest",

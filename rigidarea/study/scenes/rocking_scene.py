@@ -20,9 +20,7 @@ def housner_quarter(tilt: float = TILT) -> float:
 
 
 def tilt_at(t: Array) -> Array:
-    """Tilt at times `t`: θ'' = −p² sin(α − θ), from rest at θ₀; no small-angle assumption, up to the
-    impact.
-    """
+    """Tilt at times `t`: θ'' = −p² sin(α − θ), from rest at θ₀; no small-angle assumption, up to the impact."""
     return angle(lambda _, y: (y[1], -(P**2) * math.sin(ALPHA - y[0])), TILT, t)
 
 
