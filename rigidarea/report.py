@@ -1,4 +1,4 @@
-"""The JSON object that a command writes, and how it is written."""
+"""The JSON object that a command writes, and how it is written; tables; how far long work has come."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ import math
 import os
 import platform
 import sys
+import time
 from collections.abc import Mapping, Sequence
 from importlib import metadata
 from pathlib import Path
@@ -120,6 +121,32 @@ def output_arguments(parser: argparse.ArgumentParser, out: Path) -> None:
     parser.add_argument(
         "--json", metavar="FILE", help="also write the numbers here; - for JSON alone on standard output"
     )
+
+
+class Progress:
+    """One line on standard error that says how far long work has come; lines instead if it is no terminal."""
+
+    def __init__(self, title: str, total: int) -> None:
+        self.title, self.total, self.done = title, total, 0
+        self.started = time.perf_counter()
+        self.tty = sys.stderr.isatty()
+        self.every_s = 0.2 if self.tty else 5.0
+        self.last = -math.inf
+
+    def step(self, note: str = "", count: int = 1) -> None:
+        """`count` more parts are done; `note` says what is being worked on."""
+        self.done += count
+        now = time.perf_counter()
+        if now - self.last < self.every_s and self.done < self.total:
+            return
+        self.last = now
+        text = f"{self.title} {self.done}/{self.total}, {now - self.started:.0f} s  {note}"
+        if self.tty:
+            print(f"\r{text[:100]:100}", end="", file=sys.stderr, flush=True)
+        else:
+            print(text, file=sys.stderr, flush=True)
+        if self.done >= self.total and self.tty:
+            print(file=sys.stderr)
 
 
 def at_least_one(text: str) -> int:

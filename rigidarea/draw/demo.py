@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import argparse
 import contextlib
-import sys
-import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 from ..gallery import ENGINES, NAMES, Run, load
-from ..report import align, at_least_one, envelope, output_arguments, write_json
+from ..report import Progress, align, at_least_one, envelope, output_arguments, write_json
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -45,12 +43,12 @@ def run(arguments: argparse.Namespace) -> int:
         return 0
     rows = []
     for i, name in enumerate(names):
-        say = Progress(f"[{i + 1}/{len(names)}] {name}")
         ready = Run(load(name), arguments.engine)
+        frames = arguments.frames or ready.scene.frames
+        progress = Progress(f"[{i + 1}/{len(names)}] {name}", frames)
         rows.append(
-            render(ready, arguments.out, frames=arguments.frames, film=not arguments.no_film, say=say)
+            render(ready, arguments.out, frames=frames, film=not arguments.no_film, say=progress.step)
         )
-        say.end()
     settings = {
         "name": arguments.name,
         "engine": arguments.engine,
@@ -70,7 +68,7 @@ def render(
     *,
     frames: int | None = None,
     film: bool = True,
-    say: Callable[[int, int], None] | None = None,
+    say: Callable[[], None] | None = None,
 ) -> dict[str, Any]:
     """Step a run to its end, drawing as it goes; returns its row, the files' names in it.
 
@@ -98,38 +96,10 @@ def render(
                 if i == still:
                     files["still"] = str(save_png(surface, out / f"{name}.png"))
             if say is not None:
-                say(i, count)
+                say()
     if movie is not None:
         files["film"] = str(movie.path)
     return {**run.row(), **files}
-
-
-class Progress:
-    """How far a long job is, on standard error: in place on a terminal, else a line every few seconds."""
-
-    def __init__(self, title: str) -> None:
-        self.title = title
-        self._terminal = sys.stderr.isatty()
-        self._next = time.perf_counter() + (0.0 if self._terminal else 5.0)
-
-    def __call__(self, done: int, total: int) -> None:
-        """`done` of `total` parts are done."""
-        now = time.perf_counter()
-        if now >= self._next:
-            self._next = now + (0.2 if self._terminal else 5.0)
-            self._write(f"{self.title} {done}/{total}")
-
-    def end(self) -> None:
-        """All done."""
-        self._write(f"{self.title} done")
-        if self._terminal:
-            print(file=sys.stderr)
-
-    def _write(self, text: str) -> None:
-        if self._terminal:
-            print(f"\r{text:60}", end="", file=sys.stderr, flush=True)
-        else:
-            print(text, file=sys.stderr, flush=True)
 
 
 def table(rows: list[dict[str, Any]]) -> str:

@@ -15,11 +15,11 @@ import numpy as np
 from ..compile.chosen import LIBRARY, backend
 from ..geometry.outline import Outline
 from ..overlap_queries import overlap
-from ..report import envelope
+from ..report import Progress, envelope
 from .crowds import CROWDS
 from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
-from .records import Progress, Row
+from .records import Row
 from .scene import Scene, check_known
 from .timing import median_times, one_core
 

@@ -17,10 +17,10 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from ..report import envelope
+from ..report import Progress, envelope
 from . import front
 from .peers import get_peer, peers, record
-from .records import Progress, Row, append_rows, read_rows
+from .records import Row, append_rows, read_rows
 from .scene import Scene, get_scene, scenes
 from .sweep import Task, key, run_tasks
 from .timing import Stopwatch, median_times, scene_job

@@ -17,9 +17,9 @@ from typing import Any
 
 import numpy as np
 
-from ..report import envelope
+from ..report import Progress, envelope
 from .convergence import ring_energy, studies
-from .records import Progress, Row
+from .records import Row
 from .scene import Array, check_known
 from .timing import one_core
 

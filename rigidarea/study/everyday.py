@@ -15,10 +15,10 @@ from typing import Any
 
 import numpy as np
 
-from ..report import envelope
+from ..report import Progress, envelope
 from .everyday_scenes import EVERYDAY, Everyday, metre_pyramid
 from .peers import Run, Settings, get_peer
-from .records import Progress, Row
+from .records import Row
 from .scene import VX, VY, Array, Scene, Trace, X, check_known
 from .timing import one_core
 

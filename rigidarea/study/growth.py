@@ -16,7 +16,7 @@ import pymunk
 
 import rigidarea
 
-from ..report import envelope
+from ..report import Progress, envelope
 from .growing_scenes import (
     BLOCK,
     BURST,
@@ -28,7 +28,7 @@ from .growing_scenes import (
 )
 from .peers import get_peer
 from .peers.pymunk_peer import make_body, plain_shape, surface
-from .records import Progress, Row
+from .records import Row
 from .scene import Body, Scene, check_known, set_up
 from .timing import one_core
 

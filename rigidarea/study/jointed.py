@@ -15,8 +15,8 @@ from typing import Any
 import pymunk
 
 from ..chipmunk import attach
-from ..report import envelope
-from .records import Progress, Row
+from ..report import Progress, envelope
+from .records import Row
 from .scene import check_known
 
 DT = 1 / 60

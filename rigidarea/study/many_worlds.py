@@ -12,9 +12,9 @@ import numpy as np
 import pymunk
 
 from ..chipmunk import attach
-from ..report import envelope
+from ..report import Progress, envelope
 from ..worlds import Worlds
-from .records import Progress, Row
+from .records import Row
 from .timing import one_core
 
 BODIES, DT = 20, 1 / 60

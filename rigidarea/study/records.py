@@ -1,13 +1,10 @@
-"""How the studies write rows: CSV, JSON lines as they come, and the progress on standard error."""
+"""How the studies write rows: CSV, and JSON lines as they come."""
 
 from __future__ import annotations
 
 import csv
 import json
-import math
 import os
-import sys
-import time
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import Any
@@ -27,32 +24,6 @@ def write_csv(target: Path, rows: Sequence[Row]) -> None:
         writer.writeheader()
         for row in rows:
             writer.writerow({k: json.dumps(v) if isinstance(v, dict | list) else v for k, v in row.items()})
-
-
-class Progress:
-    """One line on standard error that says how far long work has come; lines instead if it is no terminal."""
-
-    def __init__(self, title: str, total: int, every_s: float = 5.0) -> None:
-        self.title, self.total, self.done = title, total, 0
-        self.started = time.perf_counter()
-        self.tty = sys.stderr.isatty()
-        self.every_s = 0.2 if self.tty else every_s
-        self.last = -math.inf
-
-    def step(self, note: str = "", count: int = 1) -> None:
-        """`count` more parts are done; `note` says what is being worked on."""
-        self.done += count
-        now = time.perf_counter()
-        if now - self.last < self.every_s and self.done < self.total:
-            return
-        self.last = now
-        text = f"{self.title} {self.done}/{self.total}, {now - self.started:.0f} s  {note}"
-        if self.tty:
-            print(f"\r{text[:100]:100}", end="", file=sys.stderr, flush=True)
-        else:
-            print(text, file=sys.stderr, flush=True)
-        if self.done >= self.total and self.tty:
-            print(file=sys.stderr)
 
 
 def read_rows(path: Path) -> list[Row]:

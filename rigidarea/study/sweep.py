@@ -16,7 +16,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from .records import Progress, Row, append_rows, read_rows
+from ..report import Progress
+from .records import Row, append_rows, read_rows
 
 Task = dict[str, Any]
 """Arguments of one call, plain values only: they are the key under which its result is kept."""

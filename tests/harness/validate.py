@@ -23,9 +23,9 @@ import numpy as np
 import pymunk
 
 from rigidarea.plan.plan import plan
-from rigidarea.report import envelope
+from rigidarea.report import Progress, envelope
 from rigidarea.study.peers.base import record
-from rigidarea.study.records import Progress, Row, append_rows, read_rows
+from rigidarea.study.records import Row, append_rows, read_rows
 from rigidarea.study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
 from rigidarea.study.sweep import key
 from rigidarea.study.timing import one_core, timed
