@@ -27,9 +27,9 @@ from .growing_scenes import (
     Growing,
 )
 from .peers import get_peer
-from .peers.pymunk_peer import make_body, plain_shape, surface
+from .peers.pymunk_peer import make_space, plain_shapes
 from .records import Row
-from .scene import Body, Scene, check_known, set_up
+from .scene import Scene, check_known, set_up
 from .timing import one_core
 
 BOX2D = {"steps": 1, "substeps": 4, "stiff": False, "length": 1}
@@ -40,11 +40,8 @@ class _Space:
 
     def __init__(self, growing: Growing, scene: Scene, ours: bool) -> None:
         self.growing, self.scene = growing, scene
-        self.space = pymunk.Space()
-        self.space.gravity = scene.gravity
-        self.moving: list[tuple[pymunk.Body, pymunk.Shape]] = []
-        for body in scene.bodies:
-            self._add(body)
+        self.space, bodies = make_space(scene, plain_shapes)
+        self.moving = [(b, next(iter(b.shapes))) for b in bodies if b.body_type == pymunk.Body.DYNAMIC]
         if growing.asleep:
             self.space.sleep_time_threshold = 0.2
             while any(not body.is_sleeping for body, _ in self.moving):
@@ -55,15 +52,6 @@ class _Space:
             rigidarea.attach(self.space)
         self.space.step(FRAME)
         self.start_s = time.thread_time() - before
-
-    def _add(self, body: Body) -> None:
-        made = make_body(body)
-        shapes = [plain_shape(shape, made) for shape in body.shapes]  # type: ignore[arg-type]
-        for shape in shapes:
-            surface(shape, self.scene, body)
-        self.space.add(made, *shapes)
-        if body.kind == "dynamic":
-            self.moving.append((made, shapes[0]))
 
     def frame(self) -> None:
         if self.growing.changes:

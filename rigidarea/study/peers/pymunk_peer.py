@@ -35,6 +35,11 @@ def plain_shape(shape: Circle | Polygon | Segment, made: pymunk.Body) -> pymunk.
     return pymunk.Segment(made, shape.a, shape.b, shape.radius)
 
 
+def plain_shapes(body: Body, made: pymunk.Body) -> list[pymunk.Shape]:
+    """Those of a body without curves."""
+    return [plain_shape(shape, made) for shape in body.shapes if not isinstance(shape, Curve)]
+
+
 def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymunk.Shape]:
     """Shapes for an engine of convex shapes: terrain as chains of segments, moving outlines as convex pieces."""
     shapes: list[pymunk.Shape] = []
