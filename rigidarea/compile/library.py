@@ -1,4 +1,4 @@
-"""Machine code from a wheel: loads what `ahead` has made, and calls it."""
+"""Machine code from a wheel: loads what `tools/machine_code/ahead.py` has made, and calls it."""
 
 from __future__ import annotations
 

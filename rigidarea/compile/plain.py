@@ -1,7 +1,7 @@
 """Kernels without numba: machine code from the library where it has a function, else their text as Python.
 
-What Python calls is in the library (`ahead` finds it); what only kernels call is compiled into those, and is Python
-text here.
+What Python calls is in the library (`tools/machine_code` finds it); what only kernels call is compiled into those, and
+is Python text here.
 """
 
 from __future__ import annotations
