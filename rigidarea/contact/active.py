@@ -129,6 +129,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.y = 0.0
         island.energy = 0.0
         island.held = 0.0
+        island.still = 0
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
         body = tables.bodies[tables.live[k]]
@@ -153,14 +154,16 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
     for r in range(tables.counters[ROWS]):
         row = tables.rows[r]
         if row.ends > 0:
-            tables.islands[island_of(tables, row)].held += held_by(row, tables.regions[row.region], h)
+            island = tables.islands[island_of(tables, row)]
+            island.held += held_by(row, tables.regions[row.region], h)
+            island.still = 1
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         kick = law.gravity * h
         speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
         island.small = LEFT * kick + MOVED * speed
         able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
-        island.still = able < kick and island.held > 0.0
+        island.still = island.still and able < kick
 
 
 @kernel(forceinline=True)
