@@ -178,8 +178,9 @@ def _give(row: Any, a: Any, b: Any, h: float) -> float:
 
     Joints that nearly contradict each other, two rods of one line, can all be held, at any speed across. What gives way
     by g bounds that: the gain of a solve (W + g)^-1 is at most 1 / (2 sqrt(g)) (Tikhonov), so that with g = (t h / e)^2
-    an error that goes at the speed t moves no body by more than half its extent e in a step. (A limit that is not
-    reached yet asks for nothing; a rotary joint turns by half a radian.)
+    an error that goes at the speed t moves neither of the joint's own two bodies by more than half the smaller one's
+    extent e in a step; what those push or pull in turn it does not bound. (A limit that is not reached yet asks for
+    nothing; a rotary joint turns by half a radian.)
     """
     t1 = max(row.t1 if row.low < 0.0 else 0.0, -row.t1 if row.high > 0.0 else 0.0)
     tt = max(row.tt if row.low_t < 0.0 else 0.0, -row.tt if row.high_t > 0.0 else 0.0)
