@@ -89,6 +89,59 @@ def _match(regions: np.ndarray, head: int, x: float, y: float, stamp: int) -> in
     return best
 
 
+@kernel(forceinline=True)
+def _unhook(regions: np.ndarray, head: int, r: int) -> int:
+    """Take region r out of a list; its head then."""
+    if head == r:
+        return int(regions[r].next)
+    q = head
+    while regions[q].next != r:
+        q = regions[q].next
+    regions[q].next = regions[r].next
+    return head
+
+
+@kernel(forceinline=True)
+def _take_region(regions: np.ndarray, counters: np.ndarray, p: int, kept: int, h: float) -> int:
+    """A region of pair p from the free list, before region `kept`: nothing is remembered of it."""
+    r = counters[FREE_REGION]
+    region = regions[r]
+    counters[FREE_REGION] = region.next
+    counters[FREE_REGIONS] -= 1
+    counters[USED_REGIONS] = max(counters[USED_REGIONS], r + 1)
+    region.next = kept
+    region.pair = p
+    region.stamp = counters[SUBSTEP]
+    region.past = 0
+    region.placed = 0
+    region.born = 1
+    region.opened = 0
+    region.l1 = 0.0
+    region.l2 = 0.0
+    region.lt = 0.0
+    region.step = h
+    region.spring = 0.0
+    region.tangent_stiffness = 0.0
+    region.back = 0.0
+    return int(r)
+
+
+@kernel
+def _go_on(law: Law, pair: Any, region: Any, a: Any, b: Any, h: float) -> None:
+    """What a region is that was there a substep ago."""
+    nearing = region.mode == NEARING
+    if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
+        region.l1 = 0.0
+        region.l2 = 0.0
+        region.lt = 0.0
+    if region.mode >= STRUCK:
+        region.mode = REST
+    if region.mode == REST and bounces_again(law, pair, region, a, b, h):
+        region.mode = STRUCK
+    elif nearing and arrives(region, a, b, h):
+        region.born = 1  # hit at a speed of which its present overlap says nothing
+
+
 @kernel
 def _face(pool: Pool, sa: Any, sb: Any, a: Any, b: Any) -> float:
     """The chord on which one of the two would lie on the other (length)."""
@@ -151,6 +204,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         counters[MORE_REGIONS] = n - counters[FREE_REGIONS]
         return False
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
+    ax, ay = centre_of(a, pose_a)
+    bx, by = centre_of(b, pose_b)
     old = pair.head
     kept = -1
     for k in range(n):
@@ -160,52 +215,41 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         if patch.area == 0.0:
             continue
         r = _match(regions, old, patch.x, patch.y, stamp)
-        born = r < 0
-        if born:
-            r = counters[FREE_REGION]
-            counters[FREE_REGION] = regions[r].next
-            counters[FREE_REGIONS] -= 1
-            counters[USED_REGIONS] = max(counters[USED_REGIONS], r + 1)
-        else:  # unhook
-            if old == r:
-                old = regions[r].next
-            else:
-                q = old
-                while regions[q].next != r:
-                    q = regions[q].next
-                regions[q].next = regions[r].next
-        region = regions[r]
-        region.next = kept
-        kept = r
-        region.pair = p
-        region.stamp = stamp
         wx = patch.nx
         wy = patch.ny
-        if patch.blind and born:
-            nx, ny = push_out(pool, ia, ib, rel)
-            wx = pose_a.c * nx - pose_a.s * ny
-            wy = pose_a.s * nx + pose_a.c * ny
         past = 0
-        if not born:
+        if r >= 0:
             # Past the middle of a body the chord shrinks to nothing and comes out the other way: a region then keeps
             # the way it came in, while it lives (theory 1). A wide chord that turns by more than 90 degrees is not
             # that: the sliver of a corner has found another edge, and that is another contact.
+            region = regions[r]
             against = not patch.blind and wx * region.nx + wy * region.ny < 0.0
             if patch.blind or (against and (region.past or region.chord * region.chord < region.area)):
                 wx = region.nx
                 wy = region.ny
                 past = 1
             elif against:
-                born = True
+                r = -1
+        born = r < 0
+        if born:
+            r = _take_region(regions, counters, p, kept, h)
+            if patch.blind:
+                nx, ny = push_out(pool, ia, ib, rel)
+                wx = pose_a.c * nx - pose_a.s * ny
+                wy = pose_a.s * nx + pose_a.c * ny
+        else:
+            old = _unhook(regions, old, r)
+            regions[r].next = kept
+            regions[r].stamp = stamp
+            regions[r].born = 0
+        kept = r
+        region = regions[r]
         region.past = past
         if patch.blind or past:
             patch = faceless(patch, wx, wy, past == 1)
         elif law.law == LAW_ENERGY:  # the gradient's line of action: through the chord's middle
             patch = centred(patch)
-        region.born = 1 if born else 0
-        if born:
-            region.placed = 0
-        else:
+        if not born:
             before = region.depth
             carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
             if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
@@ -216,32 +260,9 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
                     region.placed = PLACED
             if crushed(law, patch.depth, a, b):
                 region.placed = PLACED
-        if back > 0.0:
-            ax, ay = centre_of(a, pose_a)
-            bx, by = centre_of(b, pose_b)
-            fill(region, patch, ax, ay, bx, by)
-        else:
-            fill(region, patch, a.x, a.y, b.x, b.y)
-        if born:
-            region.l1 = 0.0
-            region.l2 = 0.0
-            region.lt = 0.0
-            region.step = h
-            region.spring = 0.0
-            region.tangent_stiffness = 0.0
-            region.back = 0.0
-        else:
-            nearing = region.mode == NEARING
-            if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
-                region.l1 = 0.0
-                region.l2 = 0.0
-                region.lt = 0.0
-            if region.mode >= STRUCK:
-                region.mode = REST
-            if region.mode == REST and bounces_again(law, pair, region, a, b, h):
-                region.mode = STRUCK
-            elif nearing and arrives(region, a, b, h):
-                region.born = 1  # hit at a speed of which its present overlap says nothing
+        fill(region, patch, ax, ay, bx, by)
+        if not born:
+            _go_on(law, pair, region, a, b, h)
     free_regions(regions, counters, old)
     pair.head = kept
     if pair.rate == 0.0 and kept >= 0:
@@ -347,29 +368,10 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
         if patch.blind or patch.reach <= deepest:
             continue
-        r = counters[FREE_REGION]
-        region = regions[r]
+        region = regions[counters[FREE_REGION]]
         fill(region, patch, ax, ay, bx, by)
-        u = closing(region, a, b, 0.0)
-        if u <= 0.0:
-            continue
-        counters[FREE_REGION] = region.next
-        counters[FREE_REGIONS] -= 1
-        counters[USED_REGIONS] = max(counters[USED_REGIONS], r + 1)
-        region.next = kept
-        kept = r
-        region.pair = p
-        region.stamp = counters[SUBSTEP]
-        region.past = 0
-        region.placed = 0
-        region.born = 1
-        region.opened = 0
-        region.l1 = 0.0
-        region.l2 = 0.0
-        region.lt = 0.0
-        region.step = h
-        region.spring = 0.0
-        region.tangent_stiffness = 0.0
+        if closing(region, a, b, 0.0) > 0.0:
+            kept = _take_region(regions, counters, p, kept, h)
     if kept < 0:
         return True
     if pair.rate == 0.0:
