@@ -15,6 +15,7 @@ from ..compile.jit import kernel
 from ..compile.raw_memory import record
 from ..geometry.arc import distance2
 from .constants import LEFT, MOVED, SETTLED
+from .islands import root_of, unite
 from .tables import ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
@@ -52,16 +53,6 @@ def moves(body: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def _root(tables: Tables, i: int) -> int:
-    """The body that stands for body i's island (union-find with halving: Tarjan & van Leeuwen 1984)."""
-    mobility = tables.mobility
-    while mobility[i].root != i:
-        mobility[i].root = mobility[mobility[i].root].root
-        i = mobility[i].root
-    return i
-
-
-@kernel(forceinline=True)
 def island_of(tables: Tables, row: Any) -> int:
     """The number of a row's island."""
     return int(tables.mobility[_of_row(tables, row)].island)
@@ -84,20 +75,18 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
     for k in range(tables.counters[LIVE]):
         i = tables.live[k]
         m = mobility[i]
-        m.root = i
+        tables.bodies[i].island = i
         m.island = -1
         if first == 0:
             m.solved = 0
     for r in range(n):
         row = tables.rows[r]
         if moves(tables.bodies[row.a]) and moves(tables.bodies[row.b]):
-            i = _root(tables, row.a)
-            j = _root(tables, row.b)
-            mobility[max(i, j)].root = min(i, j)
+            unite(tables, row.a, row.b)
     count = 0
     for r in range(n):
         i = _of_row(tables, tables.rows[r])
-        root = _root(tables, i)
+        root = root_of(tables, i)
         if mobility[root].island < 0:
             mobility[root].island = count
             tables.islands[count].rows = 0
@@ -112,7 +101,7 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
     for k in range(tables.counters[LIVE]):
         i = tables.live[k]
         if mobility[i].island < 0:
-            mobility[i].island = mobility[_root(tables, i)].island
+            mobility[i].island = mobility[root_of(tables, i)].island
         if not moves(tables.bodies[i]):
             mobility[i].island = -1
     measure(tables, law, h, True)
@@ -187,23 +176,14 @@ def held_by(row: Any, region: Any, h: float) -> float:
 def list_active(tables: Tables) -> None:
     """List the rows of active islands, in order, and their bodies with all that nothing moves."""
     counters = tables.counters
-    n = 0
     for r in range(counters[ROWS]):
-        number = island_of(tables, tables.rows[r])
-        if tables.islands[number].active:
-            tables.queue[n].row = r
-            tables.queue[n].island = number
-            n += 1
-    counters[QUEUE] = n
-    n = 0
+        tables.queue[r].row = r
+        tables.queue[r].island = island_of(tables, tables.rows[r])
+    counters[QUEUE] = counters[ROWS]
     for k in range(counters[LIVE]):
-        i = tables.live[k]
-        number = tables.mobility[i].island
-        if number < 0 or tables.islands[number].active:
-            tables.members[n] = i
-            tables.mobility[i].solved = 0
-            n += 1
-    counters[MEMBERS] = n
+        tables.members[k] = tables.live[k]
+    counters[MEMBERS] = counters[LIVE]
+    _drop(tables)
 
 
 @kernel
@@ -222,11 +202,11 @@ def _drop(tables: Tables) -> None:
     for k in range(counters[MEMBERS]):
         i = tables.members[k]
         number = tables.mobility[i].island
-        if number < 0 or tables.islands[number].active:
+        active = number < 0 or tables.islands[number].active
+        tables.mobility[i].solved = not active
+        if active:
             tables.members[n] = i
             n += 1
-        else:
-            tables.mobility[i].solved = 1
     counters[MEMBERS] = n
 
 

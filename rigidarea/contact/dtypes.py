@@ -28,7 +28,7 @@ BODY = record(
         ("steps", "i4"),  # that its island takes; 0: it does not move
         ("taken", "i4"),  # that it took in the last frame; 0: it was not there
         ("asked", "i4"),  # that the user wants for its island, at least; 0: none
-        ("island", "i4"),  # row of a body of the same island (`islands`)
+        ("island", "i4"),  # row of a body of the same island (`islands`, `active`)
         ("held", "i4"),  # for how many of its shapes, and for the space itself, it has its row
         ("joints", "i4"),  # of them, those that have no place in the order of the sweeps yet (`order_joints`)
         ("sum_of_joints", "i4"),  # and the sum of their numbers: of one that is left, its own

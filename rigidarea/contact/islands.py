@@ -159,7 +159,7 @@ def spare(tables: Tables, i: int, n: int) -> None:
 
 
 @kernel
-def _root(tables: Tables, i: int) -> int:
+def root_of(tables: Tables, i: int) -> int:
     """The body that stands for the island of body i (union-find with halving: Tarjan & van Leeuwen 1984)."""
     bodies = tables.bodies
     while bodies[i].island != i:
@@ -169,14 +169,19 @@ def _root(tables: Tables, i: int) -> int:
 
 
 @kernel
+def unite(tables: Tables, i: int, j: int) -> None:
+    """The islands of bodies i and j are one."""
+    i = root_of(tables, i)
+    j = root_of(tables, j)
+    tables.bodies[max(i, j)].island = min(i, j)
+
+
+@kernel
 def connect(tables: Tables, i: int, j: int) -> None:
     """The islands of bodies i and j are one; nothing where one of the two does not move (or is none: -1)."""
     if i < 0 or j < 0 or tables.bodies[i].kind == FIXED or tables.bodies[j].kind == FIXED:
         return
-    i = _root(tables, i)
-    j = _root(tables, j)
-    if i != j:
-        tables.bodies[max(i, j)].island = min(i, j)
+    unite(tables, i, j)
 
 
 @kernel(forceinline=True)
@@ -221,12 +226,12 @@ def number(tables: Tables) -> int:
     bodies = tables.bodies
     awake = tables.awake
     for k in range(counters[AWAKE]):
-        root = _root(tables, awake[k])
+        root = root_of(tables, awake[k])
         bodies[root].steps = max(bodies[root].steps, bodies[awake[k]].steps)
     numbers = min(1, counters[AWAKE])
     for k in range(counters[AWAKE]):
         body = bodies[awake[k]]
-        body.steps = bodies[_root(tables, awake[k])].steps
+        body.steps = bodies[root_of(tables, awake[k])].steps
         if body.steps != bodies[awake[0]].steps:
             numbers = 2
     return int(numbers)
@@ -254,11 +259,11 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
         if body.inverse_moment > 0.0:
             spin = abs(body.w) + abs(body.gain_w)
             energy += 0.5 * spin * spin / body.inverse_moment
-        tables.islands[_root(tables, tables.awake[k])].energy += energy
+        tables.islands[root_of(tables, tables.awake[k])].energy += energy
     for k in range(counters[AWAKE]):  # as it is now, whichever islands come to be one
         body = tables.bodies[tables.awake[k]]
         arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
-        energy = tables.islands[_root(tables, tables.awake[k])].energy
+        energy = tables.islands[root_of(tables, tables.awake[k])].energy
         body.way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
     found = False
     for k in range(counters[NEAR]):

@@ -58,8 +58,7 @@ MOBILITY = record(
         ("vy", "f8"),
         ("vw", "f8"),
         ("moved", "i4"),  # 1: by what relaxing has taken from it
-        ("root", "i4"),  # of its island of rows (`active`): a body that stands for it; its number, -1: none
-        ("island", "i4"),
+        ("island", "i4"),  # number of its island of rows (`active`); -1: none
         ("solved", "i4"),  # 1: that is solved
     ]
 )
