@@ -11,10 +11,10 @@ from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
 from ..geometry.pool import Pool
 from ..geometry.work import Work
-from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, STEP, TURNS
+from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
 from .exposed import exposed_patch
 from .motion import centre_of, earlier, since_of, unseen_for
-from .region import closing, fill, inverse_mass, region_stiffness, turn_to
+from .region import closing, fill, inverse_mass, region_stiffness
 from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
 
@@ -31,18 +31,14 @@ def _nearest(
     ia: int,
     ib: int,
     pose: Pose,
-    facing: float,
 ) -> int:
-    """Which of the work's n loops is nearest to a region, of those turned to its direction by more than `facing`.
-
-    -1: none.
-    """
+    """Which of the work's n loops is nearest to a region, of those that do not face away from it; -1: none."""
     least = np.inf
     best = -1
     for k in range(n):
         patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
         far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
-        if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > facing and far < least:
+        if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
             least = far
             best = k
     return best
@@ -93,7 +89,7 @@ def touch(
             pose = earlier(a, then)
             other = earlier(b, then)
             n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
-            best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, 0.0)
+            best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose)
             if best >= 0:
                 break
         if best < 0:
@@ -197,53 +193,6 @@ def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
     )
 
 
-@kernel(forceinline=True)
-def _lying(law: Law, pair: Any, inverse: float) -> float:
-    """How deep one lies on the other under its own weight (length)."""
-    return law.gravity / (inverse * pair.rate)
-
-
-@kernel
-def goes_over(
-    pool: Pool,
-    tables: Tables,
-    work: Work,
-    law: Law,
-    pair: Any,
-    region: Any,
-    ia: int,
-    ib: int,
-    a: Any,
-    b: Any,
-    height: float,
-    h: float,
-) -> bool:
-    """Whether a new region is an edge no higher than what bodies sink by: what is met there goes over it.
-
-    So the next of butted tiles shows a body that lies on the last one its side, as high as the body has sunk. The
-    chord of the sliver that they share says "across" until it is longer than high, a substep or a few later: that
-    direction is taken at once, and the region is no blow.
-    """
-    if region.chord > height or law.followed == math.inf:
-        return False
-    u = closing(region, a, b, 0.0)
-    if u <= 0.0:
-        return False
-    ahead = max(h, 2.0 * height / u)
-    if 0.5 * law.gravity * ahead * ahead > height:
-        return False  # too slow to be seen there: what gravity adds on the way, and somebody carries, would be more
-    pose = earlier(a, -ahead)
-    n, _ = overlap_of_outlines(pool, ia, pose, ib, earlier(b, -ahead), work)
-    best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose, -np.inf)
-    if best < 0:
-        return False
-    patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
-    if patch.nx * region.nx + patch.ny * region.ny > TURNS:
-        return False
-    turn_to(region, patch.nx, patch.ny)
-    return True
-
-
 @kernel
 def enter(
     pool: Pool,
@@ -264,18 +213,6 @@ def enter(
     region.stiffness = stiffness_of(law, pair, region, inverse, h)
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     phase2 = stiffness * inverse * h * h
-    height = STEP * _lying(law, pair, inverse)
-    if back == 0.0 and goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, height, h):
-        region.mode = REST
-        region.placed = 0
-        region.opened = 0
-        region.first_speed = 0.0
-        region.rest_depth = region.depth
-        region.l1 = 0.0  # what it bore, it bore in another direction
-        region.l2 = 0.0
-        region.lt = 0.0
-        region.spring = 0.0
-        return
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
     region.rest_depth = depth_for(law, pair, region, push)
     unseen = unseen_for(pair, h)
@@ -330,9 +267,6 @@ def expect(
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     if stiffness * inverse * h * h <= law.followed:
         return False  # the steps follow it
-    lying = _lying(law, pair, inverse)
-    if goes_over(pool, tables, work, law, pair, region, ia, ib, a, b, STEP * lying, h):
-        return False  # it will be there, and say so itself
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
     if pair.elasticity * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
@@ -348,7 +282,7 @@ def expect(
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
-    rest = max(lying, depth_for(law, pair, region, gain / inverse))
+    rest = max(law.gravity / (inverse * pair.rate), depth_for(law, pair, region, gain / inverse))
     region.rest_depth = min(region.depth, rest)
     region.back = ahead
     return True

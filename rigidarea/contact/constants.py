@@ -41,11 +41,6 @@ LOOK = 0.5
 MOST_LOOKS = 1e4
 #: A contact at rest that closes by more than this fraction of the smaller body in a step is hit: an impact again.
 HIT = 0.05
-#: An edge of no more than so many times the depth at which a body lies is none to what slides over it: of the next of
-#: butted tiles. Twice that may be carried by one end of a face, and a sinking body is on its way there.
-STEP = 4.0
-#: Cosine of the angle by which such a region's direction turns as it grows.
-TURNS = 0.7
 #: Fraction of the width of an outline's slots by which others may move past it in a substep. Gears hand over smoothly
 #: up to 0.1 of a tooth, by which they go past each other by a quarter of a slot (`tests/solve/test_teeth.py`).
 FEATURE = 0.15
