@@ -251,9 +251,8 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             patch = centred(patch)
         if not born:
             before = region.depth
-            carried = region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force
-            if carried or (region.placed == PLACED and patch.depth <= 10.0 * region.rest_depth):
-                region.placed = 0
+            if region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force:
+                region.placed = 0  # it bears its load
             if region.placed == 0 and patch.depth > 2.0 * before:
                 region.depth = patch.depth
                 if jumped_in(law, region, before, a, b, h):
