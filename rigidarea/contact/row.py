@@ -34,7 +34,7 @@ from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
 from .region import beyond, closing, growth, inverse_mass, region_stiffness, slipping
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
-from .target_speeds import aim_bounce, aim_speculative, least_extent, may_close, turn_along
+from .target_speeds import aim_bounce, aim_speculative, least_extent, turn_along
 
 
 @kernel
@@ -113,7 +113,10 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     elif flies_off(law, pair, r, a, b, h):
         gamma = 1.0 / inverse
         force = 0.0
-        row.t1 = may_close(-closing(r, a, b, 0.0), a, b, h)
+        # Sent back it may close as fast as it opens. Stopped sooner it would be pushed while it opens, and gain energy
+        # (l (v + v') / 2: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988,
+        # doi:10.1007/978-3-7091-2624-0_1).
+        row.t1 = -closing(r, a, b, 0.0)
         row.t2 = row.t1
         row.alpha = 0.0
         row.alpha_t = 0.0

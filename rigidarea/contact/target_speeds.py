@@ -10,7 +10,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .constants import LOOK, REST_KICKS, SMOOTH
+from .constants import REST_KICKS, SMOOTH
 from .region import closing
 
 
@@ -22,16 +22,6 @@ def least_extent(a: Any, b: Any) -> float:
     if b.inverse_mass == 0.0:
         return float(a.extent)
     return float(min(a.extent, b.extent))
-
-
-@kernel(forceinline=True)
-def may_close(opening: float, a: Any, b: Any, h: float) -> float:
-    """How fast what opens so fast, and is sent back, may close: as fast, but no further than from one look to the next.
-
-    Stopped sooner it would be pushed while it opens, and gain energy (l (v + v') / 2: J. J. Moreau, "Unilateral contact
-    and dry friction in finite freedom dynamics", 1988, doi:10.1007/978-3-7091-2624-0_1).
-    """
-    return float(min(opening, LOOK * least_extent(a, b) / h))
 
 
 @kernel
@@ -99,8 +89,6 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: flo
         target = since - e * max(0.0, u0)
         if u0 > 0.0 or e == 0.0:
             target = min(0.0, target)
-        else:
-            target += may_close(-u0, a, b, h)
         if end == 0:
             row.t1 = target
         else:
