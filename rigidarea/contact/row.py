@@ -29,7 +29,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.turning import turning_speed
 from .birth import drives, flies_off
-from .constants import HIT, OVERTAKE, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import OVERTAKE, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
 from .region import beyond, closing, growth, inverse_mass, region_stiffness, slipping
@@ -186,8 +186,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         if row.ends == 1:
             row.l1 += row.l2
             row.l2 = 0.0
-            most = HIT * least / h
-            row.t1 = min(most, max(-most, turning_speed(r, a, b, h)))
+            row.t1 = turning_speed(r, a, b, h)
             if theta > 0.0:
                 row.t1 += turn_along(r, a, b, 0.0)
                 row.nx = r.nx
