@@ -67,9 +67,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
     if r.mode == STRUCK:
-        aim_bounce(row, r, a, b, pair.elasticity, surface, h)
+        aim_bounce(row, r, a, b, pair.elasticity, h)
     elif r.mode == NEARING:
-        aim_speculative(row, r, a, b, surface, h)
+        aim_speculative(row, r, a, b, h)
     else:
         row.t1 = 0.0
         row.t2 = 0.0
@@ -96,50 +96,35 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             follow_impact(r, pair.elasticity, middle_speed, inverse, h)
     r.speed = middle_speed
     r.slip = slipping(r, a, b, 0.5) - surface
-    gamma = 0.0
+    # a given speed: of a bounce, or of what is yet to come, neither of which has borne a load
+    gamma = 1.0 / inverse
+    force = 0.0
+    row.alpha = 0.0
+    row.alpha_t = 0.0
+    row.gamma_t = 1.0 / inverse_t
+    row.ft = 0.0
+    row.tt = surface
+    row.l1 = 0.0
+    row.l2 = 0.0
+    row.lt = 0.0
     if r.mode >= STRUCK:
-        gamma = 1.0 / inverse
-        force = 0.0
-        row.gamma_t = 1.0 / inverse_t
-        row.ft = 0.0
         r.spring = 0.0
-        scale = h / r.step if r.mode == NEARING else 0.0  # a bounce says nothing of a load
-        row.l1 = r.l1 * scale
-        row.l2 = 0.0
-        row.lt = r.lt * scale
-        if row.ends == 2:
-            row.l1 *= 0.5
-            row.l2 = row.l1
     elif flies_off(law, pair, r, a, b, h):
-        gamma = 1.0 / inverse
-        force = 0.0
         # Sent back it may close as fast as it opens. Stopped sooner it would be pushed while it opens, and gain energy
         # (l (v + v') / 2: J. J. Moreau, "Unilateral contact and dry friction in finite freedom dynamics", 1988,
         # doi:10.1007/978-3-7091-2624-0_1).
         row.t1 = -closing(r, a, b, 0.0)
         row.t2 = row.t1
-        row.alpha = 0.0
-        row.alpha_t = 0.0
-        row.gamma_t = 1.0 / inverse_t
-        row.ft = 0.0
-        row.tt = surface
         r.spring = 0.0
-        row.l1 = 0.0
-        row.l2 = 0.0
-        row.lt = 0.0
     elif r.mode == IMPACT:
         row.ends = 1
         row.e1 = 0.0
         row.e2 = 0.0
+        gamma = 0.0
         row.alpha = 1.0
         force = h * impact_force(r, pair.elasticity, elastic, middle_speed, inverse, h)
-        row.alpha_t = 0.0
-        row.gamma_t = 1.0 / inverse_t
-        row.ft = 0.0
-        row.tt = surface
         r.spring = 0.0
         row.l1 = force
-        row.l2 = 0.0
         row.lt = r.lt * (h / r.step)
     else:
         stiffness = max(stiffness, pair.firm)
@@ -178,7 +163,6 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.alpha_t = 1.0 / (1.0 + qt)
         row.gamma_t = h * ct * row.alpha_t
         row.ft = h * r.spring
-        row.tt = surface
         scale = h / r.step
         row.l1 = r.l1 * scale
         row.l2 = r.l2 * scale

@@ -64,7 +64,7 @@ def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
 
 
 @kernel
-def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: float, h: float) -> None:
+def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
     It came `back` ago at u0; now it closes at u, what else pushes having added u - u0. To leave is e u0 less that;
@@ -72,7 +72,6 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: flo
     so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
     """
     back = r.back
-    row.alpha = 0.0
     full = closing(r, a, b, 0.0)
     gain = (full - closing(r, a, b, 1.0)) / h
     time = back + 0.5 * h
@@ -95,8 +94,6 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, surface: flo
             row.t2 = target
     if e == 0.0 and row.ends == 1:
         row.t1 = turn_along(r, a, b, max(0.0, row.t1))
-    row.alpha_t = 0.0
-    row.tt = surface
     if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
         row.shift = back
     if row.shift == 0.0:
@@ -124,16 +121,13 @@ def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
 
 
 @kernel
-def aim_speculative(row: Any, r: Any, a: Any, b: Any, surface: float, h: float) -> None:
+def aim_speculative(row: Any, r: Any, a: Any, b: Any, h: float) -> None:
     """An overlap yet to come, as it would be in r.back: each end may close by what is left of its gap.
 
     Between a face's ends the thickness to come is linear: mean times (1 + lean) and (1 - lean), the centroid being the
     point of application. A corner is thicker between them: the thicker end then has all of the depth. No end is asked
     to open: they do not overlap yet, whatever is seen of the overlap to come when they come from aside.
     """
-    row.alpha = 0.0
-    row.alpha_t = 0.0
-    row.tt = surface
     speed = closing(r, a, b, 0.0)
     turn = a.w - b.w
     _one_point(r, a, b, row.friction)
