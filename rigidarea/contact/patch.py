@@ -14,9 +14,6 @@ from ..geometry.turning import curvature_of_disc, curvatures
 from ..geometry.work import A_EDGE, Work
 from .tables import CHORD, LAW_AREA, Law
 
-#: A disc pressed in so deep that the centroid is nearer to its middle than this part of its radius keeps the chord's.
-DEEP = 0.1
-
 
 class Patch(NamedTuple):
     """One loop of an overlap as a contact sees it, world axes."""
@@ -90,7 +87,7 @@ def _radial(work: Work, loop: Any, disc: int, nx: float, ny: float) -> tuple[flo
             length = math.sqrt(x * x + y * y)
             if disc != A_EDGE:
                 length = -length
-            if abs(length) > DEEP * abs(work.bows[i, 2]) and (x * nx + y * ny) * length > 0.0:
+            if (x * nx + y * ny) * length > 0.0:
                 return x / length, y / length, 1
             break
     return nx, ny, 0
