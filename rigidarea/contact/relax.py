@@ -16,7 +16,6 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.place import place
 from .active import island_of, list_active, measure
-from .constants import HIT
 from .tables import DRIFTS, ISLANDS, LIVE, ROWS, Law, Tables
 
 
@@ -48,11 +47,7 @@ def begin_to_relax(tables: Tables, law: Law, h: float) -> bool:
 
 @kernel
 def end_relaxing(tables: Tables, h: float) -> None:
-    """Move bodies by what has been taken from their velocities, over a substep of h.
-
-    By as much as contacts take apart: more than HIT of a body is a blow that the sweeps had not solved yet, and the
-    velocity that it has now is the better one.
-    """
+    """Move bodies by what has been taken from their velocities, over a substep of h."""
     for k in range(tables.counters[LIVE]):
         i = tables.live[k]
         body = tables.bodies[i]
@@ -60,8 +55,7 @@ def end_relaxing(tables: Tables, h: float) -> None:
         taken.vx -= body.vx
         taken.vy -= body.vy
         taken.vw -= body.w
-        way = h * (abs(taken.vx) + abs(taken.vy) + abs(taken.vw) * body.extent)
-        taken.moved = 0.0 < way <= HIT * body.extent and body.kind == DRIFTS
+        taken.moved = body.kind == DRIFTS and (taken.vx != 0.0 or taken.vy != 0.0 or taken.vw != 0.0)
         if taken.moved:
             body.x += h * taken.vx
             body.y += h * taken.vy
