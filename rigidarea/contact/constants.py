@@ -62,9 +62,6 @@ LOAD_TIME = 0.5
 #: than so many times. With depth the same under any load, the lowest of a pile of twenty layers were twenty times as
 #: stiff as ten sweeps can solve: their error moved bodies by more than they overlap, and such a pile never rested.
 DEEPER = 20.0
-#: Turned by less than this in a substep (radians), a body's outline has gone straight: what parts it from another at
-#: both ends of the way does so between them, but for 1/8 of this squared of its size.
-STRAIGHT_WAY = 0.1
 #: A joint without an error gives way by this part of its effective mass (`joint`): what hangs in one sinks by this part
 #: of the way that it falls in a substep, over the part of an error that goes.
 JOINT_GIVE = 1e-5

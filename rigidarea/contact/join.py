@@ -16,7 +16,7 @@ from ..geometry.place import Pose, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .broad import swing
-from .constants import LOOK, STRAIGHT_WAY
+from .constants import LOOK
 from .joint import make_joint_row
 from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .row import make_row
@@ -103,16 +103,13 @@ def no_pair_comes_near(tables: Tables, time: float) -> bool:
 
 @kernel
 def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> bool:
-    """Whether what parted a pair in the substep before parts it now, and did on the way."""
+    """Whether what parted a pair when it was last looked at parts it now; not of one that may have jumped."""
     if pair.axis_x == 0.0 and pair.axis_y == 0.0:
         return False
-    stamp = tables.counters[SUBSTEP]
-    if jumped(tables, pair, a, b, h) > 1 and (
-        pair.parted != stamp - 1 or h * max(abs(a.w), abs(b.w)) > STRAIGHT_WAY
-    ):
+    if jumped(tables, pair, a, b, h) > 1:
         return False
     pair.gap = _gap(pool, tables, pair, pose_of(a), pose_of(b))
-    pair.parted = stamp
+    pair.parted = tables.counters[SUBSTEP]
     if pair.gap <= 0.0:
         return False
     pair.side_a = 0  # a segment without thickness shows what is off it the side on which that comes
