@@ -9,34 +9,21 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
-from ..geometry.pool import Pool
-from ..geometry.work import Work
 from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
-from .exposed import exposed_patch
+from .exposed import TwoShapes, exposed_patch
 from .motion import centre_of, earlier, since_of, unseen_for
 from .region import closing, fill, inverse_mass, region_stiffness
 from .stiffness import depth_for, stiffness_of
-from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law, Tables
+from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 
 
 @kernel
-def _nearest(
-    pool: Pool,
-    tables: Tables,
-    work: Work,
-    law: Law,
-    pair: Any,
-    region: Any,
-    n: int,
-    ia: int,
-    ib: int,
-    pose: Pose,
-) -> int:
+def _nearest(two: TwoShapes, region: Any, n: int, pose: Pose) -> int:
     """Which of the work's n loops is nearest to a region, of those that do not face away from it; -1: none."""
     least = np.inf
     best = -1
     for k in range(n):
-        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose)
+        patch = exposed_patch(two, k, pose)
         far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
         if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
             least = far
@@ -45,21 +32,7 @@ def _nearest(
 
 
 @kernel
-def touch(
-    pool: Pool,
-    tables: Tables,
-    work: Work,
-    law: Law,
-    pair: Any,
-    region: Any,
-    ia: int,
-    ib: int,
-    a: Any,
-    b: Any,
-    back: float,
-    h: float,
-    unseen: float,
-) -> bool:
+def touch(two: TwoShapes, region: Any, back: float, h: float, unseen: float) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
     Found at depth d, `back` ago, with the closing speed u there and what else pushes giving it g in a time:
@@ -68,6 +41,7 @@ def touch(
     are: what is done there and then, and carried on from there, keeps all momenta. All that holds of what is to come as
     well (`back` negative).
     """
+    a, b = two.a, two.b
     come = back > 0.0
     region.back = back
     for _ in range(3):
@@ -88,13 +62,13 @@ def touch(
             then = back + share * tau
             pose = earlier(a, then)
             other = earlier(b, then)
-            n, _ = overlap_of_outlines(pool, ia, pose, ib, other, work)
-            best = _nearest(pool, tables, work, law, pair, region, n, ia, ib, pose)
+            n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
+            best = _nearest(two, region, n, pose)
             if best >= 0:
                 break
         if best < 0:
             return come
-        patch = exposed_patch(pool, tables, pair, work, law, best, ia, ib, pose)
+        patch = exposed_patch(two, best, pose)
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
         fill(region, patch, ax, ay, bx, by)
@@ -194,21 +168,9 @@ def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
 
 
 @kernel
-def enter(
-    pool: Pool,
-    tables: Tables,
-    work: Work,
-    law: Law,
-    pair: Any,
-    region: Any,
-    ia: int,
-    ib: int,
-    a: Any,
-    b: Any,
-    back: float,
-    h: float,
-) -> None:
+def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
+    law, pair, a, b = two.law, two.pair, two.a, two.b
     inverse = inverse_mass(region, a, b)
     region.stiffness = stiffness_of(law, pair, region, inverse, h)
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
@@ -220,7 +182,7 @@ def enter(
     if phase2 <= law.followed and back == 0.0:
         region.mode = REST if placed else IMPACT
     else:
-        touched = touch(pool, tables, work, law, pair, region, ia, ib, a, b, back, h, unseen)
+        touched = touch(two, region, back, h, unseen)
         region.mode = STRUCK if touched else REST
     region.placed = PLACED if placed and region.mode == REST else 0
     u = closing(region, a, b, 0.5)
@@ -243,25 +205,12 @@ def enter(
 
 
 @kernel
-def expect(
-    pool: Pool,
-    tables: Tables,
-    work: Work,
-    law: Law,
-    pair: Any,
-    region: Any,
-    ia: int,
-    ib: int,
-    a: Any,
-    b: Any,
-    ahead: float,
-    h: float,
-    first: bool,
-) -> bool:
+def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> bool:
     """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither.
 
     A bounce only at the first look (`meet_ahead`).
     """
+    law, pair, a, b = two.law, two.pair, two.a, two.b
     inverse = inverse_mass(region, a, b)
     region.stiffness = stiffness_of(law, pair, region, inverse, h)
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
@@ -274,11 +223,7 @@ def expect(
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
-        return (
-            first
-            and touch(pool, tables, work, law, pair, region, ia, ib, a, b, -ahead, h, h)
-            and region.back >= -0.5 * h
-        )
+        return first and touch(two, region, -ahead, h, h) and region.back >= -0.5 * h
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same

@@ -9,7 +9,7 @@ boundary, which for a boundary that is exposed as a whole is the chord's (the in
 from __future__ import annotations
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
 from ..geometry.locate import inside_outline
@@ -24,6 +24,20 @@ from .tree import STILL, next_met
 FLUSH = 2e-4
 #: A direction that turns by less than the angle with this cosine leaves a straight face what it is.
 SAME_FACE = 0.9
+
+
+class TwoShapes(NamedTuple):
+    """Two shapes whose outlines overlap, or are looked at where they would."""
+
+    pool: Pool
+    tables: Tables
+    work: Work
+    law: Law
+    pair: Any
+    ia: int  # the outlines that they show each other
+    ib: int
+    a: Any  # their bodies
+    b: Any
 
 
 @kernel
@@ -99,16 +113,13 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
 
 
 @kernel
-def exposed_patch(
-    pool: Pool, tables: Tables, pair: Any, work: Work, law: Law, k: int, ia: int, ib: int, pose: Pose
-) -> Patch:
+def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
     """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges.
 
     It is blind and of no area where a disc is only within a round end of which nothing is exposed.
     """
+    pool, tables, work, law, pair, ia, ib, a, b = two
     patch = patch_of(pool, work, law, k, ia, ib, pose)
-    a = tables.bodies[tables.shapes[pair.a].body]
-    b = tables.bodies[tables.shapes[pair.b].body]
     if patch.blind or law.direction != CHORD or (a.kind == FIXED) == (b.kind == FIXED):
         return patch
     own, mover, side = (pair.a, b, A_EDGE) if a.kind == FIXED else (pair.b, a, 1 - A_EDGE)

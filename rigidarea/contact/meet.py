@@ -20,7 +20,7 @@ from ..geometry.pool import Pool
 from ..geometry.work import Relative
 from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
 from .constants import HIT
-from .exposed import exposed_patch
+from .exposed import TwoShapes, exposed_patch
 from .motion import (
     afford,
     centre_of,
@@ -206,12 +206,13 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
     ax, ay = centre_of(a, pose_a)
     bx, by = centre_of(b, pose_b)
+    two = TwoShapes(pool, tables, work, law, pair, ia, ib, a, b)
     old = pair.head
     kept = -1
     for k in range(n):
         if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
             continue
-        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
+        patch = exposed_patch(two, k, pose_a)
         if patch.area == 0.0:
             continue
         r = _match(regions, old, patch.x, patch.y, stamp)
@@ -270,7 +271,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     while r >= 0:  # after the loops have been read: looking back takes the work
         region = regions[r]
         if region.born:
-            enter(pool, tables, work, law, pair, region, ia, ib, a, b, back, h)
+            enter(two, region, back, h)
         steer(pair, region, a, b)
         region.stiffness = stiffness_of(law, pair, region, inverse_mass(region, a, b), h)
         r = region.next
@@ -355,6 +356,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     pose_a = earlier(a, -ahead)
     pose_b = earlier(b, -ahead)
     rel = seen_from(pool.heads[ia], pose_a, pool.heads[ib], pose_b)
+    two = TwoShapes(pool, tables, work, law, pair, ia, ib, a, b)
     kept = -1
     ax, ay = centre_of(a, pose_a)
     bx, by = centre_of(b, pose_b)
@@ -364,7 +366,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
             continue
-        patch = exposed_patch(pool, tables, pair, work, law, k, ia, ib, pose_a)
+        patch = exposed_patch(two, k, pose_a)
         if patch.blind or patch.reach <= deepest:
             continue
         region = regions[counters[FREE_REGION]]
@@ -379,7 +381,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
     while r >= 0:  # after the loops have been read: looking for the touch takes the work
         region = regions[r]
         after = region.next
-        if expect(pool, tables, work, law, pair, region, ia, ib, a, b, ahead, h, first and old < 0):
+        if expect(two, region, ahead, h, first and old < 0):
             steer(pair, region, a, b)
             region.next = pair.head
             pair.head = r
