@@ -173,14 +173,15 @@ def _bias_vector(row: Any, joint: Any, x: float, y: float, h: float) -> None:
 
 
 @kernel(forceinline=True)
-def _give(row: Any, a: Any, b: Any, h: float) -> float:
+def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
     """By which part of its effective mass a joint gives way: JOINT_GIVE, and more where it has an error to mend.
 
     Joints that nearly contradict each other, two rods of one line, can all be held, at any speed across. What gives way
     by g bounds that: the gain of a solve (W + g)^-1 is at most 1 / (2 sqrt(g)) (Tikhonov), so that with g = (t h / e)^2
-    an error that goes at the speed t moves neither of the joint's own two bodies by more than half the smaller one's
-    extent e in a step; what those push or pull in turn it does not bound. (A limit that is not reached yet asks for
-    nothing; a rotary joint turns by half a radian.)
+    an error that goes at the speed t moves neither of the joint's own two bodies by more than e / 2 in a step; what
+    those push or pull in turn it does not bound. e is the smaller one's extent, or the error where that is larger: what
+    bears a load far above its own would give way to it the more the farther it has given way. (A limit that is not
+    reached yet asks for nothing; a rotary joint turns by half a radian.)
     """
     t1 = max(row.t1 if row.low < 0.0 else 0.0, -row.t1 if row.high > 0.0 else 0.0)
     tt = max(row.tt if row.low_t < 0.0 else 0.0, -row.tt if row.high_t > 0.0 else 0.0)
@@ -188,6 +189,7 @@ def _give(row: Any, a: Any, b: Any, h: float) -> float:
     if row.nx != 0.0 or row.ny != 0.0:
         least = min(a.extent if moves(a) else math.inf, b.extent if moves(b) else math.inf)
         part = part / least if least > 0.0 else 0.0
+    part = min(part, 1.0 - joint.error_bias**h)
     return float(JOINT_GIVE + part * part)
 
 
@@ -266,7 +268,7 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     if row.w11 <= 0.0:
         return False
     row.weight = row.w11
-    give = JOINT_GIVE if kind == MOTOR else _give(row, a, b, h)
+    give = JOINT_GIVE if kind == MOTOR else _give(row, joint, a, b, h)
     row.f1 = 0.0
     row.f2 = 0.0
     row.ft = 0.0

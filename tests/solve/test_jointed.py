@@ -43,7 +43,7 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 3,000 at most 24: measured 20. By pymunk's own response one in seven or more, the other way round: 505.
+    """Of 3,000 at most 24: measured 19. By pymunk's own response one in seven or more, the other way round: 453.
 
     (75 while joints that nearly contradict each other were all held. What is left: paddles and platforms that wedge
     bodies in corners.)
