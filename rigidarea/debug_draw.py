@@ -21,7 +21,7 @@ import shapely
 from pymunk.space_debug_draw_options import SpaceDebugColor as Color
 
 from .geometry.arcs import Points
-from .geometry.outline import Outline
+from .geometry.outline import Outline, outline_on
 from .overlap_queries import overlap
 
 #: Largest sagitta of what is drawn in the place of an arc (length of the drawing: a pixel, where that is its unit).
@@ -73,8 +73,8 @@ class OutlineOptions(pymunk.SpaceDebugDrawOptions):
 
     def color_for_shape(self, shape: pymunk.Shape) -> Color:
         """The colour of a shape: Chipmunk asks for it before it draws the shape."""
-        outline = getattr(shape, "outline", None)
-        self._shape = shape if isinstance(outline, Outline) and outline.proxied else None
+        outline = outline_on(shape)
+        self._shape = shape if outline is not None and outline.proxied else None
         return super().color_for_shape(shape)
 
     def draw_circle(

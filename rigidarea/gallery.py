@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from .chipmunk import AreaContact, attach
 from .geometry.gate import ShapeAttributes
-from .geometry.outline import Outline
+from .geometry.outline import Outline, outline_on
 
 ENGINES = ("area", "pymunk")
 
@@ -154,8 +154,8 @@ def decompose(space: pymunk.Space) -> int:
     added = 0
     known: dict[Outline, list[NDArray[np.float64]]] = {}
     for shape in list(space.shapes):
-        outline = getattr(shape, "outline", None)
-        if not isinstance(outline, Outline) or outline.two_sided:
+        outline = outline_on(shape)
+        if outline is None or outline.two_sided:
             continue
         if outline not in known:
             rings = [np.asarray(ring) for ring in outline.polygon_rings]

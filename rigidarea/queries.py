@@ -11,7 +11,7 @@ from pymunk import PointQueryInfo, SegmentQueryInfo, Vec2d
 
 from .geometry.arcs import Points, on_arc
 from .geometry.gate import numbers
-from .geometry.outline import Outline
+from .geometry.outline import Outline, outline_on
 from .overlap_queries import covers
 
 #: Every shape; pymunk's default.
@@ -82,8 +82,8 @@ def point_query(
 
 
 def _covers(shape: pymunk.Shape, point: tuple[float, float]) -> bool:
-    outline = getattr(shape, "outline", None)
-    if not isinstance(outline, Outline) or outline.two_sided or shape.body is None:
+    outline = outline_on(shape)
+    if outline is None or outline.two_sided or shape.body is None:
         return True
     return covers(outline, (*shape.body.position, shape.body.angle), point)
 
@@ -103,22 +103,18 @@ def segment_query(
     a, b = (np.array(numbers(place, name, 2), float) for place, name in ((start, "start"), (end, "end")))
     found = []
     for hit in space.segment_query(tuple(a.tolist()), tuple(b.tolist()), 0, shape_filter):
-        outline = getattr(hit.shape, "outline", None)
-        if (
-            not isinstance(outline, Outline)
-            or outline.two_sided
-            or hit.shape is None
-            or hit.shape.body is None
-        ):
+        shape = hit.shape
+        outline = None if shape is None else outline_on(shape)
+        if shape is None or shape.body is None or outline is None or outline.two_sided:
             found.append(hit)
             continue
-        if _covers(hit.shape, (float(a[0]), float(a[1]))):
+        if _covers(shape, (float(a[0]), float(a[1]))):
             back = (a - b) / (math.hypot(*(a - b)) or 1.0)
-            found.append(SegmentQueryInfo(hit.shape, Vec2d(*a), Vec2d(*back), 0.0))
+            found.append(SegmentQueryInfo(shape, Vec2d(*a), Vec2d(*back), 0.0))
             continue
-        fractions, normals = _crossings(a, b, _edges(outline, hit.shape.body))
+        fractions, normals = _crossings(a, b, _edges(outline, shape.body))
         if len(fractions):
             k = int(np.argmin(fractions))
             t = float(fractions[k])
-            found.append(SegmentQueryInfo(hit.shape, Vec2d(*(a + t * (b - a))), Vec2d(*normals[k]), t))
+            found.append(SegmentQueryInfo(shape, Vec2d(*(a + t * (b - a))), Vec2d(*normals[k]), t))
     return sorted(found, key=lambda hit: hit.alpha)

@@ -12,7 +12,7 @@ import pymunk
 
 from ..chipmunk import attached
 from ..geometry.arcs import sweeps
-from ..geometry.outline import Outline
+from ..geometry.outline import Outline, outline_on
 from .limits import file_of
 from .scene_joints import COMMON, JOINTS, POINT, TYPES
 from .scene_reader import CONTACT, FORMAT, SPACE
@@ -99,8 +99,8 @@ def _body(body: pymunk.Body, name: str, outlines: dict[Outline, str]) -> dict[st
 
 def _shape(shape: pymunk.Shape, outlines: dict[Outline, str]) -> dict[str, Any]:
     told: dict[str, Any] = {}
-    outline = getattr(shape, "outline", None)
-    if isinstance(outline, Outline):
+    outline = outline_on(shape)
+    if outline is not None:
         told["outline"] = outlines.setdefault(outline, f"outline{len(outlines)}")
     elif isinstance(shape, pymunk.Circle):
         told["circle"], told["offset"] = shape.radius, list(shape.offset)

@@ -10,7 +10,7 @@ import pymunk
 import shapely
 
 from ..chipmunk import AreaContact, Settings, attach
-from ..geometry.outline import Outline
+from ..geometry.outline import Outline, outline_on
 from .limits import Limits, check, shown
 from .rings import check_tangle, overlapping_boxes
 from .scene_joints import COMMON, JOINTS, LENGTH, POINT
@@ -164,9 +164,9 @@ class Reader(Values):
         """Mass, moment and centre from the shapes' densities: exact outlines by their own, the others pymunk's."""
         total, first, parts = 0.0, pymunk.Vec2d(0, 0), []
         for shape in shapes:
-            outline = getattr(shape, "outline", None)
+            outline = outline_on(shape)
             density = self.densities.pop(shape, 0.0)
-            if isinstance(outline, Outline):
+            if outline is not None:
                 mass, center = density * outline.area, pymunk.Vec2d(*outline.centroid)
                 about = outline.moment(mass, (-center.x, -center.y)) if mass else 0.0
             else:

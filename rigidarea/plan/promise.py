@@ -7,6 +7,7 @@ from typing import Any
 
 import pymunk
 
+from ..geometry.outline import outline_on
 from .elastic import Choice
 
 OVERLAP = 0.01
@@ -87,7 +88,7 @@ def name_of(space: pymunk.Space, who: Any) -> str:
 
 def _kind(shape: pymunk.Shape) -> str:
     """A shape in a word."""
-    if getattr(shape, "outline", None) is not None:
+    if outline_on(shape) is not None:
         return "outline"
     if isinstance(shape, pymunk.Circle):
         return "disc"

@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
@@ -277,14 +277,14 @@ def set_up(
     error: Callable[[Trace], float] = lambda trace: 0.0,
     **more: Any,
 ) -> Scene:
-    """A scene that is measured by whoever made it: without title, name of the error, source. more: fields of `Scene`"""
+    """A scene that is measured by whoever made it: no title, source, name of the error. more: fields of `Scene`."""
     return Scene(name, "", tuple(bodies), duration, "", error, "", **more)
 
 
 # Registry ---------------------------------------------------------------------------------------------------
 
 
-def check_known(names: Iterable[str], known: Iterable[str], what: str) -> None:
+def check_known(names: Iterable[str], known: Collection[str], what: str) -> None:
     """Raise ValueError for a name that is not among the known ones, which it lists; what: what they are names of."""
     for name in names:
         if name not in known:

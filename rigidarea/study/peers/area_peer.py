@@ -108,7 +108,7 @@ def explicit_steps(scene: Scene, space: pymunk.Space, stiffness: float, phase: f
     for shape in space.shapes:
         body = shape.body
         if body is not None and body.body_type == pymunk.Body.DYNAMIC:
-            outline = getattr(shape, "outline", None) or rigidarea.Outline.from_pymunk(shape)
+            outline = rigidarea.Outline.from_pymunk(shape)
             for chord, arm in _faces(outline.polygon):
                 worst = max(worst, chord * (1 / body.mass + arm**2 / body.moment))
     frequency = 2 * math.sqrt(stiffness * worst)
