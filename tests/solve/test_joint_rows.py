@@ -154,6 +154,40 @@ def test_a_light_chain_holds_a_weight_that_swings(links, mass):
         assert max(map(gap, space.constraints)) < 20
 
 
+def widest(draw: random.Random, free: bool, attached: bool) -> float:
+    """How far joints of a random light chain part in 400 frames (px): under a weight, or between two that whirl."""
+    links, mass, speed = draw.randint(3, 20), 10 ** draw.uniform(0.7, 2.5), draw.uniform(0, 600)
+    space = chain(links, 0.0)
+    first, *_, last = space.bodies
+    for body, way in ((last, speed), (first, -speed))[: 1 + free]:
+        body.mass, body.moment, body.velocity = mass, mass * body.moment, (way, 0)
+    if free:
+        space.gravity = 0, 0
+        space.remove(
+            *first.constraints & {joint for joint in space.constraints if joint.a is space.static_body}
+        )
+    if attached:
+        ra.attach(space)
+    most = 0.0
+    for _ in range(400):
+        space.step(DT)
+        most = max(most, *map(gap, space.constraints))
+    return most
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("free", [False, True], ids=["hung", "free"])
+def test_fewer_light_chains_part_than_by_pymunks_own(free):
+    """Of sixty random ones, whose weights are 5 to 300 links, parted by 5, 20, 100, 1,000 px (links are 4 px wide)."""
+    ours, theirs = (
+        [widest(random.Random(seed), free, attached) for seed in range(60)] for attached in (True, False)
+    )
+    for bound in (5, 20, 100, 1000):
+        found, there = (sum(parted > bound for parted in all_parted) for all_parted in (ours, theirs))
+        print(f"of 60 part by more than {bound} px {found}, by pymunk's own response {there}")
+        assert found <= there
+
+
 @pytest.mark.parametrize("held", ["pivot", "weld"])
 def test_joints_that_contradict_each_other_are_held(held):
     """Three rods of other lengths between the same anchors, and a pivot, or a weld: nothing moves on by itself."""
