@@ -18,12 +18,12 @@ from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 
 
 @kernel
-def _nearest(two: TwoShapes, region: Any, n: int, pose: Pose) -> int:
+def _nearest(two: TwoShapes, region: Any, n: int, pose: Pose, other: Pose) -> int:
     """Which of the work's n loops is nearest to a region, of those that do not face away from it; -1: none."""
     least = np.inf
     best = -1
     for k in range(n):
-        patch = exposed_patch(two, k, pose)
+        patch = exposed_patch(two, k, pose, other)
         far = (patch.x - region.x) ** 2 + (patch.y - region.y) ** 2
         if not patch.blind and patch.nx * region.nx + patch.ny * region.ny > 0.0 and far < least:
             least = far
@@ -63,12 +63,12 @@ def touch(two: TwoShapes, region: Any, back: float, h: float, unseen: float) -> 
             pose = earlier(a, then)
             other = earlier(b, then)
             n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
-            best = _nearest(two, region, n, pose)
+            best = _nearest(two, region, n, pose, other)
             if best >= 0:
                 break
         if best < 0:
             return come
-        patch = exposed_patch(two, best, pose)
+        patch = exposed_patch(two, best, pose, other)
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
         fill(region, patch, ax, ay, bx, by)

@@ -1,9 +1,11 @@
-"""Of the boundary of what nothing moves only that counts which can be reached: the rest lies within its neighbours.
+"""Of a boundary only that counts which can be reached: the rest lies within neighbours that go with it.
 
 The foot of a ramp lies on a floor, the side of a tile at the next tile's. A body that has sunk into the floor by what
 carries it has that edge of the ramp within it as well, and the chord, from the ramp's slope to its underside, would
 stand across. What is exposed says where the body can go: the direction is the mean normal of the exposed part of the
 boundary, which for a boundary that is exposed as a whole is the chord's (the integral of normals round a region is 0).
+
+Neighbours are the shapes of one body, and of bodies that nothing moves and that go alike: a level's, a platform's.
 """
 
 from __future__ import annotations
@@ -18,9 +20,10 @@ from ..geometry.pool import Pool
 from ..geometry.work import A_EDGE, Relative, Work
 from .patch import Patch, patch_of, reach_along
 from .tables import CHORD, FIXED, Law, Tables
-from .tree import STILL, next_met
+from .target_speeds import least_extent
+from .tree import MOVING, STILL, next_met
 
-#: A neighbour's boundary is looked for this far beyond an edge, of the moving body's smallest extent: what lies flush.
+#: A neighbour's boundary is looked for this far beyond an edge, of the smaller one's smallest extent: what lies flush.
 FLUSH = 2e-4
 #: A direction that turns by less than the angle with this cosine leaves a straight face what it is.
 SAME_FACE = 0.9
@@ -63,24 +66,47 @@ def _behind_line(pool: Pool, shape: Any, wall: Any, x: float, y: float, far_x: f
     return bool((dy * ux - dx * uy) * (ey * ux - ex * uy) <= 0.0)
 
 
+@kernel(forceinline=True)
+def _has_neighbours(body: Any) -> bool:
+    """Whether another shape may go with one of the body's: one of its own, or where nothing moves it another's."""
+    return bool(body.kind == FIXED or not body.mobile or body.held - body.entered > 1)
+
+
+@kernel(forceinline=True)
+def _go_alike(one: Any, other: Any) -> bool:
+    """Whether two bodies that nothing moves stay where they are to one another."""
+    if one.kind == FIXED and other.kind == FIXED:
+        return True
+    if one.mobile or other.mobile or one.w != 0.0 or other.w != 0.0:
+        return False
+    return bool(one.vx == other.vx and one.vy == other.vy)
+
+
 @kernel
 def _hidden(
-    pool: Pool, tables: Tables, work: Work, own: int, mover: Any, x: float, y: float, deep: float
+    two: TwoShapes, which: int, own: int, other: int, body: Any, x: float, y: float, deep: float
 ) -> bool:
-    """Whether a point, so `deep` in shape `own`, lies within another shape that nothing moves."""
-    room = deep + 2.0 * FLUSH * mover.extent
+    """Whether a point, so `deep` in shape `own` of the body, lies within another shape of a tree that goes with it.
+
+    other: the shape that is there as well.
+    """
+    pool, tables, work = two.pool, two.tables, two.work
+    there = tables.shapes[other]
+    far_x = 0.5 * (there.left + there.right)
+    far_y = 0.5 * (there.bottom + there.top)
+    room = deep + 2.0 * FLUSH * least_extent(two.a, two.b)
     at = -1
     while True:
-        at = next_met(tables.nodes, tables.roots[STILL], at, x - room, y - room, x + room, y + room)
+        at = next_met(tables.nodes, tables.roots[which], at, x - room, y - room, x + room, y + room)
         if at < 0:
             return False
         t = tables.nodes[at].owner
         shape = tables.shapes[t]
         wall = tables.bodies[shape.body]
-        if t == own or wall.kind != FIXED or shape.sensor:
+        if t == own or shape.sensor or not (shape.body == tables.shapes[own].body or _go_alike(body, wall)):
             continue
         if shape.mirror >= 0:
-            if _behind_line(pool, shape, wall, x, y, mover.x, mover.y):
+            if _behind_line(pool, shape, wall, x, y, far_x, far_y):
                 return True
             continue
         head = pool.heads[shape.outline]
@@ -113,19 +139,35 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
 
 
 @kernel
-def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
-    """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a fixed shape's edges.
+def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
+    """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a shape's edges.
 
     It is blind and of no area where a disc is only within a round end of which nothing is exposed.
+    pose, other: where the outlines of A and B are.
     """
-    pool, tables, work, law, pair, ia, ib, a, b = two
-    patch = patch_of(pool, work, law, k, ia, ib, pose)
-    if patch.blind or law.direction != CHORD or (a.kind == FIXED) == (b.kind == FIXED):
+    patch = patch_of(two.pool, two.work, two.law, k, two.ia, two.ib, pose)
+    if patch.blind or two.law.direction != CHORD:
         return patch
-    own, mover, side = (pair.a, b, A_EDGE) if a.kind == FIXED else (pair.b, a, 1 - A_EDGE)
+    first = 1 if two.a.mobile and not two.b.mobile else 0  # what nothing moves
+    for i in range(2):
+        of_b = first != i
+        if _has_neighbours(two.b if of_b else two.a):
+            found, hidden = _exposed(two, k, pose, other, patch, of_b)
+            if hidden:
+                return found
+    return patch
+
+
+@kernel
+def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b: bool) -> tuple[Patch, bool]:
+    """The patch by what is exposed of one shape's edges; and whether any of them is hidden."""
+    pool, work = two.pool, two.work
+    own, mover, body, side = two.pair.a, two.pair.b, two.a, A_EDGE
+    at = pose
+    if of_b:
+        own, mover, body, side = two.pair.b, two.pair.a, two.b, 1 - A_EDGE
+        at = other
     loop = work.loops[k]
-    if loop.arcs > 0 and patch.radial == 0:
-        return patch
     edges = 0
     caps = 0
     for i in range(loop.start, loop.stop):
@@ -133,8 +175,9 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
             edges += 1
             caps += loop.arcs > 0 and work.bows[i, 2] != 0.0
     if edges < 2 and caps == 0:
-        return patch
-    head = pool.heads[ia]
+        return patch, False
+    head = pool.heads[two.ia]
+    size = least_extent(two.a, two.b)
     nx = 0.0
     ny = 0.0
     hidden = False
@@ -145,7 +188,7 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
         length = math.sqrt(dx * dx + dy * dy)
         if work.label[i] != side or length == 0.0:
             continue
-        flush = FLUSH * mover.extent / length
+        flush = FLUSH * size / length
         mx = 0.5 * (work.polygon[j, 0] + work.polygon[i, 0])
         my = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1])
         if loop.arcs > 0 and work.bows[i, 2] != 0.0:  # the arc's middle, which is less than half a turn
@@ -159,7 +202,14 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
         ly = my - flush * dx + head.y
         x = pose.x + pose.c * lx - pose.s * ly
         y = pose.y + pose.s * lx + pose.c * ly
-        if _hidden(pool, tables, work, own, mover, x, y, patch.reach):
+        if body.kind != FIXED:  # where it is on the body now
+            lx = at.c * (x - at.x) + at.s * (y - at.y)
+            ly = at.c * (y - at.y) - at.s * (x - at.x)
+            x = body.ox + body.c * lx - body.s * ly
+            y = body.oy + body.s * lx + body.c * ly
+        if (not body.mobile and _hidden(two, STILL, own, mover, body, x, y, patch.reach)) or (
+            body.kind != FIXED and _hidden(two, MOVING, own, mover, body, x, y, patch.reach)
+        ):
             hidden = True
         else:
             nx += dy
@@ -168,9 +218,9 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
     if (
         length == 0.0 and hidden and caps > 0
     ):  # all of it within a neighbour, which says where the disc can go
-        return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach)
+        return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
     if not hidden or length == 0.0:
-        return patch
+        return patch, False
     if side != A_EDGE:  # from A to B is into B
         length = -length
     nx /= length
@@ -191,4 +241,4 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose) -> Patch:
                 px = cx + along * wx
                 py = cy + along * wy
                 break
-    return _turned(patch, patch.area, px, py, wx, wy, reach)
+    return _turned(patch, patch.area, px, py, wx, wy, reach), True

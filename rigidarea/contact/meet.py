@@ -212,7 +212,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
     for k in range(n):
         if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
             continue
-        patch = exposed_patch(two, k, pose_a)
+        patch = exposed_patch(two, k, pose_a, pose_b)
         if patch.area == 0.0:
             continue
         r = _match(regions, old, patch.x, patch.y, stamp)
@@ -366,7 +366,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         if _under_a_line(pool, work, sa, sb, ia, ib, rel, k):
             continue
-        patch = exposed_patch(two, k, pose_a)
+        patch = exposed_patch(two, k, pose_a, pose_b)
         if patch.blind or patch.reach <= deepest:
             continue
         region = regions[counters[FREE_REGION]]
