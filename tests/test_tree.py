@@ -28,6 +28,15 @@ def found(nodes: np.ndarray, root: int, box: tuple[float, ...]) -> list[int]:
     return hits
 
 
+def found_beside(nodes: np.ndarray, leaf: int, box: tuple[float, ...]) -> list[int]:
+    hits = []
+    top, at = tree.next_beside(nodes, leaf, -1, *box)
+    while at >= 0:
+        hits.append(int(nodes[at]["owner"]))
+        top, at = tree.next_beside(nodes, top, at, *box)
+    return hits
+
+
 def meeting(boxes: dict[int, tuple[float, ...]], box: tuple[float, ...]) -> set[int]:
     return {
         i for i, b in boxes.items() if b[0] <= box[2] and b[2] >= box[0] and b[1] <= box[3] and b[3] >= box[1]
@@ -88,6 +97,8 @@ def test_what_comes_moves_and_goes_is_found(acts: list[Any], asked: tuple[float,
     assert roots[tree.STILL] == -1
     hits = found(nodes, int(roots[tree.MOVING]), asked)
     assert len(hits) == len(set(hits)) and set(hits) == meeting(boxes, asked)
+    for i, leaf in leaves.items():
+        assert sorted(found_beside(nodes, leaf, asked)) == sorted(meeting(boxes, asked) - {i})
 
 
 @given(st.lists(a_box(), max_size=N), a_box())

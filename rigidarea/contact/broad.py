@@ -32,7 +32,7 @@ from .tables import (
     find_pair,
     new_pair,
 )
-from .tree import MOVING, STILL, insert, move, next_met, remove
+from .tree import MOVING, STILL, insert, move, next_beside, next_met, remove
 
 
 @kernel
@@ -173,27 +173,41 @@ def find_pairs(tables: Tables) -> bool:
     while counters[ASKED] > 0:
         i = int(tables.asked[counters[ASKED] - 1])
         shape = tables.shapes[i]
-        if shape.outline >= 0:
-            if not _pairs_of(tables, i, MOVING):
-                return False
-            if shape.tree == MOVING and not _pairs_of(tables, i, STILL):
-                return False
+        if shape.outline >= 0 and not _pairs_of(tables, i):
+            return False
         counters[ASKED] -= 1
         counters[UNSORTED] = 1
     return True
 
 
+@kernel(forceinline=True)
+def _next_meeting(tables: Tables, i: int, top: int, after: int) -> tuple[int, int]:
+    """The next leaf whose box meets shape i's, and the branch from which to go on (`next_beside`); -1: none.
+
+    Beginning with (shape i's leaf, -1): what is beside it in its tree, then the other tree.
+    """
+    shape = tables.shapes[i]
+    nodes = tables.nodes
+    root = tables.roots[STILL if shape.tree == MOVING else MOVING]
+    if top != root:
+        top, after = next_beside(nodes, top, after, shape.low_x, shape.low_y, shape.high_x, shape.high_y)
+        if after >= 0:
+            return top, after
+    if root < 0:
+        return root, -1
+    return root, next_met(nodes, root, after, shape.low_x, shape.low_y, shape.high_x, shape.high_y)
+
+
 @kernel
-def _pairs_of(tables: Tables, i: int, which: int) -> bool:
-    """Enter the pairs of shape i with what its box meets in a tree."""
+def _pairs_of(tables: Tables, i: int) -> bool:
+    """Enter the pairs of shape i with what its box meets; a shape that does not move asks only what does."""
     counters = tables.counters
     shape = tables.shapes[i]
     me = tables.bodies[shape.body]
+    top = int(shape.leaf if shape.tree == MOVING else tables.roots[MOVING])
     at = -1
     while True:
-        at = next_met(
-            tables.nodes, tables.roots[which], at, shape.low_x, shape.low_y, shape.high_x, shape.high_y
-        )
+        top, at = _next_meeting(tables, i, top, at)
         if at < 0:
             return True
         j = int(tables.nodes[at].owner)
@@ -281,17 +295,15 @@ def end_pairs_of(tables: Tables, i: int) -> None:
     shape = tables.shapes[i]
     if shape.leaf < 0:
         return
-    for which in (STILL, MOVING):
-        at = -1
-        while True:
-            at = next_met(
-                tables.nodes, tables.roots[which], at, shape.low_x, shape.low_y, shape.high_x, shape.high_y
-            )
-            if at < 0:
-                break
-            p = find_pair(tables, i, int(tables.nodes[at].owner))
-            if p >= 0:
-                end_pair(tables, p)
+    top = int(shape.leaf)
+    at = -1
+    while True:
+        top, at = _next_meeting(tables, i, top, at)
+        if at < 0:
+            break
+        p = find_pair(tables, i, int(tables.nodes[at].owner))
+        if p >= 0:
+            end_pair(tables, p)
     remove(tables.nodes, tables.roots, shape.tree, shape.leaf)
     shape.leaf = -1
 

@@ -19,7 +19,7 @@ BODY = record(
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
         ("calm", "i1"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
         ("was_calm", "i1"),  # 1: calm, a frame before
-        ("pushed", "i1"),  # 1: contacts have pushed it in the substep before
+        ("pushed", "i1"),  # COMING, LYING: how contacts have pushed it in the substep before; 0: not at all
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("joined", "i1"),  # 1: a joint keeps it from colliding with somebody
         ("entered", "i1"),  # 1: it is in the space
@@ -130,6 +130,7 @@ PAIR = record(
         ("next", "i4"),  # in the free list
         ("near", "i4"),  # counters[SEARCH]: it is in `Tables.near`
         ("seats", "i1"),  # 1: it touches, and may do so elsewhere as well without turning
+        ("covered", "i1"),  # 1: all of it that overlaps lies within neighbours (`exposed`)
         ("lies", "i1"),  # how it has borne a load in this frame: LIES, FOLLOWS or BLOW; 0: not at all
         ("verdict", "i1"),  # 1: the user lets it collide, 0: not
         ("side_a", "i1"),  # of a two-sided outline: 0 undecided, 1 itself, -1 its mirror

@@ -18,10 +18,11 @@ from ..geometry.locate import inside_outline
 from ..geometry.place import Pose
 from ..geometry.pool import Pool
 from ..geometry.work import A_EDGE, Relative, Work
+from .constants import SMOOTH
 from .patch import Patch, patch_of, reach_along
 from .tables import CHORD, FIXED, Law, Tables
 from .target_speeds import least_extent
-from .tree import MOVING, STILL, next_met
+from .tree import STILL, next_beside, next_met
 
 #: A neighbour's boundary is looked for this far beyond an edge, of the smaller one's smallest extent: what lies flush.
 FLUSH = 2e-4
@@ -82,38 +83,45 @@ def _go_alike(one: Any, other: Any) -> bool:
     return bool(one.vx == other.vx and one.vy == other.vy)
 
 
-@kernel
-def _hidden(
-    two: TwoShapes, which: int, own: int, other: int, body: Any, x: float, y: float, deep: float
-) -> bool:
-    """Whether a point, so `deep` in shape `own` of the body, lies within another shape of a tree that goes with it.
-
-    other: the shape that is there as well.
-    """
+@kernel(forceinline=True)
+def _covers(two: TwoShapes, t: int, own: int, other: int, body: Any, x: float, y: float) -> bool:
+    """Whether a point of shape `own` of the body lies within shape t, which goes with it; `other` is there as well."""
     pool, tables, work = two.pool, two.tables, two.work
-    there = tables.shapes[other]
-    far_x = 0.5 * (there.left + there.right)
-    far_y = 0.5 * (there.bottom + there.top)
+    shape = tables.shapes[t]
+    wall = tables.bodies[shape.body]
+    if shape.sensor or not (shape.body == tables.shapes[own].body or _go_alike(body, wall)):
+        return False
+    if shape.mirror >= 0:
+        there = tables.shapes[other]
+        far_x = 0.5 * (there.left + there.right)
+        far_y = 0.5 * (there.bottom + there.top)
+        return _behind_line(pool, shape, wall, x, y, far_x, far_y)
+    head = pool.heads[shape.outline]
+    lx = wall.c * (x - wall.ox) + wall.s * (y - wall.oy) - head.x
+    ly = wall.c * (y - wall.oy) - wall.s * (x - wall.ox) - head.y
+    return bool(inside_outline(pool, shape.outline, Relative(1.0, 0.0, 0.0, 0.0), lx, ly, True, work))
+
+
+@kernel
+def _hidden(two: TwoShapes, own: int, other: int, body: Any, x: float, y: float, deep: float) -> bool:
+    """Whether a point, so `deep` in shape `own` of the body, lies within another shape that goes with it."""
+    nodes = two.tables.nodes
     room = deep + 2.0 * FLUSH * least_extent(two.a, two.b)
-    at = -1
-    while True:
-        at = next_met(tables.nodes, tables.roots[which], at, x - room, y - room, x + room, y + room)
-        if at < 0:
-            return False
-        t = tables.nodes[at].owner
-        shape = tables.shapes[t]
-        wall = tables.bodies[shape.body]
-        if t == own or shape.sensor or not (shape.body == tables.shapes[own].body or _go_alike(body, wall)):
-            continue
-        if shape.mirror >= 0:
-            if _behind_line(pool, shape, wall, x, y, far_x, far_y):
-                return True
-            continue
-        head = pool.heads[shape.outline]
-        lx = wall.c * (x - wall.ox) + wall.s * (y - wall.oy) - head.x
-        ly = wall.c * (y - wall.oy) - wall.s * (x - wall.ox) - head.y
-        if inside_outline(pool, shape.outline, Relative(1.0, 0.0, 0.0, 0.0), lx, ly, True, work):
+    shape = two.tables.shapes[own]
+    top, at = next_beside(nodes, shape.leaf, -1, x - room, y - room, x + room, y + room)
+    while at >= 0:
+        if _covers(two, nodes[at].owner, own, other, body, x, y):
             return True
+        top, at = next_beside(nodes, top, at, x - room, y - room, x + room, y + room)
+    if shape.tree == STILL or (body.mobile and body.kind != FIXED):
+        return False
+    root = two.tables.roots[STILL]
+    at = next_met(nodes, root, -1, x - room, y - room, x + room, y + room)
+    while at >= 0:
+        if _covers(two, nodes[at].owner, own, other, body, x, y):
+            return True
+        at = next_met(nodes, root, at, x - room, y - room, x + room, y + room)
+    return False
 
 
 @kernel
@@ -170,10 +178,14 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
     loop = work.loops[k]
     edges = 0
     caps = 0
+    faces = 0  # of the other's
     for i in range(loop.start, loop.stop):
+        curved = loop.arcs > 0 and work.bows[i, 2] != 0.0
         if work.label[i] == side:
             edges += 1
-            caps += loop.arcs > 0 and work.bows[i, 2] != 0.0
+            caps += curved
+        else:
+            faces += 2 if curved else 1
     if edges < 2 and caps == 0:
         return patch, False
     head = pool.heads[two.ia]
@@ -207,9 +219,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             ly = at.c * (y - at.y) - at.s * (x - at.x)
             x = body.ox + body.c * lx - body.s * ly
             y = body.oy + body.s * lx + body.c * ly
-        if (not body.mobile and _hidden(two, STILL, own, mover, body, x, y, patch.reach)) or (
-            body.kind != FIXED and _hidden(two, MOVING, own, mover, body, x, y, patch.reach)
-        ):
+        if _hidden(two, own, mover, body, x, y, patch.reach):
             hidden = True
         else:
             nx += dy
@@ -225,6 +235,9 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         length = -length
     nx /= length
     ny /= length
+    across = loop.chord_x * nx + loop.chord_y * ny  # the chord lies along the other's one face
+    if faces == 1 and across * across <= SMOOTH * patch.chord * patch.chord:
+        return patch, True  # which says better where to go: a piece of it lies on it as the whole does
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
     reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)

@@ -270,6 +270,7 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
             continue
         if jointed and (n >= size) != (a.inverse_mass > 0.0 and b.inverse_mass > 0.0):
             continue
+        pair.covered = 0
         if pair.head < 0 and (not may_touch(tables, pair, h) or _stay_apart(pool, tables, pair, a, b, h)):
             continue
         if not allowed(tables, pair, frame):
@@ -280,7 +281,8 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
         if not meet(pool, tables, work, law, p, h):
             return False
         if pair.head < 0:
-            _part(pool, tables, pair, a, b)
+            if not pair.covered:
+                _part(pool, tables, pair, a, b)
             continue
         pair.seats = has_seats(pool, tables, pair)
         if not _add_rows(tables, law, p, h, -1):
@@ -310,7 +312,7 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
     strayed = a.strayed + b.strayed
     near.room = 0.0
     known = 0.0
-    if pair.head >= 0:
+    if pair.head >= 0 or pair.covered:
         known = 0.0 if seats else LOOK * min(a.extent, b.extent)
     elif pair.parted == tables.counters[SUBSTEP]:
         known = pair.gap

@@ -214,6 +214,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             continue
         patch = exposed_patch(two, k, pose_a, pose_b)
         if patch.area == 0.0:
+            pair.covered = 1
             continue
         r = _match(regions, old, patch.x, patch.y, stamp)
         wx = patch.nx

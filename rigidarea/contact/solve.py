@@ -16,7 +16,7 @@ from .active import held_by, island_of, kinetic_of
 from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
-from .tables import AWAKE, DRIFTS, FIXED, ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
+from .tables import AWAKE, COMING, DRIFTS, FIXED, ISLANDS, LIVE, LYING, NEARING, QUEUE, ROWS, Law, Tables
 
 
 @kernel
@@ -194,6 +194,14 @@ def held_back(tables: Tables, h: float) -> float:
     return total
 
 
+@kernel(forceinline=True)
+def _note_pushed(row: Any, region: Any, body: Any) -> None:
+    """That a contact has pushed a body: added to what the substep before has left until all contacts are seen."""
+    if row.l1 + row.l2 > 0.0:
+        comes = region.mode == NEARING and row.t1 > 0.0 and body.pushed & LYING == 0
+        body.pushed |= 4 * (COMING if comes else LYING)
+
+
 @kernel
 def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
     """What the rows leave behind: in their regions, and in the places of bodies that were struck."""
@@ -206,9 +214,11 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
         settle(row, region, law, tables.pairs[region.pair], a, b, h, last)
+        _note_pushed(row, region, a)
+        _note_pushed(row, region, b)
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
-        body.pushed = 0
+        body.pushed //= 4
         if body.stamp != frame:
             continue
         least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
@@ -234,11 +244,6 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
             body.shift_x = 0.0
             body.shift_y = 0.0
             body.shift_a = 0.0
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        if row.ends > 0 and row.l1 + row.l2 > 0.0:
-            tables.bodies[row.a].pushed = 1
-            tables.bodies[row.b].pushed = 1
 
 
 @kernel

@@ -25,6 +25,9 @@ REST, IMPACT, STRUCK, NEARING = 0, 1, 2, 3
 #: nothing to give back.
 PLACED, SPENT = 1, 2
 
+#: How contacts have pushed a body: until it touches; as it lay on something, or came to lie.
+COMING, LYING = 1, 2
+
 #: Counters: free regions' list head, how many are free, free pairs' list head, how many; shapes and bodies in use;
 #: which list `near` is, and substeps so far; pairs that are near and may collide; rows of this substep; body pairs kept
 #: apart by joints; the first substep of this frame; 1: list all pairs anew. Of turns (`islands`): bodies that are live;
@@ -217,6 +220,7 @@ def _renew(pair: Any) -> None:
     pair.kept_b = 0
     pair.lasting = -2
     pair.seats = 0
+    pair.covered = 0
     pair.rate = 0.0
     pair.firm = 0.0
     pair.carrying = 0.0

@@ -12,6 +12,7 @@ from typing import Any
 from ..compile.jit import kernel
 from .constants import REST_KICKS, SMOOTH
 from .region import closing
+from .tables import LYING
 
 
 @kernel(forceinline=True)
@@ -45,7 +46,7 @@ def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
         r.radial & round_one == 0
         or other.inverse_mass > 0.0
         or other.w != 0.0
-        or disc.pushed == 0
+        or disc.pushed < LYING
         or closes <= left
         or closes * closes > SMOOTH * square
         or square <= REST_KICKS * REST_KICKS * (disc.kick_x * disc.kick_x + disc.kick_y * disc.kick_y)

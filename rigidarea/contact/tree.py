@@ -255,14 +255,13 @@ def move(
 
 
 @kernel(forceinline=True)
-def _beyond(nodes: np.ndarray, i: int) -> int:
-    """The node after i and all below it; -1: there is none."""
-    parent = nodes[i].parent
-    while parent >= 0:
+def _beyond(nodes: np.ndarray, i: int, root: int) -> int:
+    """The node after i and all below it, of those from `root` downwards; -1: there is none."""
+    while i != root:
+        parent = nodes[i].parent
         if nodes[parent].left == i:
             return int(nodes[parent].right)
         i = parent
-        parent = nodes[i].parent
     return -1
 
 
@@ -270,17 +269,39 @@ def _beyond(nodes: np.ndarray, i: int) -> int:
 def next_met(
     nodes: np.ndarray, root: int, after: int, low_x: float, low_y: float, high_x: float, high_y: float
 ) -> int:
-    """The next leaf of a tree whose box meets the given one (length), after leaf `after` (-1: the first); -1: none."""
-    i = root if after < 0 else _beyond(nodes, after)
+    """The next leaf of a tree, or of a branch, whose box meets the given one (length); -1: none.
+
+    after: the leaf before; -1: the first.
+    """
+    i = root if after < 0 else _beyond(nodes, after, root)
     while i >= 0:
         node = nodes[i]
         if node.low_x > high_x or node.high_x < low_x or node.low_y > high_y or node.high_y < low_y:
-            i = _beyond(nodes, i)
+            i = _beyond(nodes, i, root)
         elif node.left < 0:
             return int(i)
         else:
             i = int(node.left)
     return -1
+
+
+@kernel
+def next_beside(
+    nodes: np.ndarray, top: int, after: int, low_x: float, low_y: float, high_x: float, high_y: float
+) -> tuple[int, int]:
+    """The next leaf beside another whose box meets the given one (length), and the branch from which to go on.
+
+    Beginning with (the other leaf, -1): first what is next to it in the tree, which mostly is near. -1: none.
+    """
+    while True:
+        fork = nodes[top].parent
+        if fork < 0:
+            return top, -1
+        branch = nodes[fork].right if nodes[fork].left == top else nodes[fork].left
+        after = next_met(nodes, branch, after, low_x, low_y, high_x, high_y)
+        if after >= 0:
+            return top, after
+        top = fork
 
 
 @kernel(forceinline=True)
