@@ -105,20 +105,20 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
 def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
     """Arms of one point of application, bodies where they are now: the heavier one's gives way.
 
-    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. Of a smooth
-    disc a radius stays one: nothing turns it.
+    Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. A disc's
+    radius stays one, whatever its weight: nothing but friction turns it; of two discs, where there is none.
     """
     share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
-    smooth = r.radial if friction == 0.0 else 0
-    if smooth == 1 or smooth == 2:
-        share = 0.0 if smooth == 1 else 1.0
-    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
     lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
-    if smooth != 3:
-        r.arm_a -= share * arm
-        r.arm_b += (1.0 - share) * arm
     r.lean_a -= share * lean
     r.lean_b += (1.0 - share) * lean
+    if r.radial == 3 and friction == 0.0:
+        return
+    if r.radial == 1 or r.radial == 2:
+        share = 0.0 if r.radial == 1 else 1.0
+    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
+    r.arm_a -= share * arm
+    r.arm_b += (1.0 - share) * arm
 
 
 @kernel
