@@ -88,9 +88,10 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and pair.arbiter != 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
+        if pair.a >= 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
             pair.lasting = s.frame
-            array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
+            if pair.arbiter != 0:  # a copy has none yet
+                array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
 
 
 @kernel

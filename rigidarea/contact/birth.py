@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
-from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS
+from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
 from .exposed import TwoShapes, exposed_patch
 from .motion import centre_of, earlier, since_of, unseen_for
 from .region import closing, fill, inverse_mass, region_stiffness
@@ -204,6 +204,16 @@ def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
         region.first_speed = 0.0
 
 
+@kernel(forceinline=True)
+def _lands_on_a_face(region: Any) -> bool:
+    """Whether what is to come is as thick, or nearly, from one end of a straight chord to the other."""
+    if region.straight < 0.5 * region.chord:
+        return False
+    lean = min(1.0, 6.0 * abs(region.middle) / region.straight)
+    slope = 2.0 * lean * region.area / (region.chord * region.straight)
+    return bool(slope * slope <= SMOOTH)
+
+
 @kernel
 def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> bool:
     """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither.
@@ -218,7 +228,11 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
         return False  # the steps follow it
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
-    if pair.elasticity * u > 0.0 and u > _slow(law, gain, stiffness * inverse, h):
+    plastic = pair.elasticity == 0.0
+    push = max(law.gravity, gain) if plastic else gain  # in a pile both fall alike
+    near = (a.mobile and a.pushed) or (b.mobile and b.pushed)  # others are, with whom it is solved together
+    together = plastic and (near or _lands_on_a_face(region))
+    if u > max(0.0, _slow(law, push, stiffness * inverse, h)) and not together:
         region.mode = STRUCK
         region.rest_depth = 0.0
         region.first_speed = u

@@ -14,7 +14,6 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..geometry.arc import distance2
-from ..geometry.extent import extent
 from ..geometry.overlap import A_EDGE, OVERFLOW, Work
 from ..geometry.place import Pose, overlap_of_outlines, push_out, seen_from
 from ..geometry.pool import Pool
@@ -35,7 +34,7 @@ from .motion import (
     unseen_for,
 )
 from .patch import centred, faceless
-from .region import closing, fill, inverse_mass, region_stiffness, steer
+from .region import closing, fill, inverse_mass, region_stiffness, steer, to_the_surfaces
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness, stiffness_of
 from .tables import (
@@ -310,21 +309,6 @@ def _there(pool: Pool, work: Work, regions: np.ndarray, head: int, n: int, ia: i
 
 
 @kernel
-def _to_the_surfaces(work: Work, region: Any, k: int, pose: Pose) -> None:
-    """Friction's arms of an overlap yet to come (loop k, A at `pose`): of the two surfaces, which will only touch.
-
-    Its centroid is as deep in both as they would go on into each other.
-    """
-    loop = work.loops[k]
-    nx = pose.c * region.nx + pose.s * region.ny
-    ny = pose.c * region.ny - pose.s * region.nx
-    low, high = extent(work.polygon, work.bows, loop.start, loop.stop, loop.arcs > 0, nx, ny)
-    middle = nx * loop.x + ny * loop.y
-    region.lean_a += high - middle
-    region.lean_b += low - middle
-
-
-@kernel
 def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float, first: bool) -> bool:
     """A region for a pair that does not overlap, but would after the next drift of h at its present velocities.
 
@@ -388,7 +372,7 @@ def meet_ahead(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: floa
             continue
         region = regions[counters[FREE_REGION]]
         fill(region, patch, ax, ay, bx, by)
-        _to_the_surfaces(work, region, k, pose_a)
+        to_the_surfaces(work, region, k, pose_a)
         if closing(region, a, b, 0.0) > 0.0:
             kept = _take_region(regions, counters, p, kept, h)
     if kept < 0:

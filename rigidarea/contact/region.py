@@ -5,6 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from ..geometry.extent import extent
+from ..geometry.place import Pose
+from ..geometry.work import Work
 from .patch import Patch
 from .tables import LAW_AREA, Law
 
@@ -37,6 +40,21 @@ def fill(region: Any, patch: Patch, ax: float, ay: float, bx: float, by: float) 
     if patch.radial & 2 and abs(region.arm_b) <= RADIAL * abs(region.lean_b):
         region.arm_b = 0.0
         region.radial |= 2
+
+
+@kernel
+def to_the_surfaces(work: Work, region: Any, k: int, pose: Pose) -> None:
+    """Friction's arms of an overlap yet to come (loop k, A at `pose`): of the two surfaces, which will only touch.
+
+    Its centroid is as deep in both as they would go on into each other.
+    """
+    loop = work.loops[k]
+    nx = pose.c * region.nx + pose.s * region.ny
+    ny = pose.c * region.ny - pose.s * region.nx
+    low, high = extent(work.polygon, work.bows, loop.start, loop.stop, loop.arcs > 0, nx, ny)
+    middle = nx * loop.x + ny * loop.y
+    region.lean_a += high - middle
+    region.lean_b += low - middle
 
 
 @kernel

@@ -16,7 +16,7 @@ from .active import held_by, island_of, kinetic_of
 from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
-from .tables import AWAKE, COMING, DRIFTS, FIXED, ISLANDS, LIVE, LYING, NEARING, QUEUE, ROWS, Law, Tables
+from .tables import AWAKE, COMING, DRIFTS, FIXED, ISLANDS, LIVE, LYING, QUEUE, REST, ROWS, Law, Tables
 
 
 @kernel
@@ -198,7 +198,7 @@ def held_back(tables: Tables, h: float) -> float:
 def _note_pushed(row: Any, region: Any, body: Any) -> None:
     """That a contact has pushed a body: added to what the substep before has left until all contacts are seen."""
     if row.l1 + row.l2 > 0.0:
-        comes = region.mode == NEARING and row.t1 > 0.0 and body.pushed & LYING == 0
+        comes = region.mode != REST and body.pushed & LYING == 0
         body.pushed |= 4 * (COMING if comes else LYING)
 
 

@@ -117,7 +117,7 @@ def test_of_many_hardly_anybody_is_caught():
 def test_what_lands_smooth_keeps_its_speed_along_the_ground(seed):
     """A disc, without friction, at a flat angle or a steep one: its speed along a level ground does not change.
 
-    To a ten-thousandth of a pixel a second, what sinking into its bed may yet turn. (It was led along the ground as
+    To a thousandth of a pixel a second, what sinking into its bed may yet turn. (It was led along the ground as
     along a chain's next segment, and kept all of its speed: 1 % too much.)
     """
     draw = random.Random(seed)
@@ -132,5 +132,5 @@ def test_what_lands_smooth_keeps_its_speed_along_the_ground(seed):
     ra.attach(space)
     for _ in range(60):
         space.step(1 / 60)
-    assert body.velocity.x == pytest.approx(speed, abs=1e-4)
+    assert body.velocity.x == pytest.approx(speed, abs=1e-3)
     assert abs(body.velocity.y) < 1e-6
