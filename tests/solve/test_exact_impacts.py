@@ -127,7 +127,7 @@ def lands_rough(draw: random.Random, ours: bool) -> float:
 
 
 def rolls_on_a_plank(draw: random.Random, ours: bool) -> float:
-    """A disc rolls on a plank that lies on ice, beside it at rest: nothing slows it. 2 s."""
+    """A disc rolls on a plank that lies on ice, at rest: nothing slows either of them. 2 s."""
     space = pymunk.Space()
     space.gravity = 0, -900
     _slab(space, 0.0)
@@ -164,7 +164,7 @@ def _off(kind: str, seed: int, ours: bool) -> float | None:
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 def test_of_many_hardly_one_is_off(kind):
-    """Others, 200 of each kind: at the median a tenth of what is asked, all but 2 within it; pymunk's beside."""
+    """Others, 200 of each kind: the median within a fifth of what is asked, all but 2 % within it; pymunk's beside."""
     told = {}
     for ours in (True, False):
         off = [_off(kind, seed, ours) for seed in range(1000, 1200)]

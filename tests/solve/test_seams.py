@@ -85,7 +85,7 @@ def slide(mover: str, ground: str, tiles: str, seed: int, ours: bool) -> tuple[f
 
 
 def _caught(mover: str, ground: str, tiles: str, seeds: range, ours: bool = True) -> int:
-    """Of so many how many lose 1 % of their speed, or are tipped."""
+    """Of so many how many lose or gain 1 % of their speed, or are tipped."""
     told = [slide(mover, ground, tiles, seed, ours) for seed in seeds]
     return sum(abs(kept - 1) > 0.01 or (mover != "disc" and turned > 0.1) for kept, turned in told)
 
