@@ -12,7 +12,7 @@ from ..geometry.place import Pose, overlap_of_outlines
 from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
 from .exposed import TwoShapes, exposed_patch
 from .motion import centre_of, earlier, since_of, unseen_for
-from .region import closing, fill, inverse_mass, region_stiffness
+from .region import closing, fill, inverse_mass, is_face, others_push, region_stiffness
 from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 
@@ -207,7 +207,7 @@ def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
 @kernel(forceinline=True)
 def _lands_on_a_face(region: Any) -> bool:
     """Whether what is to come is as thick, or nearly, from one end of a straight chord to the other."""
-    if region.straight < 0.5 * region.chord:
+    if not is_face(region):
         return False
     lean = min(1.0, 6.0 * abs(region.middle) / region.straight)
     slope = 2.0 * lean * region.area / (region.chord * region.straight)
@@ -229,10 +229,9 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
     u = closing(region, a, b, 0.0)
     gain = max(0.0, u - closing(region, a, b, 1.0)) / h
     plastic = pair.elasticity == 0.0
-    push = max(law.gravity, gain) if plastic else gain  # in a pile both fall alike
-    near = (a.mobile and a.pushed) or (b.mobile and b.pushed)  # others are, with whom it is solved together
-    together = plastic and (near or _lands_on_a_face(region))
-    if u > max(0.0, _slow(law, push, stiffness * inverse, h)) and not together:
+    push = _pushed(law, gain * h, h) if plastic else gain
+    together = plastic and (others_push(a, b) or _lands_on_a_face(region))
+    if u > _slow(law, push, stiffness * inverse, h) and not together:
         region.mode = STRUCK
         region.rest_depth = 0.0
         region.first_speed = u

@@ -50,8 +50,9 @@ MARGIN = 0.1
 AHEAD = 3.0
 #: A box with more than so many times that room is made smaller: what was fast and lies still is near few.
 HUGE = 2.0
-#: Square of the sine of the angle (8 degrees) up to which the next side of a chain is the same smooth curve for a disc
-#: that lies on it: a plastic corner of that angle would take no more than this part of its energy.
+#: Square of the sine of the angle (8 degrees) up to which two directions are one: the next side of a chain the same
+#: smooth curve for a disc that lies on it (a plastic corner of that angle would take no more than this part of its
+#: energy), what lands that flat a face, and what is exposed of one the face still.
 SMOOTH = 0.02
 #: Where there is no weight, a contact is this many (w h)^2 stiff, h the frame: what the default penetration of a box
 #: under gravity has at 60 frames a second, within a factor of 3.

@@ -103,10 +103,9 @@ def _covers(two: TwoShapes, t: int, own: int, other: int, body: Any, x: float, y
 
 
 @kernel
-def _hidden(two: TwoShapes, own: int, other: int, body: Any, x: float, y: float, deep: float) -> bool:
-    """Whether a point, so `deep` in shape `own` of the body, lies within another shape that goes with it."""
+def _hidden(two: TwoShapes, own: int, other: int, body: Any, x: float, y: float, room: float) -> bool:
+    """Whether a point, less deep than `room` in shape `own` of the body, lies within another that goes with it."""
     nodes = two.tables.nodes
-    room = deep + 2.0 * FLUSH * least_extent(two.a, two.b)
     shape = two.tables.shapes[own]
     top, at = next_beside(nodes, shape.leaf, -1, x - room, y - room, x + room, y + room)
     while at >= 0:
@@ -150,7 +149,7 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
 def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
     """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a shape's edges.
 
-    It is blind and of no area where a disc is only within a round end of which nothing is exposed.
+    It is blind and of no area where a body is only within a round end of which nothing is exposed.
     pose, other: where the outlines of A and B are.
     """
     patch = patch_of(two.pool, two.work, two.law, k, two.ia, two.ib, pose)
@@ -189,7 +188,8 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
     if edges < 2 and caps == 0:
         return patch, False
     head = pool.heads[two.ia]
-    size = least_extent(two.a, two.b)
+    beyond = FLUSH * least_extent(two.a, two.b)
+    room = patch.reach + 2.0 * beyond
     nx = 0.0
     ny = 0.0
     hidden = False
@@ -200,7 +200,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         length = math.sqrt(dx * dx + dy * dy)
         if work.label[i] != side or length == 0.0:
             continue
-        flush = FLUSH * size / length
+        flush = beyond / length
         mx = 0.5 * (work.polygon[j, 0] + work.polygon[i, 0])
         my = 0.5 * (work.polygon[j, 1] + work.polygon[i, 1])
         if loop.arcs > 0 and work.bows[i, 2] != 0.0:  # the arc's middle, which is less than half a turn
@@ -219,7 +219,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             ly = at.c * (y - at.y) - at.s * (x - at.x)
             x = body.ox + body.c * lx - body.s * ly
             y = body.oy + body.s * lx + body.c * ly
-        if _hidden(two, own, mover, body, x, y, patch.reach):
+        if _hidden(two, own, mover, body, x, y, room):
             hidden = True
         else:
             nx += dy
@@ -227,7 +227,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
     length = math.sqrt(nx * nx + ny * ny)
     if (
         length == 0.0 and hidden and caps > 0
-    ):  # all of it within a neighbour, which says where the disc can go
+    ):  # all of it within a neighbour, which says where the body can go
         return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
     if not hidden or length == 0.0:
         return patch, False

@@ -57,6 +57,18 @@ def to_the_surfaces(work: Work, region: Any, k: int, pose: Pose) -> None:
     region.lean_b += low - middle
 
 
+@kernel(forceinline=True)
+def is_face(region: Any) -> bool:
+    """Whether it bears at both ends of a straight stretch: not a corner, an arc, one of many facets, which roll."""
+    return bool(region.straight >= 0.5 * region.chord)
+
+
+@kernel(forceinline=True)
+def others_push(a: Any, b: Any) -> bool:
+    """Whether contacts have pushed one of two bodies a substep ago: others are near, and solved with the two."""
+    return bool((a.pushed and a.mobile) or (b.pushed and b.mobile))
+
+
 @kernel
 def turn_to(region: Any, nx: float, ny: float) -> None:
     """Another direction about the same point of application: arms turn with it, and no face is seen along it."""

@@ -32,7 +32,7 @@ from .birth import drives, flies_off
 from .constants import OVERTAKE, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
-from .region import beyond, closing, growth, inverse_mass, region_stiffness, slipping
+from .region import beyond, closing, growth, inverse_mass, is_face, region_stiffness, slipping
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .target_speeds import aim_bounce, aim_speculative, least_extent, turn_along
 
@@ -40,13 +40,12 @@ from .target_speeds import aim_bounce, aim_speculative, least_extent, turn_along
 @kernel
 def _ends(row: Any, r: Any) -> None:
     """The face's two ends from the point of application, and how F0 and C are shared."""
-    straight = r.straight
-    if straight < 0.5 * r.chord:  # a corner, an arc, one of many facets: those roll
+    if not is_face(r):
         row.ends = 1
         row.e1 = 0.0
         row.e2 = 0.0
         return
-    half = 0.5 * straight
+    half = 0.5 * r.straight
     middle = min(0.999 * half, max(-0.999 * half, r.middle))  # the point of application lies between them
     row.ends = 2
     row.e1 = middle - half

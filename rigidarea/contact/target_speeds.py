@@ -11,7 +11,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .constants import REST_KICKS, SMOOTH
-from .region import closing
+from .region import closing, others_push
 from .tables import LYING
 
 
@@ -95,7 +95,7 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
             row.t2 = target
     if e == 0.0 and row.ends == 1:
         row.t1 = turn_along(r, a, b, max(0.0, row.t1))
-    if not ((a.pushed and a.mobile) or (b.pushed and b.mobile)):
+    if not others_push(a, b):
         row.shift = back
     if row.shift == 0.0:
         _one_point(r, a, b, row.friction)
