@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.broad import ask_about, measure, put_in_tree
-from ..contact.space_record import load_pool, row_of_body
+from ..contact.space_record import load_pool, next_row_of_body
 from ..contact.tables import AWAKE, DRIFTS, FIXED, LED, MOVERS, UNSORTED, Tables
 from ..contact.tree import MOVING
 from ..geometry.place import place
@@ -63,8 +63,9 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
     """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
     counters = tables.counters
     moved = True  # Chipmunk has moved what it has listed before the first that is held: that begins the frame
+    i = -1
     for address in members(space, s.space_bodies):
-        i = row_of_body(s, address)
+        i = next_row_of_body(s, tables.bodies, i, address)
         if i < 0:
             return False
         body = tables.bodies[i]
@@ -73,6 +74,10 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         met = body.stamp >= 0
         x, y, angle = body.x, body.y, body.angle
         notice(s, address, body)
+        body.old_vx = body.vx
+        body.old_vy = body.vy
+        body.old_w = body.w
+        body.old_since = body.since
         body.stamp = s.frame
         body.was_calm = 1 if body.calm > 0 else 0
         mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
@@ -96,10 +101,6 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             body.old_x = body.x
             body.old_y = body.y
             body.old_a = body.angle
-        body.old_vx = body.vx
-        body.old_vy = body.vy
-        body.old_w = body.w
-        body.old_since = body.since
         force = floats(address + s.body_force, 2)
         body.old_fx = force[0]
         body.old_fy = force[1]

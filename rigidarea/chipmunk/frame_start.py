@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..contact.space_record import EXTREME, row_of_body
+from ..contact.space_record import EXTREME, next_row_of_body
 from ..contact.tables import CONCAVE, LED, Tables
 from .awake import wake
 from .record import members, read_motion, read_place, time_step, words
@@ -42,8 +42,9 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
     # two that are concave may overlap in any number of places: who is at rest keeps its own
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
+    i = -1
     for address in members(space, s.space_bodies):
-        i = row_of_body(s, address)
+        i = next_row_of_body(s, tables.bodies, i, address)
         if i < 0:
             continue
         body = tables.bodies[i]

@@ -4,6 +4,9 @@ numba makes every function ready to run: optimizes it together with what it call
 Of a chain of ten calls the last one is so made ten times; and each may still be called from elsewhere, so that it
 takes all of its arguments, a hundred words for a handful of arrays. Here a kernel that only kernels call stays a
 part, as it was written, until one that runs links it in; and that one keeps it to itself.
+
+And an index is what it says: numba asks each whether it is negative and counts from the end, a tenth of what a frame
+costs. Kernels count from the beginning, as in C (`tests/bounds.py` looks for one that does not).
 """
 
 from __future__ import annotations
@@ -15,8 +18,10 @@ from collections.abc import Iterator
 from typing import Any
 
 from llvmlite import binding
-from numba.core import config
+from numba.core import config, types
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
+from numba.core.compiler_lock import global_compiler_lock
+from numba.np import arrayobj
 
 from .interrupts import put_off
 
@@ -74,15 +79,26 @@ class Codegen(JITCPUCodegen):  # type: ignore[misc]
             super().set_env(env_name, env)
 
 
+_index_of_numba = arrayobj.fix_integer_index
+
+
+def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
+    """An index as it is, in kernels; where numba's own code may run, which knows `a[-1]`, as numba has it."""
+    if context.enable_nrt:
+        return _index_of_numba(context, builder, kind, index, size)
+    return context.cast(builder, index, kind, types.intp)
+
+
 @contextlib.contextmanager
 def compiling(context: Any, part: bool) -> Iterator[None]:
     """Within, numba's target context compiles parts, or what runs; interrupts wait (`interrupts`)."""
-    with put_off():
-        before = context._internal_codegen
-        context._internal_codegen = copy.copy(before)
+    with put_off(), global_compiler_lock:
+        before = context._internal_codegen, arrayobj.fix_integer_index
+        arrayobj.fix_integer_index = _index
+        context._internal_codegen = copy.copy(before[0])
         context._internal_codegen.__class__ = Codegen
         context._internal_codegen._library_class = _Part if part else _Whole
         try:
             yield
         finally:
-            context._internal_codegen = before
+            context._internal_codegen, arrayobj.fix_integer_index = before
