@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 import subprocess
 import sys
 from collections.abc import Iterator
@@ -219,3 +220,18 @@ print(sorted({set(EXTRAS)} & (set(sys.modules) - before)))
         [sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True, check=True
     )
     assert out.stdout.strip() == "[]"
+
+
+def test_no_kernel_counts_rows_from_the_end() -> None:
+    """`compile.whole` takes an index as it is; a literal is seen to be one where it stands alone, not in a tuple."""
+    negative = [
+        f"{path.name}:{node.lineno}"
+        for path in MODULES.values()
+        for function in ast.walk(ast.parse(path.read_text()))
+        if isinstance(function, ast.FunctionDef)
+        and any(re.match(r"(kernel|entry|callback)\b", ast.unparse(one)) for one in function.decorator_list)
+        for node in ast.walk(function)
+        if isinstance(node, ast.Subscript) and isinstance(node.slice, ast.Tuple)
+        if any(isinstance(i, ast.UnaryOp) and isinstance(i.op, ast.USub) for i in node.slice.elts)
+    ]
+    assert negative == []

@@ -6,7 +6,8 @@ takes all of its arguments, a hundred words for a handful of arrays. Here a kern
 part, as it was written, until one that runs links it in; and that one keeps it to itself.
 
 And an index is what it says: numba asks each whether it is negative and counts from the end, a tenth of what a frame
-costs. Kernels count from the beginning, as in C (`tests/bounds.py` looks for one that does not).
+costs. Kernels count from the beginning, as in C, but for a literal alone (`a[-1]`, not `a[-1, j]`, which a test
+looks for; for all others `tests/bounds.py` does).
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ import os
 from collections.abc import Iterator
 from typing import Any
 
-from llvmlite import binding
+from llvmlite import binding, ir
 from numba.core import config, types
 from numba.core.codegen import JITCodeLibrary, JITCPUCodegen
 from numba.core.compiler_lock import global_compiler_lock
@@ -83,8 +84,8 @@ _index_of_numba = arrayobj.fix_integer_index
 
 
 def _index(context: Any, builder: Any, kind: Any, index: Any, size: Any) -> Any:
-    """An index as it is, in kernels; where numba's own code may run, which knows `a[-1]`, as numba has it."""
-    if context.enable_nrt:
+    """An index as it is, in kernels; a literal, and where numba's own functions may be called, as numba has it."""
+    if context.enable_nrt or isinstance(index, ir.Constant):
         return _index_of_numba(context, builder, kind, index, size)
     return context.cast(builder, index, kind, types.intp)
 

@@ -113,6 +113,13 @@ def hub_of(body, w, sy, buf, state, scheme, b):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def hub_of_mode(body: Boundary, j: int, x: float, y: float, turn: float) -> float:
+    """The hub's part in mode j, along (x, y, turn) in the body frame."""
+    k = len(body.modes) - 3
+    return float(x * body.modes[k, j] + y * body.modes[k + 1, j] + turn * body.modes[k + 2, j])
+
+
+@kernel
 def direction(kind: int, c: float, s: float) -> tuple[float, float, float]:
     """Hub component ``kind`` (0, 1: world displacement, 2: rotation) in the body frame."""
     if kind == 0:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from rigidarea.compile.jit import kernel
 from rigidarea.flexible.boundary import Boundary, Work
-from rigidarea.flexible.hub import direction, hub_angle, prescribed
+from rigidarea.flexible.hub import direction, hub_angle, hub_of_mode, prescribed
 from rigidarea.flexible.tension import between
 
 Array = NDArray[np.float64]
@@ -75,7 +75,7 @@ def mode_rows(body: Boundary, w: Work, sy, buf, state, b, hub):  # type: ignore[
     residual, modes = buf.modal_residual[lo:hi], body.modes
     _less(residual, modes, len(modes) - 3, c * mux + s * muy, -s * mux + c * muy)
     for j in range(hi - lo):
-        residual[j] -= modes[-1, j] * hub.moment
+        residual[j] -= modes[len(modes) - 1, j] * hub.moment
     for n in range(w.loaded[-1]):
         node = w.loaded[n]
         _less(residual, modes, 2 * node, w.node_load[node, 0], w.node_load[node, 1])
@@ -137,7 +137,7 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
         rhs[row] = -g - share * buf.push[3 * len(sy.mass) + k + kind]
         # modes move the hub by their own residual in this iteration, and as the frame turns
         for j in range(hi - lo):
-            pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
+            pe = hub_of_mode(body, j, e[0], e[1], e[2])
             rhs[row] += share * pe * buf.modal_residual[lo + j] * w.mobility[j]
             m[row, k + 2] -= pe * buf.swing[lo + j] * w.mobility[j]
         for i in range(k, k + 3):
@@ -159,8 +159,8 @@ def constraint_rows(body: Boundary, w: Work, sy, buf, state, scheme, b, hub, t):
                             part += between(body, w, n - 3 + i, n - 3 + j)
                         value += e[i] * part * d[j]
             for j in range(hi - lo):
-                pe = e[0] * body.modes[-3, j] + e[1] * body.modes[-2, j] + e[2] * body.modes[-1, j]
-                pd = d[0] * body.modes[-3, j] + d[1] * body.modes[-2, j] + d[2] * body.modes[-1, j]
+                pe = hub_of_mode(body, j, e[0], e[1], e[2])
+                pd = hub_of_mode(body, j, d[0], d[1], d[2])
                 value += pe * pd * w.mobility[j]
             m[row, column] += share * value / scheme.scale
     return worst, off

@@ -24,7 +24,7 @@ from rigidarea.flexible.dense import eliminate
 from rigidarea.flexible.eliminate_loads import eliminate_loads, renew_loads
 from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
-from rigidarea.flexible.hub import Hub, hub_of, keep_turn, second_order, static_displacement
+from rigidarea.flexible.hub import Hub, hub_of, hub_of_mode, keep_turn, second_order, static_displacement
 from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
 from rigidarea.flexible.pace import WHOLE, pace, whole_tangent
 from rigidarea.flexible.rows import constraint_rows, frame_rows, held_contacts, mode_rows, scheme_of
@@ -120,7 +120,7 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
     x, y = c * d0 + s * d1, -s * d0 + c * d1
     d, moved = buf.modes[0], buf.modes[1]
     for j in range(hi - lo):
-        f = body.modes[-3, j] * x + body.modes[-2, j] * y + body.modes[-1, j] * d2
+        f = hub_of_mode(body, j, x, y, d2)
         d[j], moved[j] = f - buf.modal_residual[lo + j] - buf.swing[lo + j] * rhs[k + 2], 0.0
     for i in range(s_load.made[0] if hi > lo else 0):
         if s_load.side[i] == b:
