@@ -15,8 +15,8 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
 max_bias. Joints that cannot all be held share what is asked of them (`_give`). A limit that is not reached yet is
 a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone,
-exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken at the step's end where the step is too long to follow
-it, as a contact's (`row`).
+exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken midway where the step hardly follows it, and at the
+step's end where it cannot (`_load_spring`).
 """
 
 from __future__ import annotations
@@ -328,8 +328,20 @@ def settle_joint(joint: Any, row: Any, h: float) -> None:
 
 
 @kernel(forceinline=True)
+def _unfollowed(phase2: float, most: float) -> float:
+    """The part of a stiffness that steps do not follow: those do where (w h)^2 is `most` or less."""
+    return 0.0 if phase2 <= most else 1.0 - (most / phase2) ** 2
+
+
+@kernel(forceinline=True)
 def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> None:
-    """A spring's force where it is now, its damping, and its stiffness as far as the step does not follow it."""
+    """A spring's force where it is now, its damping, and its stiffness as far as the step does not follow it.
+
+    Of place and velocity that leapfrog, the force a quarter of a step times the change of velocity further on keeps an
+    oscillation's amplitude whatever its frequency (Newmark's constant acceleration, J Eng Mech Div 85 (1959)): it is
+    l = f1 + q (v - v0) / W, v0 the speed before kicks. What goes through more than a radian in a step is not seen to
+    oscillate, and comes to rest: the force at the step's end.
+    """
     if joint.kind == SPRING:
         stiffness = joint.p[5]
         damping = joint.p[6]
@@ -344,8 +356,14 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float
     force = min(joint.max_force, max(-joint.max_force, force))
     w = row.weight
     phase2 = stiffness * w * h * h
-    theta = 0.0 if phase2 <= followed else 1.0 - (followed / phase2) ** 2
-    q = math.expm1(min(700.0, damping * h * w)) + theta * phase2
+    kept = 0.25 * phase2 * _unfollowed(phase2, followed)
+    q = math.expm1(min(700.0, damping * h * w)) + _unfollowed(phase2, 1.0) * phase2 + kept
+    if kept > 0.0:
+        ux = a.vx - a.kick_x - b.vx + b.kick_x
+        uy = a.vy - a.kick_y - b.vy + b.kick_y
+        wa = a.w - a.kick_w
+        wb = b.w - b.kick_w
+        row.t1 = kept / q * (ux * row.nx + uy * row.ny + (wa * row.arm_a - wb * row.arm_b))
     row.alpha = 1.0 / (1.0 + q)
     row.gamma = q / w * row.alpha
     row.f1 = h * force
