@@ -6,9 +6,10 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.active import form_islands, rest_settled, rest_small
-from ..contact.blows import blows, bound_bounces
+from ..contact.blows import blows
 from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
+from ..contact.given_energy import begin_again, contacts_give_energy, mix
 from ..contact.islands import note, share_kicks
 from ..contact.join import SPARE, any_pair_touches, gather, has_room, join, no_pair_comes_near
 from ..contact.order import arrange, find_near, sieve
@@ -17,9 +18,7 @@ from ..contact.solve import (
     drift,
     finish,
     fly,
-    held_back,
     kick,
-    kinetic,
     sweep,
     warm_start,
     warm_start_in_part,
@@ -85,7 +84,6 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     if tables.counters[ROWS] == 0:
         return True  # nothing that could change a velocity
     law = load_law(s)
-    came = kinetic(tables) if tables.counters[BOUNCES] > 0 else 0.0
     form_islands(tables, law, h, 0)
     if jointed:
         warm_start_in_part(tables)
@@ -123,9 +121,24 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
         rest_small(tables)
         if tables.counters[QUEUE] == 0:
             break
-    if tables.counters[BOUNCES] > 0 and not jointed:
-        bound_bounces(tables, came + held_back(tables, h))
+    if contacts_give_energy(tables, h):
+        _solve_again(tables, h, whole)
     return True
+
+
+@kernel
+def _solve_again(tables: Tables, h: float, whole: int) -> None:
+    """Islands that contacts have given energy: as much of that as gives none, the rest of what cannot."""
+    begin_again(tables)
+    for k in range(whole):
+        sweep(tables, k % 2 == 0)
+        rest_settled(tables, k + 1, whole, SETTLED)
+        if tables.counters[QUEUE] == 0:
+            break
+        if k < 2:
+            search_all(tables, k > 0)
+            conjugate_gradients(tables, SEARCH_STEPS, True)
+    mix(tables, h)
 
 
 @kernel(forceinline=True)

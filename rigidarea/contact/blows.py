@@ -1,21 +1,18 @@
-"""What a blow does within a substep that no row knew of when it was made: it goes on, and it takes.
+"""What a blow does within a substep that no row knew of when it was made: it goes on.
 
 Through what lies at rest it goes on as through something rigid, a bed being as stiff as its load asks and a blow
-shorter than the step. And it adds no energy, which Newton's restitution can where friction turns the slip round.
+shorter than the step.
 """
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 from ..compile.jit import kernel
 from .birth import drives
 from .constants import REST_KICKS
 from .region import closing
-from .row import push
-from .solve import kinetic
-from .tables import FIXED, ISLANDS, NEARING, QUEUE, REST, ROWS, Law, Tables
+from .tables import FIXED, ISLANDS, QUEUE, REST, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -76,60 +73,3 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
                 island.searching = 1
                 struck = True
     return struck
-
-
-@kernel(forceinline=True)
-def _bounces(row: Any, region: Any) -> bool:
-    """Whether a row is of two who bounce, or part from a bounce."""
-    return bool(row.alpha == 0.0 and region.first_speed > 0.0 and region.mode != NEARING)
-
-
-@kernel
-def _push_bounces(tables: Tables, part: float) -> float:
-    """Give so much more of their impulses to what bounces; the largest restitution, infinite off what drives."""
-    most = 0.0
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        if row.ends > 0:
-            region = tables.regions[row.region]
-            if _bounces(row, region):
-                most = max(most, tables.pairs[region.pair].elasticity)
-                a = tables.bodies[row.a]
-                b = tables.bodies[row.b]
-                if drives(a) or drives(b):
-                    most = math.inf
-                push(row, a, b, part * row.l1, part * row.l2, part * row.lt)
-    return most
-
-
-@kernel
-def bound_bounces(tables: Tables, most: float) -> None:
-    """Bounces leave no more kinetic energy than `most`: all of them give the same part less where they do.
-
-    Friction that turns the slip round has work to give of which Newton's restitution does not know (T. R. Kane, "A
-    dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), and so has a solve that has not converged. Of
-    the impulses' part s energy is a square, known by three of its values.
-    """
-    whole = kinetic(tables)
-    if whole <= most or _push_bounces(tables, -1.0) > 1.0:
-        if whole > most:
-            _push_bounces(tables, 1.0)
-        return
-    none = kinetic(tables)
-    _push_bounces(tables, 0.5)
-    half = kinetic(tables)
-    square = 2.0 * (whole + none) - 4.0 * half
-    slope = whole - none - square
-    s = 1.0
-    if square > 0.0:
-        root = slope * slope - 4.0 * square * (none - most)
-        s = min(1.0, max(0.0, (math.sqrt(max(0.0, root)) - slope) / (2.0 * square)))
-    _push_bounces(tables, s - 0.5)
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        if row.ends > 0:
-            region = tables.regions[row.region]
-            if _bounces(row, region):
-                row.l1 *= s
-                row.l2 *= s
-                row.lt *= s

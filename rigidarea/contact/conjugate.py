@@ -246,7 +246,7 @@ def _clamp(tables: Tables) -> bool:
                 whole = False
                 l1 = max(0.0, l1)
                 l2 = max(0.0, l2)
-            most = row.friction * (l1 + l2)
+            most = row.friction * (l1 + l2) + row.most
             if abs(lt) > most:
                 whole = False
                 lt = min(most, max(-most, lt))

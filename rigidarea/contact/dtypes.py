@@ -267,6 +267,7 @@ ROW = record(
         ("t1", "f8"),  # vt
         ("det", "f8"),  # of a joint: one over its determinant
         ("friction", "f8"),
+        ("most", "f8"),  # of lt, whatever the ends bear (`hold_friction`); of a joint's impulse
         ("alpha_t", "f8"),
         ("gamma_t", "f8"),
         ("ft", "f8"),
@@ -290,11 +291,10 @@ ROW = record(
         ("slip2", "f8"),
         ("l2", "f8"),
         # of a joint (`joint`), which has w11, w12, w22 of both its unknowns:
-        ("low", "f8"),  # bounds of l1 and lt, and of their size
+        ("low", "f8"),  # bounds of l1 and lt
         ("high", "f8"),
         ("low_t", "f8"),
         ("high_t", "f8"),
-        ("most", "f8"),
         ("grips", "i4"),  # 1: lt is an unknown
         # not of the sweeps:
         ("was1", "f8"),  # the impulses before contacts are relaxed

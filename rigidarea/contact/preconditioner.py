@@ -143,7 +143,7 @@ def _take(
 @kernel
 def _bears(row: Any, f: Any) -> bool:
     """Which unknowns of a row take part, and their compliance."""
-    most = row.friction * (row.l1 + row.l2)
+    most = row.friction * (row.l1 + row.l2) + row.most
     given = row.gamma == 0.0  # an impact that the steps follow: its force is given
     f.first = not given and row.l1 > 0.0
     f.second = not given and row.ends == 2 and row.l2 > 0.0

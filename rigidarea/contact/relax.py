@@ -76,15 +76,21 @@ def end_relaxing(tables: Tables, h: float) -> None:
 @kernel(forceinline=True)
 def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
     """Parted while they slip, two bodies have other arms: spin makes good what the rows' change gains by that."""
-    ia = a.inverse_moment if row.friction > 0.0 or row.arm_a != 0.0 else 0.0  # nothing turns a smooth disc
-    ib = b.inverse_moment if row.friction > 0.0 or row.arm_b != 0.0 else 0.0
+    rough = row.friction + row.most > 0.0
+    ia = a.inverse_moment if rough or row.arm_a != 0.0 else 0.0  # nothing turns a smooth disc
+    ib = b.inverse_moment if rough or row.arm_b != 0.0 else 0.0
     if ia + ib > 0.0:
         normal = row.was1 - row.l1 + row.was2 - row.l2
         along = row.was_t - row.lt
         jx = normal * row.nx - along * row.ny
         jy = normal * row.ny + along * row.nx
-        spin = h * (jx * (a.vy - b.vy) - jy * (a.vx - b.vx))
+        ux = a.vx - b.vx
+        uy = a.vy - b.vy
+        spin = h * (jx * uy - jy * ux)
         turn = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
+        # what turns easily no faster than they slip: no place for second orders
+        most = (abs(ux) + abs(uy)) / max(a.extent if ia > 0.0 else 0.0, b.extent if ib > 0.0 else 0.0)
+        turn = min(most, max(-most, turn))
         a.w += turn if ia > 0.0 else 0.0
         b.w += turn if ib > 0.0 else 0.0
 

@@ -36,6 +36,10 @@ from .region import beyond, closing, growth, inverse_mass, is_face, region_stiff
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .target_speeds import aim_bounce, aim_speculative, least_extent, turn_along
 
+#: Ends of a face whose determinant is less than this part of what it is the difference of are one: that part is
+#: rounding's where a body turns easily.
+ONE_END = 1e-12
+
 
 @kernel
 def _ends(row: Any, r: Any) -> None:
@@ -63,6 +67,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.slid = 0.0
     row.jammed = 0
     row.friction = pair.friction
+    row.most = 0.0
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
     _ends(row, r)
     if r.mode == STRUCK:
@@ -230,8 +235,15 @@ def push(row: Any, a: Any, b: Any, d1: float, d2: float, dt: float) -> None:
 def _press(
     l1: float, l2: float, r1: float, r2: float, m11: float, m12: float, m21: float, m22: float
 ) -> tuple[float, float]:
-    """What both ends of a face add, of what is left to solve; an end that would pull is open."""
-    det = 1.0 / (m11 * m22 - m12 * m21)
+    """What both ends of a face add, of what is left to solve; an end that would pull is open.
+
+    Of ends that are one but for rounding one is solved for, as long as it presses.
+    """
+    det = m11 * m22 - m12 * m21
+    if det <= ONE_END * m11 * m22:
+        d1 = max(-l1, r1 / m11)
+        return d1, (0.0 if d1 > -l1 else max(-l2, (r2 - m21 * d1) / m22))
+    det = 1.0 / det
     d1 = (r1 * m22 - m12 * r2) * det
     d2 = (m11 * r2 - m21 * r1) * det
     if l1 + d1 < 0.0 or l2 + d2 < 0.0:
@@ -274,11 +286,12 @@ def visit(row: Any, a: Any, b: Any) -> float:
         d2 = 0.0
         d1 = max(-row.l1, (r1 - c1 * grips) / (m11 - c1 * k1))
         dt = grips - k1 * d1
-        if abs(row.lt + dt) > row.friction * (row.l1 + d1):
+        if abs(row.lt + dt) > row.friction * (row.l1 + d1) + row.most:
             side = math.copysign(row.friction, row.lt + dt)
+            given = math.copysign(row.most, row.lt + dt) - row.lt
             if m11 + c1 * side > 0.0:
-                d1 = max(-row.l1, (r1 - c1 * (side * row.l1 - row.lt)) / (m11 + c1 * side))
-            dt = side * (row.l1 + d1) - row.lt
+                d1 = max(-row.l1, (r1 - c1 * (side * row.l1 + given)) / (m11 + c1 * side))
+            dt = side * (row.l1 + d1) + given
     else:
         turn = a.w - b.w
         left1 = row.alpha * (row.f1 - row.l1)
@@ -296,17 +309,19 @@ def visit(row: Any, a: Any, b: Any) -> float:
         )  # fmt: skip
         dt = grips - k1 * d1 - k2 * d2
         both = row.l1 + row.l2
-        if abs(row.lt + dt) > row.friction * (both + d1 + d2):
+        if abs(row.lt + dt) > row.friction * (both + d1 + d2) + row.most:
             side = math.copysign(row.friction, row.lt + dt)
+            given = math.copysign(row.most, row.lt + dt) - row.lt
             q1 = c1 * side
             q2 = c2 * side
-            if m11 + q1 > 0.0 and m22 + q2 > 0.0 and (m11 + q1) * (m22 + q2) > (m12 + q1) * (m12 + q2):
-                slides = side * both - row.lt
+            own = (m11 + q1) * (m22 + q2)
+            if m11 + q1 > 0.0 and m22 + q2 > 0.0 and own - (m12 + q1) * (m12 + q2) > -ONE_END * own:
+                slides = side * both + given
                 d1, d2 = _press(
                     row.l1, row.l2, r1 - c1 * slides, r2 - c2 * slides,
                     m11 + q1, m12 + q1, m12 + q2, m22 + q2,
                 )  # fmt: skip
-            dt = side * (both + d1 + d2) - row.lt
+            dt = side * (both + d1 + d2) + given
         row.l2 += d2
     row.l1 += d1
     row.lt += dt
@@ -328,9 +343,9 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     normal = row.l1 + row.l2
     if r.mode == NEARING:
         r.spring = row.lt / h  # what grips will go on gripping
-    elif r.mode == REST and row.friction > 0.0:
+    elif r.mode == REST and row.friction + row.most > 0.0:
         slip = slipping(r, a, b, 0.0) - row.tt + row.slid
-        most = row.friction * normal / h
+        most = pair.friction * normal / h
         r.spring = min(most, max(-most, r.spring + r.tangent_stiffness * h * slip))
     # sent back while it flies off: that is not borne
     flying = r.mode == REST and row.alpha == 0.0 and row.theta == 0.0

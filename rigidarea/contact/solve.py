@@ -12,7 +12,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.place import place, shift
-from .active import held_by, island_of, kinetic_of
+from .active import island_of
 from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
@@ -171,27 +171,6 @@ def sweep(tables: Tables, up: bool) -> None:
         island = tables.islands[queued.island]
         if moved > island.moved:
             island.moved = moved
-
-
-@kernel
-def kinetic(tables: Tables) -> float:
-    """Kinetic energy of all that contacts may move."""
-    total = 0.0
-    for k in range(tables.counters[LIVE]):
-        body = tables.bodies[tables.live[k]]
-        total += kinetic_of(body, body.vx, body.vy, body.w)
-    return total
-
-
-@kernel
-def held_back(tables: Tables, h: float) -> float:
-    """At least what the rows' springs hold, and could give back (energy)."""
-    total = 0.0
-    for i in range(tables.counters[ROWS]):
-        row = tables.rows[i]
-        if row.ends > 0:
-            total += held_by(row, tables.regions[row.region], h)
-    return total
 
 
 @kernel(forceinline=True)

@@ -1,0 +1,204 @@
+"""Contacts give no energy: where a solve has had them give some, part of it is taken, of another that cannot.
+
+Newton's restitution returns speeds, and knows nothing of the work of friction that turns the slip round (T. R. Kane,
+"A dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), nor of what is hinged to who bounces; nor does a
+solve that has not converged. Without restitution and friction a solve gives none from its first visit on: it lessens a
+convex function that begins at 0 (J. J. Moreau, doi:10.1007/978-3-7091-2624-0_1). Of the two any mean obeys joints and
+friction's cone as both do, and its work is a square of the part: the largest part is taken that gives nothing.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from ..compile.jit import kernel
+from .active import held_by, island_of, list_active
+from .birth import drives
+from .constants import MOVED, ROUNDING_OF_WORK
+from .tables import BOUNCES, ISLANDS, LIVE, NEARING, QUEUE, ROWS, Tables
+
+
+@kernel(forceinline=True)
+def _bounces(row: Any, region: Any) -> bool:
+    """Whether a row is of two who bounce, or part from a bounce."""
+    return bool(row.alpha == 0.0 and region.first_speed > 0.0 and region.mode != NEARING)
+
+
+@kernel(forceinline=True)
+def _speeds(row: Any, ux: float, uy: float, wa: float, wb: float) -> tuple[float, float, float]:
+    """The speeds that a row's three impulses act against: closing at either end, and the slip.
+
+    ux, uy: A's velocity less B's (length/time); wa, wb: how fast the two turn (1/time).
+    """
+    v = ux * row.nx + uy * row.ny + (wa * row.arm_a - wb * row.arm_b)
+    slip = uy * row.nx - ux * row.ny + (wa * row.lean_a - wb * row.lean_b)
+    return v - (wa - wb) * row.e1, v - (wa - wb) * row.e2, slip - row.tt
+
+
+@kernel(forceinline=True)
+def _may_give(pair: Any, a: Any, b: Any) -> bool:
+    """Whether a contact is asked to give energy: off what moves as it is told, or by a restitution above 1."""
+    return bool(drives(a) or drives(b) or pair.elasticity > 1.0)
+
+
+@kernel
+def contacts_give_energy(tables: Tables, h: float) -> bool:
+    """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
+
+    Asked where they bounce, or sweeps have led away from a solution, or have changed a speed by more than twice that
+    with which all moves.
+    """
+    asked = tables.counters[BOUNCES] > 0
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.active = 0
+        island.searching = island.least < 0.0 or MOVED * island.most > 2.0 * island.small
+        island.ahead = 0.0
+        island.curvature = 0.0
+        asked |= island.searching == 1
+    if not asked:
+        return False
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends == 0:
+            continue
+        region = tables.regions[row.region]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        island = tables.islands[island_of(tables, row)]
+        island.curvature += held_by(row, region, h)
+        if _may_give(tables.pairs[region.pair], a, b):
+            continue
+        island.searching |= _bounces(row, region)
+        came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
+        v1, v2, slip = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
+        island.ahead -= 0.5 * (row.l1 * (came1 + v1) + row.l2 * (came2 + v2) + row.lt * (came_t + slip))
+        island.curvature += ROUNDING_OF_WORK * row.l1 * abs(v1 - came1)
+    again = False
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.active = island.searching and island.ahead > island.curvature
+        island.again = island.active
+        again |= island.active
+    return again
+
+
+@kernel
+def begin_again(tables: Tables) -> None:
+    """From the velocities before the sweeps, without impulses, restitution, friction; what there was is taken down."""
+    list_active(tables)
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        m = tables.mobility[tables.live[k]]
+        if m.island >= 0 and tables.islands[m.island].again:
+            m.vx = body.vx
+            m.vy = body.vy
+            m.vw = body.w
+            body.vx = body.came_vx
+            body.vy = body.came_vy
+            body.w = body.came_w
+    for k in range(tables.counters[QUEUE]):
+        row = tables.rows[tables.queue[k].row]
+        row.was1 = row.l1
+        row.was2 = row.l2
+        row.was_t = row.lt
+        row.l1 = 0.0
+        row.l2 = 0.0
+        row.lt = 0.0
+        if row.ends > 0:
+            row.friction = 0.0
+            row.most = 0.0
+            row.t1 = max(0.0, row.t1)
+            row.t2 = max(0.0, row.t2)
+
+
+@kernel(forceinline=True)
+def _largest_part(a0: float, a1: float, a2: float, most: float) -> float:
+    """The largest s up to 1 before which a0 + a1 s + a2 s^2 is no more than `most`; 0 where it is more at 0."""
+    c = a0 - most
+    if c >= 0.0:
+        return 0.0
+    root = a1 * a1 - 4.0 * a2 * c
+    if root < 0.0:
+        return 1.0
+    # the smaller positive root, without cancellation; a1 + a2 > -c > 0 where there is one up to 1
+    below = a1 + math.sqrt(root)
+    return min(1.0, -2.0 * c / below) if below > 0.0 else 1.0
+
+
+@kernel
+def mix(tables: Tables, h: float) -> None:
+    """Of the solve before, which gave energy, the largest part that gives none, the rest of the one without."""
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.ahead = 0.0
+        island.curvature = 0.0
+        island.product = 0.0
+        island.held = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        island = tables.islands[island_of(tables, row)]
+        if row.ends == 0 or not island.again:
+            continue
+        region = tables.regions[row.region]
+        a = tables.bodies[row.a]
+        b = tables.bodies[row.b]
+        island.held += held_by(row, region, h)
+        if _may_give(tables.pairs[region.pair], a, b):
+            continue
+        of_a = tables.mobility[row.a]
+        of_b = tables.mobility[row.b]
+        ux, uy, wa, wb = a.vx - b.vx, a.vy - b.vy, a.w, b.w
+        came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
+        v1, v2, slip = _speeds(row, ux, uy, wa, wb)
+        if of_a.island >= 0:
+            ux += of_a.vx - a.vx
+            uy += of_a.vy - a.vy
+            wa = of_a.vw
+        if of_b.island >= 0:
+            ux -= of_b.vx - b.vx
+            uy -= of_b.vy - b.vy
+            wb = of_b.vw
+        d1, d2, dt = _speeds(row, ux, uy, wa, wb)
+        d1 -= v1
+        d2 -= v2
+        dt -= slip
+        m1, m2, mt = row.was1 - row.l1, row.was2 - row.l2, row.was_t - row.lt
+        v1 += came1
+        v2 += came2
+        slip += came_t
+        island.ahead -= 0.5 * (row.l1 * v1 + row.l2 * v2 + row.lt * slip)
+        island.product -= 0.5 * (m1 * v1 + m2 * v2 + mt * slip + row.l1 * d1 + row.l2 * d2 + row.lt * dt)
+        island.curvature -= 0.5 * (m1 * d1 + m2 * d2 + mt * dt)
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.part = _largest_part(island.ahead, island.product, island.curvature, island.held)
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        m = tables.mobility[tables.live[k]]
+        if m.island >= 0 and tables.islands[m.island].again:
+            part = tables.islands[m.island].part
+            body.vx += part * (m.vx - body.vx)
+            body.vy += part * (m.vy - body.vy)
+            body.w += part * (m.vw - body.w)
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        island = tables.islands[island_of(tables, row)]
+        if island.again:
+            row.l1 += island.part * (row.was1 - row.l1)
+            row.l2 += island.part * (row.was2 - row.l2)
+            row.lt += island.part * (row.was_t - row.lt)
+            if row.ends > 0:
+                _keep(row, tables)
+
+
+@kernel
+def _keep(row: Any, tables: Tables) -> None:
+    """What has come of a bounce is what it aims at from here on, and friction has the bound that it has now."""
+    region = tables.regions[row.region]
+    a = tables.bodies[row.a]
+    b = tables.bodies[row.b]
+    row.most = tables.pairs[region.pair].friction * (row.l1 + row.l2)
+    if _bounces(row, region):
+        row.t1, row.t2, _ = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
