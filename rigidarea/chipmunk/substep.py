@@ -24,7 +24,7 @@ from ..contact.solve import (
     warm_start_in_part,
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
-from ..contact.tables import BOUNCES, BOXED, KNOWN, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
+from ..contact.tables import BOXED, KNOWN, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
 from ..contact.taut import free_turning, geometric_stiffness
 from .joints import ask_springs, own_joints
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
@@ -57,7 +57,6 @@ def find_contacts(s: Any, space: int, h: float, time: float, jointed: bool) -> b
     s.begun = 1
     tables.counters[SUBSTEP] += 1
     tables.counters[ROWS] = 0
-    tables.counters[BOUNCES] = 0
     found = gather(load_pool(s), tables, load_work(s), load_law(s), s.frame, h, jointed)
     lap(s, OVERLAPS)
     return bool(found)
@@ -121,24 +120,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
         rest_small(tables)
         if tables.counters[QUEUE] == 0:
             break
-    if contacts_give_energy(tables, h):
-        _solve_again(tables, h, whole)
     return True
-
-
-@kernel
-def _solve_again(tables: Tables, h: float, whole: int) -> None:
-    """Islands that contacts have given energy: as much of that as gives none, the rest of what cannot."""
-    begin_again(tables)
-    for k in range(whole):
-        sweep(tables, k % 2 == 0)
-        rest_settled(tables, k + 1, whole, SETTLED)
-        if tables.counters[QUEUE] == 0:
-            break
-        if k < 2:
-            search_all(tables, k > 0)
-            conjugate_gradients(tables, SEARCH_STEPS, True)
-    mix(tables, h)
 
 
 @kernel(forceinline=True)
@@ -158,6 +140,23 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
         if tables.counters[QUEUE] == 0:
             break
     end_relaxing(tables, h)
+
+
+@kernel
+def _give_no_energy(tables: Tables, h: float, whole: int) -> None:
+    """Where contacts have given energy: as much of that solve as gives none, the rest of one that cannot."""
+    if not contacts_give_energy(tables, h):
+        return
+    begin_again(tables)
+    for k in range(whole):
+        sweep(tables, k % 2 == 0)
+        rest_settled(tables, k + 1, whole, SETTLED)
+        if tables.counters[QUEUE] == 0:
+            break
+        if k < 2:
+            search_all(tables, k > 0)
+            conjugate_gradients(tables, SEARCH_STEPS, True)
+    mix(tables, h)
 
 
 @kernel
@@ -195,6 +194,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         lap(s, ITERATIONS)
         _relax(s, tables, h, sweeps)
+        _give_no_energy(tables, h, sweeps)
         if joints > 0:
             free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)

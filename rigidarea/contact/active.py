@@ -34,8 +34,7 @@ ISLAND = record(
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
-        ("least", "f8"),  # least and most of that in a sweep until now
-        ("most", "f8"),
+        ("least", "f8"),  # least of that in a sweep until now; -1: friction has been held
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
         ("ahead", "f8"),
@@ -96,7 +95,6 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
             tables.islands[count].active = 0
             tables.islands[count].known = 0
             tables.islands[count].least = math.inf
-            tables.islands[count].most = 0.0
             count += 1
         island = tables.islands[mobility[root].island]
         island.rows += 1 if tables.rows[r].ends > 0 else 2
@@ -229,7 +227,6 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
         if not island.active:
             continue
         island.least = min(island.least, island.moved)
-        island.most = max(island.most, island.moved)
         if island.moved > max(island.small, DIVERGES * island.least):
             island.least = -1.0
             diverges = True

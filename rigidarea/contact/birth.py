@@ -118,7 +118,8 @@ def flies_off(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
 def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
     """Whether what a bounce has left overlapping closes so fast that it bounces anew, here and now.
 
-    What has bounced is at rest when it closes too slowly for that (`first_speed` is 0 from then on).
+    What has bounced is at rest when it closes too slowly for that (`first_speed` is 0 from then on). What turns with
+    its support is pushed by that too: points r from the two centres come nearer by w_b^2 r_b - w_a^2 r_a, along n.
     """
     if r.first_speed == 0.0 or pair.elasticity == 0.0 or law.followed == math.inf:
         return False
@@ -127,6 +128,7 @@ def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool
     if u <= 0.0 or rate2 * h * h <= law.followed:
         return False
     gain = _pushed(law, 2.0 * (u - closing(r, a, b, 1.0)), h)
+    gain = max(gain, b.w * b.w * r.lean_b - a.w * a.w * r.lean_a)
     r.first_speed = u if pair.elasticity * u > _slow(law, gain, rate2, h) else 0.0
     r.back = 0.0
     return bool(r.first_speed > 0.0)

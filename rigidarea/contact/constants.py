@@ -76,8 +76,9 @@ RELAX_SWEEPS = 5
 #: substep, and a part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
 MOVED = 0.003
-#: Work of bounces that is less than this part of what they do each way is rounding's: no reason to solve again.
-ROUNDING_OF_WORK = 1e-6
+#: Energy that contacts give is no reason to solve again where it is less than this part of what they do: a solve ends
+#: when a sweep changes so little (SETTLED), which gives or takes; taken back alone, elastic bodies would lose by it.
+UNSOLVED_WORK = 1e-3
 #: It leads away from one, where a sweep changes so many times as much as one before.
 DIVERGES = 4.0
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.

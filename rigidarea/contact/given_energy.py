@@ -15,14 +15,8 @@ from typing import Any
 from ..compile.jit import kernel
 from .active import held_by, island_of, list_active
 from .birth import drives
-from .constants import MOVED, ROUNDING_OF_WORK
-from .tables import BOUNCES, ISLANDS, LIVE, NEARING, QUEUE, ROWS, Tables
-
-
-@kernel(forceinline=True)
-def _bounces(row: Any, region: Any) -> bool:
-    """Whether a row is of two who bounce, or part from a bounce."""
-    return bool(row.alpha == 0.0 and region.first_speed > 0.0 and region.mode != NEARING)
+from .constants import UNSOLVED_WORK
+from .tables import ISLANDS, LIVE, QUEUE, ROWS, Tables
 
 
 @kernel(forceinline=True)
@@ -46,39 +40,34 @@ def _may_give(pair: Any, a: Any, b: Any) -> bool:
 def contacts_give_energy(tables: Tables, h: float) -> bool:
     """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
 
-    Asked where they bounce, or sweeps have led away from a solution, or have changed a speed by more than twice that
-    with which all moves.
+    Who is at rest gives none.
     """
-    asked = tables.counters[BOUNCES] > 0
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.active = 0
-        island.searching = island.least < 0.0 or MOVED * island.most > 2.0 * island.small
         island.ahead = 0.0
         island.curvature = 0.0
-        asked |= island.searching == 1
-    if not asked:
-        return False
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        if row.ends == 0:
+        if row.ends == 0 or row.l1 + row.l2 == 0.0:
             continue
-        region = tables.regions[row.region]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
         island = tables.islands[island_of(tables, row)]
-        island.curvature += held_by(row, region, h)
+        if island.still:
+            continue
+        region = tables.regions[row.region]
+        island.curvature += (1.0 - row.theta) * held_by(row, region, h)
         if _may_give(tables.pairs[region.pair], a, b):
             continue
-        island.searching |= _bounces(row, region)
         came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
         v1, v2, slip = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
         island.ahead -= 0.5 * (row.l1 * (came1 + v1) + row.l2 * (came2 + v2) + row.lt * (came_t + slip))
-        island.curvature += ROUNDING_OF_WORK * row.l1 * abs(v1 - came1)
+        island.curvature += UNSOLVED_WORK * (row.l1 * abs(v1 - came1) + row.l2 * abs(v2 - came2))
     again = False
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        island.active = island.searching and island.ahead > island.curvature
+        island.active = island.ahead > island.curvature
         island.again = island.active
         again |= island.active
     return again
@@ -144,7 +133,7 @@ def mix(tables: Tables, h: float) -> None:
         region = tables.regions[row.region]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        island.held += held_by(row, region, h)
+        island.held += (1.0 - row.theta) * held_by(row, region, h)
         if _may_give(tables.pairs[region.pair], a, b):
             continue
         of_a = tables.mobility[row.a]
@@ -189,16 +178,3 @@ def mix(tables: Tables, h: float) -> None:
             row.l1 += island.part * (row.was1 - row.l1)
             row.l2 += island.part * (row.was2 - row.l2)
             row.lt += island.part * (row.was_t - row.lt)
-            if row.ends > 0:
-                _keep(row, tables)
-
-
-@kernel
-def _keep(row: Any, tables: Tables) -> None:
-    """What has come of a bounce is what it aims at from here on, and friction has the bound that it has now."""
-    region = tables.regions[row.region]
-    a = tables.bodies[row.a]
-    b = tables.bodies[row.b]
-    row.most = tables.pairs[region.pair].friction * (row.l1 + row.l2)
-    if _bounces(row, region):
-        row.t1, row.t2, _ = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)

@@ -21,7 +21,6 @@ from .joint import make_joint_row
 from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
 from .row import make_row
 from .tables import (
-    BOUNCES,
     BOXED,
     CONCAVE,
     FIRST,
@@ -34,7 +33,6 @@ from .tables import (
     MORE_REGIONS,
     MOVERS,
     ROWS,
-    STRUCK,
     SUBSTEP,
     Law,
     Tables,
@@ -190,7 +188,6 @@ def _add_rows(tables: Tables, law: Law, p: int, h: float, until: int) -> bool:
         row.a = first
         row.b = second
         make_row(row, region, law, tables.bodies[first], tables.bodies[second], pair, h)
-        counters[BOUNCES] += region.mode == STRUCK
         r = region.next
     return True
 

@@ -32,7 +32,7 @@ COMING, LYING = 1, 2
 #: which list `near` is, and substeps so far; pairs that are near and may collide; rows of this substep; body pairs kept
 #: apart by joints; the first substep of this frame; 1: list all pairs anew. Of turns (`islands`): bodies that are live;
 #: where the live pairs begin in `near`, and end; substeps of the turn, 0: everybody's; 1: near pairs are sorted by
-#: turns. Shapes with teeth or slots; rows of this substep that bounce. Pairs in `near`, those
+#: turns. Shapes with teeth or slots. Pairs in `near`, those
 #: behind counters[NEAR] such as may not collide; 1: to be sorted anew; shapes in `asked`, in `movers`, bodies in
 #: `awake`, pairs in `told`; which list `live` is;
 #: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
@@ -45,12 +45,12 @@ COMING, LYING = 1, 2
 #: user may set of whose shapes has been read.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
-LIVE, FIRST, LAST, TURN, TURNED, TOOTHED, BOUNCES = range(12, 19)
-BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(19, 29)
-JOINTS, REJOINED, GONE = range(29, 32)
-MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(32, 39)
-USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(39, 44)
-ISLANDS, QUEUE, MEMBERS, KNOWN = range(44, 48)
+LIVE, FIRST, LAST, TURN, TURNED, TOOTHED = range(12, 18)
+BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CONCAVE = range(18, 28)
+JOINTS, REJOINED, GONE = range(28, 31)
+MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(31, 38)
+USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(38, 43)
+ISLANDS, QUEUE, MEMBERS, KNOWN = range(43, 47)
 COUNTERS = 48
 
 

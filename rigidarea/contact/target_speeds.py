@@ -73,6 +73,10 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
     so much further on it is put (`shift`). Not where contacts have pushed it a substep ago: others are near.
     """
     back = r.back
+    if not others_push(a, b):
+        row.shift = back
+    if row.shift == 0.0:  # before speeds are asked for: the impulse is to act against those that it returns
+        _one_point(r, a, b, row.friction)
     full = closing(r, a, b, 0.0)
     gain = (full - closing(r, a, b, 1.0)) / h
     time = back + 0.5 * h
@@ -86,7 +90,7 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
         at = row.e1 if end == 0 else row.e2
         since = (gain - turn_gain * at) * time
         u0 = touch - (turn - turn_gain * time) * at
-        target = since - e * max(0.0, u0)
+        target = since - e * u0  # what opens may close by as much
         if u0 > 0.0 or e == 0.0:
             target = min(0.0, target)
         if end == 0:
@@ -95,10 +99,8 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
             row.t2 = target
     if e == 0.0 and row.ends == 1:
         row.t1 = turn_along(r, a, b, max(0.0, row.t1))
-    if not others_push(a, b):
-        row.shift = back
-    if row.shift == 0.0:
-        _one_point(r, a, b, row.friction)
+        if row.shift == 0.0:
+            _one_point(r, a, b, row.friction)
 
 
 @kernel(forceinline=True)
