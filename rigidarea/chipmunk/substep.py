@@ -150,11 +150,13 @@ def _give_no_energy(tables: Tables, h: float, whole: int) -> None:
     begin_again(tables)
     for k in range(whole):
         sweep(tables, k % 2 == 0)
-        rest_settled(tables, k + 1, whole, SETTLED)
+        rest_settled(
+            tables, k + 1, 1, 1.0
+        )  # of a small part of it no more is asked than that it gives nothing
         if tables.counters[QUEUE] == 0:
             break
-        if k < 2:
-            search_all(tables, k > 0)
+        if k == 0:
+            search_all(tables, False)
             conjugate_gradients(tables, SEARCH_STEPS, True)
     mix(tables, h)
 

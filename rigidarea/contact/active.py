@@ -171,7 +171,7 @@ def kinetic_of(body: Any, vx: float, vy: float, w: float) -> float:
 
 @kernel(forceinline=True)
 def held_by(row: Any, region: Any, h: float) -> float:
-    """At least what a contact's spring holds, and could give back (energy)."""
+    """No less than a contact's spring holds, and could give back: what is linear in depth half of it (energy)."""
     return float((row.f1 + row.f2) / h * region.depth)
 
 

@@ -267,7 +267,7 @@ ROW = record(
         ("t1", "f8"),  # vt
         ("det", "f8"),  # of a joint: one over its determinant
         ("friction", "f8"),
-        ("most", "f8"),  # of lt, whatever the ends bear (`hold_friction`); of a joint's impulse
+        ("most", "f8"),  # of lt, whatever the ends bear (`rest_settled`); of a joint's impulse
         ("alpha_t", "f8"),
         ("gamma_t", "f8"),
         ("ft", "f8"),

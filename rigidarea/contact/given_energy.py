@@ -57,7 +57,7 @@ def contacts_give_energy(tables: Tables, h: float) -> bool:
         if island.still:
             continue
         region = tables.regions[row.region]
-        island.curvature += (1.0 - row.theta) * held_by(row, region, h)
+        island.curvature += 0.5 * held_by(row, region, h)
         if _may_give(tables.pairs[region.pair], a, b):
             continue
         came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
@@ -133,7 +133,7 @@ def mix(tables: Tables, h: float) -> None:
         region = tables.regions[row.region]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        island.held += (1.0 - row.theta) * held_by(row, region, h)
+        island.held += 0.5 * held_by(row, region, h)
         if _may_give(tables.pairs[region.pair], a, b):
             continue
         of_a = tables.mobility[row.a]

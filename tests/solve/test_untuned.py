@@ -42,7 +42,7 @@ def kinetic(space):
     return sum(b.kinetic_energy for b in space.bodies)
 
 
-@pytest.mark.parametrize("seed", [3, 4])
+@pytest.mark.parametrize("seed", [3, 4, 5, 6])
 def test_elastic_boxes_keep_their_energy(seed):
     """48 boxes, e = 1, no friction, 20 s: 2 %, where in 60 s 0.98 to 1.01 is asked for."""
     draw = random.Random(seed)
@@ -324,12 +324,12 @@ def heap(count, kinds, elasticity, seed, gravity=900.0):
     "kinds, elasticity", [((0,), 0.3), ((0, 4, 6), 0.1), ((4,), 0.0)], ids="discs mixed boxes".split()
 )
 def test_a_heap_comes_to_rest(kinds, elasticity):
-    """200 of them, 12 s: the energy a body, the median of five (each heap falls by a course of its own)."""
+    """200 of them, 12 s: the energy a body, the median of nine (each heap falls by a course of its own)."""
     left = []
-    for seed in range(5):
+    for seed in range(9):
         space = heap(200, kinds, elasticity, seed)
         ra.attach(space)
         for _ in range(720):
             space.step(DT)
         left.append(kinetic(space) / 200)
-    assert sorted(left)[2] <= 1e-3
+    assert sorted(left)[4] <= 1e-3
