@@ -6,6 +6,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.active import form_islands, rest_settled, rest_small
+from ..contact.bend import bend_again
 from ..contact.blows import blows
 from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
@@ -114,6 +115,8 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                 if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
                 known = True
+                if jointed:
+                    bend_again(tables, h)
             elif k == 1 and not jointed:
                 search_all(tables, known)
                 conjugate_gradients(tables, searches - 1, False)

@@ -296,6 +296,8 @@ ROW = record(
         ("low_t", "f8"),
         ("high_t", "f8"),
         ("grips", "i4"),  # 1: lt is an unknown
+        ("bend1", "f8"),  # what `bend` has added to t1 and tt
+        ("bend_t", "f8"),
         # not of the sweeps:
         ("was1", "f8"),  # the impulses before contacts are relaxed
         ("was2", "f8"),

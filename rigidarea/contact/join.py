@@ -15,6 +15,7 @@ from ..geometry.apart import find_axis, gap_along
 from ..geometry.place import Pose, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
+from .bend import bend
 from .broad import swing
 from .constants import LOOK
 from .joint import make_joint_row
@@ -237,7 +238,10 @@ def _add_joints(tables: Tables, law: Law, h: float) -> None:
             row.region = number
             row.a = joint.a
             row.b = joint.b
-            if make_joint_row(row, joint, tables.bodies[joint.a], tables.bodies[joint.b], h, law.followed):
+            a = tables.bodies[joint.a]
+            b = tables.bodies[joint.b]
+            if make_joint_row(row, joint, a, b, h, law.followed):
+                bend(row, joint, a, b, h)
                 counters[ROWS] += 1
 
 

@@ -207,6 +207,8 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     row.t1 = 0.0
     row.tt = 0.0
     row.t2 = 0.0
+    row.bend1 = 0.0
+    row.bend_t = 0.0
     row.theta = 0.0
     row.slid = 0.0
     row.shift = 0.0
