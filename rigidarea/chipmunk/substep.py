@@ -153,9 +153,8 @@ def _give_no_energy(tables: Tables, h: float, whole: int) -> None:
     begin_again(tables)
     for k in range(whole):
         sweep(tables, k % 2 == 0)
-        rest_settled(
-            tables, k + 1, 1, 1.0
-        )  # of a small part of it no more is asked than that it gives nothing
+        # of a small part of it no more is asked than that it gives nothing
+        rest_settled(tables, k + 1, 1, 1.0)
         if tables.counters[QUEUE] == 0:
             break
         if k == 0:

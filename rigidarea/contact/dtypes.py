@@ -299,7 +299,7 @@ ROW = record(
         ("bend1", "f8"),  # what `bend` has added to t1 and tt
         ("bend_t", "f8"),
         # not of the sweeps:
-        ("was1", "f8"),  # the impulses before contacts are relaxed
+        ("was1", "f8"),  # the impulses of the solve before (`relax`, `given_energy`)
         ("was2", "f8"),
         ("was_t", "f8"),
         ("theta", "f8"),  # how far its opening is of the step's making: 0 to 1
