@@ -71,7 +71,7 @@ def test_a_rod_that_turns_about_its_end_keeps_its_energy(held: Held, spin: float
 def test_a_chain_under_gravity_keeps_its_energy(
     links: int, spin: float, record_property: Callable[[str, float], None]
 ) -> None:
-    """Ten seconds; nor is there ever more than at first. By pymunk's own .19 to .71 is left, .41 to .89 at four steps."""
+    """Ten seconds, and never more than at first. By pymunk's own .19 to .71 is left, at four steps .41 to .89."""
     space, energy = swinging(links, spin, GRAVITY, _pivot)
     ra.attach(space)
     start, most = energy(), 0.0
