@@ -83,9 +83,6 @@ def test_stiff_tower_stands_and_soft_tower_buckles():
     assert soft.row()["headline"] > 1000
 
 
-@pytest.mark.xfail(
-    reason="the last two leave together, with 0.65 of 1.43 m/s each, and most energy is lost", strict=True
-)
 def test_cradle_hands_the_speed_on():
     run = run_through("cradle", 130)
     # equal masses pass (1 + e)/2 of the speed on; e is within 0.002, so four impacts within 0.004
