@@ -64,8 +64,7 @@ def test_a_heap_of_small_moments(
 def test_hinged_bodies_that_touch(pinned: bool, elasticity: float, seed: int) -> None:
     """Two or three rough boxes hinged at corners bounce off each other, nothing else around: they have what they had.
 
-    A third more in three seconds: what short rods mend moves them; on rods of 2 px twice as much. (Up to 23 times as
-    much before. Of 200 such scenes on rods 18 gain a third at e = 0.5, up to 6.5 times; by pymunk's own one.)
+    A third more in three seconds: what short rods mend moves them. (Up to 23 times as much before.)
     """
     rng = random.Random(seed)
     space = pymunk.Space()
@@ -96,4 +95,4 @@ def test_hinged_bodies_that_touch(pinned: bool, elasticity: float, seed: int) ->
     start = _energy(space)
     for _ in range(180):
         space.step(DT)
-        assert _energy(space) < (2.0 if pinned else 4 / 3) * start
+        assert _energy(space) < 4 / 3 * start
