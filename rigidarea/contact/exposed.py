@@ -14,8 +14,9 @@ import math
 from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
+from ..geometry.arc import distance2
 from ..geometry.locate import inside_outline
-from ..geometry.place import Pose
+from ..geometry.place import Pose, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import A_EDGE, Relative, Work
 from .constants import SMOOTH
@@ -26,6 +27,8 @@ from .tree import STILL, next_beside, next_met
 
 #: A neighbour's boundary is looked for this far beyond an edge, of the smaller one's smallest extent: what lies flush.
 FLUSH = 2e-4
+#: Of a loop's edges the ones from here on share a bit.
+MOST_EDGES = 62
 #: A direction that turns by less than the angle with this cosine leaves a straight face what it is.
 SAME_FACE = 0.9
 
@@ -149,7 +152,7 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
 def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
     """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a shape's edges.
 
-    It is blind and of no area where a body is only within a round end of which nothing is exposed.
+    It is blind and of no area where a body is only within edges of which nothing is exposed.
     pose, other: where the outlines of A and B are.
     """
     patch = patch_of(two.pool, two.work, two.law, k, two.ia, two.ib, pose)
@@ -163,6 +166,100 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
             if hidden:
                 return found
     return patch
+
+
+class _Look(NamedTuple):
+    """What is asked whether neighbours of a shape hide it."""
+
+    two: TwoShapes
+    own: int  # the shape
+    other: int  # and the one that it meets
+    body: Any  # its body
+    head: Any  # of A's outline, in whose coordinates the work is
+    pose: Pose  # where A's outline is
+    at: Pose  # where its own is
+    room: float  # so deep in it the points lie at most (length)
+
+
+@kernel
+def _within_neighbours(look: _Look, x: float, y: float) -> bool:
+    """Whether a point of the work lies within a neighbour."""
+    lx = x + look.head.x
+    ly = y + look.head.y
+    x = look.pose.x + look.pose.c * lx - look.pose.s * ly
+    y = look.pose.y + look.pose.s * lx + look.pose.c * ly
+    body = look.body
+    if body.kind != FIXED:  # where it is on the body now
+        lx = look.at.c * (x - look.at.x) + look.at.s * (y - look.at.y)
+        ly = look.at.c * (y - look.at.y) - look.at.s * (x - look.at.x)
+        x = body.ox + body.c * lx - body.s * ly
+        y = body.oy + body.s * lx + body.c * ly
+    return bool(_hidden(look.two, look.own, look.other, body, x, y, look.room))
+
+
+@kernel
+def _edge_at(pool: Pool, i: int, rel: Relative, x: float, y: float) -> tuple[float, float, float, float]:
+    """Both ends of the straight edge of outline i, placed by `rel`, that is nearest to a point."""
+    head = pool.heads[i]
+    least = math.inf
+    best = (0.0, 0.0, 0.0, 0.0)
+    for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
+        k = pool.following[e]
+        px = rel.c * pool.points[e, 0] - rel.s * pool.points[e, 1] + rel.tx
+        py = rel.s * pool.points[e, 0] + rel.c * pool.points[e, 1] + rel.ty
+        qx = rel.c * pool.points[k, 0] - rel.s * pool.points[k, 1] + rel.tx
+        qy = rel.s * pool.points[k, 0] + rel.c * pool.points[k, 1] + rel.ty
+        dx = qx - px
+        dy = qy - py
+        square = dx * dx + dy * dy
+        part = ((x - px) * dx + (y - py) * dy) / square if square > 0.0 else 0.0
+        part = min(1.0, max(0.0, part))
+        distance = distance2(x, y, px + part * dx, py + part * dy)
+        if distance < least:
+            least = distance
+            best = (px, py, qx, qy)
+    return best
+
+
+@kernel
+def _ends_within(
+    look: _Look, theirs: _Look, loop: Any, side: int, hidden: int, of_b: bool, step: float
+) -> bool:
+    """Whether the other's one face of a loop, where it leaves by a hidden edge, ends in the neighbour behind that.
+
+    Then the two meet with a corner of the other's, of which this loop shows one side alone; else with that face, and it
+    is the corner of what the hidden edge is within. What goes on straight, in a neighbour of the other's, is no corner.
+    step: so far beyond its end that is looked for (length).
+    """
+    two = look.two
+    work = two.work
+    count = loop.stop - loop.start
+    m = 0
+    while work.label[loop.start + m] == side:
+        m += 1
+    i = loop.start + m
+    j = loop.start + (m + 1) % count
+    rel = Relative(1.0, 0.0, 0.0, 0.0)
+    if not of_b:
+        rel = seen_from(two.pool.heads[two.ia], look.pose, two.pool.heads[two.ib], theirs.at)
+    mx = 0.5 * (work.polygon[i, 0] + work.polygon[j, 0])
+    my = 0.5 * (work.polygon[i, 1] + work.polygon[j, 1])
+    px, py, qx, qy = _edge_at(two.pool, two.ia if of_b else two.ib, rel, mx, my)
+    dx = qx - px
+    dy = qy - py
+    length = math.sqrt(dx * dx + dy * dy)
+    if length == 0.0:
+        return False
+    dx *= step / length
+    dy *= step / length
+    for way in (-1, 1):
+        if hidden >> (m + way) % count & 1:
+            x, y = (qx, qy) if way > 0 else (px, py)
+            if _within_neighbours(look, x, y):
+                # a trifle in: what is flush lies within the neighbour
+                if not _within_neighbours(theirs, x + way * dx - FLUSH * dy, y + way * dy + FLUSH * dx):
+                    return True
+    return False
 
 
 @kernel
@@ -185,14 +282,17 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             caps += curved
         else:
             faces += 2 if curved else 1
-    if edges < 2 and caps == 0:
+    if (
+        edges < 2 and caps == 0 and two.pair.head >= 0
+    ):  # one edge may lie within neighbours, if it is not met from out
         return patch, False
     head = pool.heads[two.ia]
     beyond = FLUSH * least_extent(two.a, two.b)
-    room = patch.reach + 2.0 * beyond
+    look = _Look(two, own, mover, body, head, pose, at, patch.reach + 2.0 * beyond)
+    nearer = 0.25 * patch.reach  # what is no deeper than that leaves the neighbour again
     nx = 0.0
     ny = 0.0
-    hidden = False
+    hidden = 0  # edges that are, as bits
     for i in range(loop.start, loop.stop):
         j = i + 1 if i + 1 < loop.stop else loop.start
         dx = work.polygon[j, 0] - work.polygon[i, 0]
@@ -210,34 +310,39 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             mx = work.bows[i, 0] + out * ux
             my = work.bows[i, 1] + out * uy
             flush = 0.0  # it leaves the neighbour's side along a tangent: what lies flush is within it
-        lx = mx + flush * dy + head.x
-        ly = my - flush * dx + head.y
-        x = pose.x + pose.c * lx - pose.s * ly
-        y = pose.y + pose.s * lx + pose.c * ly
-        if body.kind != FIXED:  # where it is on the body now
-            lx = at.c * (x - at.x) + at.s * (y - at.y)
-            ly = at.c * (y - at.y) - at.s * (x - at.x)
-            x = body.ox + body.c * lx - body.s * ly
-            y = body.oy + body.s * lx + body.c * ly
-        if _hidden(two, own, mover, body, x, y, room):
-            hidden = True
+        within = _within_neighbours(look, mx + flush * dy, my - flush * dx)
+        if not within and flush * length > nearer:
+            flush = nearer / length
+            within = _within_neighbours(look, mx + flush * dy, my - flush * dx)
+        if within:
+            hidden |= 1 << min(i - loop.start, MOST_EDGES)
         else:
             nx += dy
             ny -= dx
     length = math.sqrt(nx * nx + ny * ny)
-    if (
-        length == 0.0 and hidden and caps > 0
-    ):  # all of it within a neighbour, which says where the body can go
-        return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
-    if not hidden or length == 0.0:
+    if hidden != 0 and length == 0.0:
+        there = two.tables.shapes[mover]
+        x = 0.5 * (there.left + there.right)
+        y = 0.5 * (there.bottom + there.top)
+        if not _hidden(two, own, mover, body, x, y, look.room):  # it is not put into the midst of them
+            # all of it within neighbours, which say where the body can go
+            return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
+    if hidden == 0 or length == 0.0:
         return patch, False
     if side != A_EDGE:  # from A to B is into B
         length = -length
     nx /= length
     ny /= length
-    across = loop.chord_x * nx + loop.chord_y * ny  # the chord lies along the other's one face
-    if faces == 1 and across * across <= SMOOTH * patch.chord * patch.chord:
-        return patch, True  # which says better where to go: a piece of it lies on it as the whole does
+    if faces == 1:  # along which the chord lies
+        across = loop.chord_x * nx + loop.chord_y * ny
+        flat = (
+            across * across <= SMOOTH * patch.chord * patch.chord
+        )  # a piece of it lies on it as the whole does
+        theirs = _Look(
+            two, mover, own, two.a if of_b else two.b, head, pose, pose if of_b else other, look.room
+        )
+        if flat or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
+            return patch, True  # it says better where to go
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
     reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
