@@ -719,7 +719,7 @@ def test_removing_a_body_in_contact_lets_the_rest_go_on():
     space.remove(lower, lower_shape)
     steps(space, 1)
     assert used(contact)[1] == 0 and not len(contact.regions)
-    # it comes down 0.02 deep with nothing to give back, and opens with a time constant of a second (RELEASE_SPEED)
+    # it comes down 0.02 deep with nothing to give back, and opens with a time constant of a second (PUT_SPEED)
     steps(space, 6 * 960)
     assert upper.position.y == pytest.approx(0.5, abs=1e-3)
 
@@ -729,7 +729,7 @@ def test_a_shape_comes_back_and_moves_to_another_space():
     space, contact = world()
     floor(space)
     body, shape = box(space, (0, 0.6))
-    # it comes down 6e-3 deep with nothing to give back, and opens with a time constant of a second (RELEASE_SPEED)
+    # it comes down 6e-3 deep with nothing to give back, and opens with a time constant of a second (PUT_SPEED)
     steps(space, 10 * 960)
     for _ in range(10):
         space.remove(body, shape)

@@ -126,13 +126,13 @@ def test_at_rest_nothing_is_softened(kernel: Any, k: float, h: float, straight: 
 
 
 def test_a_put_overlap_opens_at_a_bounded_speed(kernel: Any) -> None:
-    """At RELEASE_SPEED smallest extents a second, or in RELEASE_STEPS substeps, the slower of both (damping: 2e-3)."""
+    """At PUT_SPEED smallest extents a second, or in RELEASE_STEPS substeps, the slower of both (damping: 2e-3)."""
     for h in (1e-3, 1e-2, 1e-1, 10.0):
         a, b = body(kernel, inverse_mass=1.0, extent=0.3), body(kernel)
         got = row_of(kernel, a, b, h, stiffness=1e7, placed=1)
         kernel.row.visit(got.row, a, b)
         steps = got.region["area"] / got.region["chord"] / ((1.0 + kernel.constants.RELEASE_STEPS) * h)
-        assert a["vy"] == pytest.approx(min(0.3 * kernel.constants.RELEASE_SPEED, steps), rel=2e-3)
+        assert a["vy"] == pytest.approx(min(0.3 * kernel.constants.PUT_SPEED, steps), rel=2e-3)
 
 
 @pytest.mark.parametrize("straight", [0.25, 0.3, 0.5])

@@ -73,7 +73,14 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             continue
         met = body.stamp >= 0
         x, y, angle = body.x, body.y, body.angle
+        body.left_vx = body.vx
+        body.left_vy = body.vy
         notice(s, address, body)
+        if not met:
+            body.left_vx = body.vx
+            body.left_vy = body.vy
+            body.thrust_x = 0.0
+            body.thrust_y = 0.0
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w
@@ -136,6 +143,8 @@ def wake(s: Any, tables: Tables, i: int) -> None:
     body.old_x = body.x
     body.old_y = body.y
     body.old_a = body.angle
+    body.left_vx = body.vx
+    body.left_vy = body.vy
     body.old_vx = body.vx
     body.old_vy = body.vy
     body.old_w = body.w

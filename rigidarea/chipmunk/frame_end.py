@@ -6,6 +6,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.tables import AWAKE, DRIFTS, Tables
+from ..geometry.place import place
 from .joints import joints_of
 from .record import words, write_motion, write_place
 from .structs import function
@@ -26,6 +27,8 @@ def finish_frame(s: Any, tables: Tables, good: bool) -> None:
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
+            if body.kind == DRIFTS:
+                place(body)
             write_place(s, body)
             if body.kind == DRIFTS and s.explicit == 0:
                 words(body.address + s.body_position_func, 1)[0] = s.hold_at

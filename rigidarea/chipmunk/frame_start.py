@@ -7,7 +7,8 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.space_record import EXTREME, next_row_of_body
-from ..contact.tables import CONCAVE, LED, Tables
+from ..contact.tables import CONCAVE, LED, NEAR, Tables
+from ..contact.verdict import allowed
 from .awake import wake
 from .record import members, read_motion, read_place, time_step, words
 
@@ -29,6 +30,94 @@ def _is_extreme(body: Any, dt: float) -> bool:
     )
 
 
+@kernel(forceinline=True)
+def _given_whole(body: Any) -> bool:
+    """Whether a function of the user's has changed a body's velocity in this frame, and it has that change."""
+    return bool(body.vx != body.old_vx or body.vy != body.old_vy or body.w != body.old_w)
+
+
+@kernel(forceinline=True)
+def _look_ahead(body: Any, x: float, y: float) -> None:
+    """What a function of the user's changes a velocity by in the middle of the frame: as it has turned, so it goes on.
+
+    (x, y): in this frame. It has seen where the body was when the frame began: of a body that rolls round a planet, a
+    weight that lags behind would be a push.
+    """
+    body.kick_x = x
+    body.kick_y = y
+    before = math.hypot(body.thrust_x, body.thrust_y)
+    now = math.hypot(x, y)
+    if before > 0.0 and now > 0.0:
+        dx = 1.5 * x / now - 0.5 * body.thrust_x / before
+        dy = 1.5 * y / now - 0.5 * body.thrust_y / before
+        size = now / math.hypot(dx, dy)
+        body.kick_x = dx * size
+        body.kick_y = dy * size
+
+
+@kernel(forceinline=True)
+def _touch(tables: Tables, near: Any, frame: int) -> bool:
+    """Whether a near pair touched when the last frame ended, and may collide in this one."""
+    pair = tables.pairs[near.pair]
+    return bool(pair.head >= 0 and allowed(tables, pair, frame))
+
+
+@kernel
+def _hold_back(s: Any, tables: Tables) -> None:
+    """What presses bodies against what they touch is a kick, whoever gives it: contacts answer before they have moved.
+
+    All that a function of the user's has changed of a velocity, since friction answers to that as well; of what the
+    user has set a velocity to, the part that closes. (Sent into a wall in every frame, a body would else be in it by
+    half a substep's way, in every frame.)
+    """
+    for i in range(tables.counters[NEAR]):
+        near = tables.near[i]
+        if _touch(tables, near, s.frame):
+            for k in (near.a, near.b):
+                body = tables.bodies[k]
+                if body.mobile and body.stamp == s.frame and _given_whole(body):
+                    body.gain_x += body.kick_x
+                    body.gain_y += body.kick_y
+                    body.gain_w += body.w - body.old_w
+                    body.vx = body.old_vx
+                    body.vy = body.old_vy
+                    body.w = body.old_w
+    for i in range(tables.counters[NEAR]):
+        near = tables.near[i]
+        if _touch(tables, near, s.frame):
+            r = tables.pairs[near.pair].head
+            while r >= 0:
+                _hold_apart(s, tables.regions[r], tables.bodies[near.a], tables.bodies[near.b])
+                r = tables.regions[r].next
+
+
+@kernel
+def _hold_apart(s: Any, region: Any, a: Any, b: Any) -> None:
+    """Of the velocities that the user has set two bodies to the part by which they close where they touch."""
+    nx = region.nx
+    ny = region.ny
+    of_a = 0.0
+    of_b = 0.0
+    if a.mobile and a.stamp == s.frame:
+        of_a = max(0.0, (a.vx - a.left_vx) * nx + (a.vy - a.left_vy) * ny)
+    if b.mobile and b.stamp == s.frame:
+        of_b = max(0.0, (b.left_vx - b.vx) * nx + (b.left_vy - b.vy) * ny)
+    closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
+    if closing > 0.0 and of_a + of_b > 0.0:
+        part = min(1.0, closing / (of_a + of_b))
+        _keep_for_the_kick(a, part * of_a * nx, part * of_a * ny)
+        _keep_for_the_kick(b, -part * of_b * nx, -part * of_b * ny)
+
+
+@kernel(forceinline=True)
+def _keep_for_the_kick(body: Any, vx: float, vy: float) -> None:
+    """A part of a body's velocity is given with what the frame adds."""
+    body.vx -= vx
+    body.vy -= vy
+    body.gain_x += vx
+    body.gain_y += vy
+
+
 @kernel
 def start_frame(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
@@ -42,6 +131,7 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
     # two that are concave may overlap in any number of places: who is at rest keeps its own
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
+    pressed = False
     i = -1
     for address in members(space, s.space_bodies):
         i = next_row_of_body(s, tables.bodies, i, address)
@@ -59,21 +149,30 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
             continue
         if _is_extreme(body, dt) or (concave and body.mobile and not body.was_calm):
             s.fragile = 1
-        body.thrust = math.hypot(body.vx - body.old_vx, body.vy - body.old_vy)
+        x = body.vx - body.old_vx
+        y = body.vy - body.old_vy
         function = words(address + s.body_velocity_func, 1)[0]
-        whole = (function != s.velocity_func and function != s.velocity_func_again) or s.explicit
+        own = (
+            function != s.velocity_func and function != s.velocity_func_again
+        )  # the user's: whole, as in pymunk
+        if own:
+            _look_ahead(body, x, y)
+        body.thrust_x = x
+        body.thrust_y = y
         body.gain_x = 0.0
         body.gain_y = 0.0
         body.gain_w = 0.0
-        if not whole:
-            body.gain_x = body.vx - body.old_vx
-            body.gain_y = body.vy - body.old_vy
+        if (
+            s.explicit or not own
+        ):  # of an explicit frame it has been given, and contacts want to know it all the same
+            body.gain_x = x
+            body.gain_y = y
             body.gain_w = body.w - body.old_w
+        if not (s.explicit or own):
             body.vx = body.old_vx
             body.vy = body.old_vy
             body.w = body.old_w
-        elif s.explicit:  # the kick has been given; contacts want to know it all the same
-            body.gain_x = body.vx - body.old_vx
-            body.gain_y = body.vy - body.old_vy
-            body.gain_w = body.w - body.old_w
+        pressed |= body.vx != body.left_vx or body.vy != body.left_vy
+    if pressed and not s.explicit:
+        _hold_back(s, tables)
     return bool(s.broken < 0)

@@ -146,9 +146,9 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
 
 
 @kernel
-def _give_no_energy(tables: Tables, h: float, whole: int) -> None:
+def _give_no_energy(tables: Tables, whole: int) -> None:
     """Where contacts have given energy: as much of that solve as gives none, the rest of one that cannot."""
-    if not contacts_give_energy(tables, h):
+    if not contacts_give_energy(tables):
         return
     begin_again(tables)
     for k in range(whole):
@@ -160,7 +160,7 @@ def _give_no_energy(tables: Tables, h: float, whole: int) -> None:
         if k == 0:
             search_all(tables, False)
             conjugate_gradients(tables, SEARCH_STEPS, True)
-    mix(tables, h)
+    mix(tables)
 
 
 @kernel
@@ -198,7 +198,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         lap(s, ITERATIONS)
         _relax(s, tables, h, sweeps)
-        _give_no_energy(tables, h, sweeps)
+        _give_no_energy(tables, sweeps)
         if joints > 0:
             free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)

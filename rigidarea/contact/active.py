@@ -13,10 +13,9 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
-from ..geometry.arc import distance2
 from .constants import DIVERGES, LEFT, MOVED, SETTLED
 from .islands import root_of, unite
-from .tables import ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
+from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
     [
@@ -26,9 +25,10 @@ ISLAND = record(
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
         ("still", "i1"),  # 1: contacts bear it, and neither speeds nor springs could do more than a kick
+        ("listed", "i4"),  # number of the island that has this place among those that are active
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
         ("mass", "f8"),
-        ("x", "f8"),  # velocity of its centre: what is the same for all is nobody's speed (length/time)
+        ("x", "f8"),  # momentum
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
@@ -64,6 +64,12 @@ def island_of(tables: Tables, row: Any) -> int:
 def _of_row(tables: Tables, row: Any) -> int:
     """The body by which a row belongs to its island."""
     return int(row.a if moves(tables.bodies[row.a]) else row.b)
+
+
+@kernel(forceinline=True)
+def active_island(tables: Tables, k: int) -> Any:
+    """The k-th island that is active."""
+    return tables.islands[tables.islands[k].listed]
 
 
 @kernel
@@ -113,7 +119,10 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
 
 @kernel
 def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
-    """Mass, energy and what is small of every island, by the velocities before the sweeps or by those now."""
+    """Mass, energy and what is small of every island, by the velocities before the sweeps or by those now.
+
+    Of speeds no more digits are asked than a sum of squares has: they say what is small.
+    """
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.mass = 0.0
@@ -124,75 +133,89 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.still = 0
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
+        if number < 0:
+            continue
         body = tables.bodies[tables.live[k]]
-        if number >= 0 and body.inverse_mass > 0.0:
-            island = tables.islands[number]
+        island = tables.islands[number]
+        vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
+        if body.inverse_mass > 0.0:
             own = 1.0 / body.inverse_mass
             island.mass += own
-            island.x += own * (body.came_vx if before else body.vx)
-            island.y += own * (body.came_vy if before else body.vy)
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
-        if island.mass > 0.0:
-            island.x /= island.mass
-            island.y /= island.mass
-    for k in range(tables.counters[LIVE]):
-        number = tables.mobility[tables.live[k]].island
-        body = tables.bodies[tables.live[k]]
-        if number >= 0:
-            island = tables.islands[number]
-            vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
-            island.energy += kinetic_of(body, vx - island.x, vy - island.y, w)
+            island.x += own * vx
+            island.y += own * vy
+            island.energy += 0.5 * own * (vx * vx + vy * vy)
+        if body.inverse_moment > 0.0:
+            island.energy += 0.5 * w * w / body.inverse_moment
     for r in range(tables.counters[ROWS]):
         row = tables.rows[r]
         if row.ends > 0:
             island = tables.islands[island_of(tables, row)]
-            island.held += held_by(row, tables.regions[row.region], h)
+            island.held += row.held
             island.still = 1
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         kick = law.gravity * h
-        speed = math.sqrt(2.0 * island.energy / island.mass) if island.mass > 0.0 else 0.0
+        speed = 0.0
+        able = 0.0
+        if island.mass > 0.0:  # what is the same for all is nobody's speed
+            common = 0.5 * (island.x * island.x + island.y * island.y) / island.mass
+            island.energy = max(0.0, island.energy - common)
+            speed = math.sqrt(2.0 * island.energy / island.mass)
+            able = math.sqrt(2.0 * (island.energy + island.held) / island.mass)
         island.small = LEFT * kick + MOVED * speed
-        able = math.sqrt(2.0 * (island.energy + island.held) / island.mass) if island.mass > 0.0 else 0.0
         island.still = island.still and able < kick
-
-
-@kernel(forceinline=True)
-def kinetic_of(body: Any, vx: float, vy: float, w: float) -> float:
-    """Kinetic energy of a body with these velocities, as far as impulses may change them."""
-    energy = 0.0
-    if body.inverse_mass > 0.0:
-        energy += 0.5 * distance2(vx, vy, 0.0, 0.0) / body.inverse_mass
-    if body.inverse_moment > 0.0:
-        energy += 0.5 * w * w / body.inverse_moment
-    return energy
-
-
-@kernel(forceinline=True)
-def held_by(row: Any, region: Any, h: float) -> float:
-    """No less than a contact's spring holds, and could give back: what is linear in depth half of it (energy)."""
-    return float((row.f1 + row.f2) / h * region.depth)
 
 
 @kernel
 def list_active(tables: Tables) -> None:
-    """List the rows of active islands, in order, and their bodies with all that nothing moves."""
+    """List the islands that are active, their rows, in order, and their bodies with all that nothing moves."""
     counters = tables.counters
+    n = 0
+    for k in range(counters[ISLANDS]):
+        if tables.islands[k].active:
+            tables.islands[n].listed = k
+            n += 1
+    counters[ACTIVE] = n
+    n = 0
     for r in range(counters[ROWS]):
-        tables.queue[r].row = r
-        tables.queue[r].island = island_of(tables, tables.rows[r])
-    counters[QUEUE] = counters[ROWS]
+        number = island_of(tables, tables.rows[r])
+        if tables.islands[number].active:
+            tables.queue[n].row = r
+            tables.queue[n].island = number
+            n += 1
+    counters[QUEUE] = n
     for k in range(counters[LIVE]):
         tables.members[k] = tables.live[k]
     counters[MEMBERS] = counters[LIVE]
-    _drop(tables)
+    _drop_bodies(tables)
+
+
+@kernel
+def _drop_bodies(tables: Tables) -> None:
+    """Take bodies of islands that are not active any more out of the list."""
+    n = 0
+    for k in range(tables.counters[MEMBERS]):
+        i = tables.members[k]
+        number = tables.mobility[i].island
+        active = number < 0 or tables.islands[number].active
+        tables.mobility[i].solved = not active
+        if active:
+            tables.members[n] = i
+            n += 1
+    tables.counters[MEMBERS] = n
 
 
 @kernel
 def _drop(tables: Tables) -> None:
-    """Take rows and bodies of islands that are not active any more out of the lists."""
+    """Take islands that are not active any more, their rows and their bodies out of the lists."""
     counters = tables.counters
+    n = 0
+    for k in range(counters[ACTIVE]):
+        number = tables.islands[k].listed
+        if tables.islands[number].active:
+            tables.islands[n].listed = number
+            n += 1
+    counters[ACTIVE] = n
     n = 0
     for k in range(counters[QUEUE]):
         number = tables.queue[k].island
@@ -201,16 +224,7 @@ def _drop(tables: Tables) -> None:
             tables.queue[n].island = number
             n += 1
     counters[QUEUE] = n
-    n = 0
-    for k in range(counters[MEMBERS]):
-        i = tables.members[k]
-        number = tables.mobility[i].island
-        active = number < 0 or tables.islands[number].active
-        tables.mobility[i].solved = not active
-        if active:
-            tables.members[n] = i
-            n += 1
-    counters[MEMBERS] = n
+    _drop_bodies(tables)
 
 
 @kernel
@@ -222,10 +236,8 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
     """
     dropped = False
     diverges = False
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
-        if not island.active:
-            continue
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
         island.least = min(island.least, island.moved)
         if island.moved > max(island.small, DIVERGES * island.least):
             island.least = -1.0
@@ -259,8 +271,8 @@ def _hold_friction(tables: Tables) -> None:
 @kernel
 def rest_small(tables: Tables) -> None:
     """Islands are solved in which the last sweep's changes were small, but those at rest only by `rest_settled`."""
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
         if island.moved <= island.small and not island.still:
             island.active = 0
     _drop(tables)

@@ -9,10 +9,12 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from .active import active_island
 from .birth import drives
 from .constants import REST_KICKS
 from .region import closing
-from .tables import FIXED, ISLANDS, QUEUE, REST, Law, Tables
+from .row import take_inverse
+from .tables import ACTIVE, FIXED, QUEUE, REST, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -28,7 +30,8 @@ def _struck_at_rest(row: Any, r: Any, law: Law, a: Any, b: Any, h: float) -> boo
     pushed = max(law.gravity, abs(closing(r, a, b, 0.0) - closing(r, a, b, 1.0)) / h)
     if u <= REST_KICKS * pushed * h or u * h <= r.depth:
         return False
-    row.alpha -= row.alpha
+    row.alpha = 0.0
+    take_inverse(row)
     return True
 
 
@@ -41,10 +44,10 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
     """
     rows = tables.rows
     hit = False
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
         island.searching = 0
-        hit |= island.active and island.moved > island.small
+        hit |= island.moved > island.small
     if not hit:
         return False
     for k in range(tables.counters[QUEUE]):

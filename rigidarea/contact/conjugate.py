@@ -19,11 +19,12 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from .active import active_island
 from .constants import SETTLED
 from .joint import clamp_joint
 from .preconditioner import take_part
 from .row import push
-from .tables import ISLANDS, MEMBERS, QUEUE, Tables
+from .tables import ACTIVE, MEMBERS, QUEUE, Tables
 
 
 @kernel
@@ -185,13 +186,13 @@ def _descend(tables: Tables, small: float) -> bool:
     An island is left alone where no more is left to solve than its mass times the square of so small a part of `small`.
     """
     counters = tables.counters
-    for k in range(counters[ISLANDS]):
-        tables.islands[k].product = 0.0
+    for k in range(counters[ACTIVE]):
+        active_island(tables, k).product = 0.0
     _up(tables)
     _down(tables)
     left = False
-    for k in range(counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(counters[ACTIVE]):
+        island = active_island(tables, k)
         enough = small * island.small
         island.searching = island.searching and island.product > island.mass * enough * enough
         island.part = island.product / island.before if island.before > 0.0 else 0.0
@@ -201,15 +202,15 @@ def _descend(tables: Tables, small: float) -> bool:
     if not left:
         return False
     _aim(tables)
-    for k in range(counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(counters[ACTIVE]):
+        island = active_island(tables, k)
         island.part = _length(island) if island.searching else 0.0
         island.whole = 1
     cut = _clamp(tables)
     if cut:
         _best(tables)
-    for k in range(counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(counters[ACTIVE]):
+        island = active_island(tables, k)
         going = island.part > 0.0
         island.before = island.product if going and island.whole else 0.0
         if going:
@@ -263,9 +264,10 @@ def _clamp(tables: Tables) -> bool:
 def _best(tables: Tables) -> None:
     """How much of a step that was cut short leaves the least to solve (`part`); 0: all of it would add."""
     _forget(tables)
-    for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].ahead = 0.0
-        tables.islands[k].curvature = 0.0
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
+        island.ahead = 0.0
+        island.curvature = 0.0
     for k in range(tables.counters[QUEUE]):
         i = tables.queue[k].row
         f = tables.factors[i]
@@ -318,9 +320,9 @@ def _go(tables: Tables) -> None:
 @kernel
 def search_all(tables: Tables, known: bool) -> None:
     """Every island that is active takes part in the next search; `known`: with the rows that bore in the last one."""
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
-        island.searching = island.active
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
+        island.searching = 1
         island.known = known
 
 
@@ -333,15 +335,15 @@ def conjugate_gradients(tables: Tables, steps: int, jointed: bool) -> None:
     """
     if tables.counters[QUEUE] == 0:
         return
-    for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].before = 0.0
+    for k in range(tables.counters[ACTIVE]):
+        active_island(tables, k).before = 0.0
     for _ in range(steps):
         take_part(tables)
         if not _descend(tables, SETTLED if jointed else 0.0):
             return
         _go(tables)
-        for k in range(tables.counters[ISLANDS]):
-            island = tables.islands[k]
+        for k in range(tables.counters[ACTIVE]):
+            island = active_island(tables, k)
             island.known = 0
             if jointed and island.before == 0.0:
                 island.searching = 0

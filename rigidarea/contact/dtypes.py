@@ -65,9 +65,12 @@ BODY = record(
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
         ("gain_w", "f8"),
-        ("thrust", "f8"),  # how much that changed its velocity, whoever did it: the user's functions too
+        ("thrust_x", "f8"),  # by what that changed its velocity, whoever did it: the user's functions too
+        ("thrust_y", "f8"),
         # how long it has moved by itself: since the user last set its place or velocity (time)
         ("since", "f8"),
+        ("left_vx", "f8"),  # velocity with which the last frame has left it (length/time)
+        ("left_vy", "f8"),
         ("old_x", "f8"),  # state at the frame's start
         ("old_y", "f8"),
         ("old_a", "f8"),
@@ -278,6 +281,11 @@ ROW = record(
         ("lt", "f8"),
         ("weight", "f8"),  # 1/m_eff
         ("began", "f8"),  # normal impulse with which it began
+        (
+            "held",
+            "f8",
+        ),  # no less than its spring holds, and could give back: what is linear in depth half (energy)
+        ("m1", "f8"),  # of one end: what an impulse there adds to its speed, its friction gripping, inverse
         # of two ends:
         ("e1", "f8"),
         ("e2", "f8"),

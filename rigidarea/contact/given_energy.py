@@ -13,7 +13,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .active import held_by, island_of, list_active
+from .active import island_of, list_active
 from .birth import drives
 from .constants import UNSOLVED_WORK
 from .tables import ISLANDS, LIVE, QUEUE, ROWS, Tables
@@ -37,8 +37,10 @@ def _may_give(pair: Any, a: Any, b: Any) -> bool:
 
 
 @kernel
-def contacts_give_energy(tables: Tables, h: float) -> bool:
+def contacts_give_energy(tables: Tables) -> bool:
     """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
+
+    `ahead` of each island is what they have given.
 
     Who is at rest gives none.
     """
@@ -56,9 +58,8 @@ def contacts_give_energy(tables: Tables, h: float) -> bool:
         island = tables.islands[island_of(tables, row)]
         if island.still:
             continue
-        region = tables.regions[row.region]
-        island.curvature += 0.5 * held_by(row, region, h)
-        if _may_give(tables.pairs[region.pair], a, b):
+        island.curvature += 0.5 * row.held
+        if _may_give(tables.pairs[tables.regions[row.region].pair], a, b):
             continue
         came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
         v1, v2, slip = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
@@ -117,7 +118,7 @@ def _largest_part(a0: float, a1: float, a2: float, most: float) -> float:
 
 
 @kernel
-def mix(tables: Tables, h: float) -> None:
+def mix(tables: Tables) -> None:
     """Of the solve before, which gave energy, the largest part that gives none, the rest of the one without."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
@@ -130,11 +131,10 @@ def mix(tables: Tables, h: float) -> None:
         island = tables.islands[island_of(tables, row)]
         if row.ends == 0 or not island.again:
             continue
-        region = tables.regions[row.region]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        island.held += 0.5 * held_by(row, region, h)
-        if _may_give(tables.pairs[region.pair], a, b):
+        island.held += 0.5 * row.held
+        if _may_give(tables.pairs[tables.regions[row.region].pair], a, b):
             continue
         of_a = tables.mobility[row.a]
         of_b = tables.mobility[row.b]
@@ -163,6 +163,8 @@ def mix(tables: Tables, h: float) -> None:
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.part = _largest_part(island.ahead, island.product, island.curvature, island.held)
+        if island.again:
+            island.ahead = 0.0
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         m = tables.mobility[tables.live[k]]

@@ -14,8 +14,9 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
-from ..geometry.place import place
+from ..geometry.place import turn
 from .active import island_of, list_active, measure
+from .row import take_inverse
 from .tables import DRIFTS, ISLANDS, LIVE, ROWS, Law, Tables
 
 
@@ -59,8 +60,7 @@ def end_relaxing(tables: Tables, h: float) -> None:
         if taken.moved:
             body.x += h * taken.vx
             body.y += h * taken.vy
-            body.angle += h * taken.vw
-            place(body)
+            turn(body, h * taken.vw)
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         of_a = tables.mobility[row.a]
@@ -87,12 +87,12 @@ def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
         ux = a.vx - b.vx
         uy = a.vy - b.vy
         spin = h * (jx * uy - jy * ux)
-        turn = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
+        back = spin * ia * ib / (ia + ib) if ia > 0.0 and ib > 0.0 else spin * (ia + ib)
         # what turns easily no faster than they slip: no place for second orders
         most = (abs(ux) + abs(uy)) / max(a.extent if ia > 0.0 else 0.0, b.extent if ib > 0.0 else 0.0)
-        turn = min(most, max(-most, turn))
-        a.w += turn if ia > 0.0 else 0.0
-        b.w += turn if ib > 0.0 else 0.0
+        back = min(most, max(-most, back))
+        a.w += back if ia > 0.0 else 0.0
+        b.w += back if ib > 0.0 else 0.0
 
 
 @kernel(forceinline=True)
@@ -106,8 +106,10 @@ def _stiffen(row: Any) -> bool:
     if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
         row.f1 = 0.0
         row.f2 = 0.0
+        row.held = 0.0
         return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:
         return False
     row.alpha -= row.theta * row.alpha
+    take_inverse(row)
     return bool(row.l1 + row.l2 > 0.0)

@@ -29,7 +29,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.turning import turning_speed
 from .birth import drives, flies_off
-from .constants import OVERTAKE, PLACED_LOADS, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
 from .region import beyond, closing, growth, inverse_mass, is_face, region_stiffness, slipping
@@ -132,9 +132,10 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.lt = r.lt * (h / r.step)
     else:
         stiffness = max(stiffness, pair.firm)
-        least = least_extent(a, b)
+        driven = drives(a) or drives(b)
+        speed = PUT_SPEED if r.placed == PLACED and not driven else RELEASE_SPEED
         if r.placed == PLACED and law.stiffness == 0.0:
-            pressed = pair.least if drives(a) or drives(b) else max(pair.least, pair.load)
+            pressed = pair.least if driven else max(pair.least, pair.load)
             most = PLACED_LOADS * pressed
             if elastic > most:
                 stiffness *= most / elastic
@@ -143,9 +144,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         theta = beyond(law, phase2)
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
         c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
-        slowest = elastic / (RELEASE_SPEED * least)
+        slowest = elastic / (speed * least_extent(a, b))
         if r.placed == SPENT and law.followed < math.inf:
-            c = max(c, stiffness / RELEASE_SPEED)
+            c = max(c, stiffness / PUT_SPEED)
         elif theta > 0.0 or r.placed == PLACED:
             c = max(c, slowest)
         q = h * c * inverse
@@ -196,8 +197,10 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.other = 0.0
     row.f1 = force
     row.f2 = 0.0
+    row.held = force / h * r.depth
     row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
     row.slip2 = 0.0
+    take_inverse(row)
     if row.ends == 1:
         return
     turning = (row.e2 - row.e1) / (6.0 * r.chord)
@@ -214,6 +217,12 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.w11 = masses + a1 * a1 * ia + b1 * b1 * ib
     row.w12 = masses + a1 * a2 * ia + b1 * b2 * ib
     row.w22 = masses + a2 * a2 * ia + b2 * b2 * ib
+
+
+@kernel(forceinline=True)
+def take_inverse(row: Any) -> None:
+    """What `visit` multiplies with, of a row of one end: anew where its compliance has changed."""
+    row.m1 = 1.0 / (row.alpha + row.gamma * (row.w11 - row.slip1 * row.mt * row.gamma_t * row.slip1))
 
 
 @kernel(forceinline=True)
@@ -282,13 +291,13 @@ def visit(row: Any, a: Any, b: Any) -> float:
     k1 = row.mt * row.gamma_t * row.slip1
     if row.ends == 1:
         r1 = row.alpha * (row.f1 - row.l1) + gamma * (v - row.t1)
-        m11 = row.alpha + gamma * row.w11
         d2 = 0.0
-        d1 = max(-row.l1, (r1 - c1 * grips) / (m11 - c1 * k1))
+        d1 = max(-row.l1, (r1 - c1 * grips) * row.m1)
         dt = grips - k1 * d1
         if abs(row.lt + dt) > row.friction * (row.l1 + d1) + row.most:
             side = math.copysign(row.friction, row.lt + dt)
             given = math.copysign(row.most, row.lt + dt) - row.lt
+            m11 = row.alpha + gamma * row.w11
             if m11 + c1 * side > 0.0:
                 d1 = max(-row.l1, (r1 - c1 * (side * row.l1 + given)) / (m11 + c1 * side))
             dt = side * (row.l1 + d1) + given

@@ -11,12 +11,12 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..geometry.place import place, shift
-from .active import island_of
+from ..geometry.place import shift, turn
+from .active import active_island, island_of
 from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
-from .tables import AWAKE, COMING, DRIFTS, FIXED, ISLANDS, LIVE, LYING, QUEUE, REST, ROWS, Law, Tables
+from .tables import ACTIVE, AWAKE, COMING, DRIFTS, FIXED, LIVE, LYING, QUEUE, REST, ROWS, Law, Tables
 
 
 @kernel
@@ -31,8 +31,7 @@ def drift(tables: Tables, frame: int, time: float) -> None:
             if body.w == 0.0:
                 shift(body)
             else:
-                body.angle += time * body.w
-                place(body)
+                turn(body, time * body.w)
 
 
 @kernel
@@ -57,8 +56,7 @@ def fly(tables: Tables, frame: int, before: float, after: float, n: int) -> None
             if angle == 0.0:
                 shift(body)
             else:
-                body.angle += angle
-                place(body)
+                turn(body, angle)
 
 
 @kernel(forceinline=True)
@@ -118,9 +116,10 @@ def warm_start_in_part(tables: Tables) -> None:
     What balances kicks and itself is used whole, and what has borne against something that has come off since is not.
     (The length of a step along a direction, as in `conjugate`.)
     """
-    for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].ahead = 0.0
-        tables.islands[k].curvature = 0.0
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
+        island.ahead = 0.0
+        island.curvature = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if row.gamma > 0.0:
@@ -138,8 +137,8 @@ def warm_start_in_part(tables: Tables) -> None:
         if row.gamma > 0.0:
             left = _left_to_solve(row, tables.bodies[row.a], tables.bodies[row.b])
             tables.islands[island_of(tables, row)].curvature -= left
-    for k in range(tables.counters[ISLANDS]):
-        island = tables.islands[k]
+    for k in range(tables.counters[ACTIVE]):
+        island = active_island(tables, k)
         island.curvature += island.ahead
         island.part = 1.0
         if island.curvature > island.ahead:
@@ -161,8 +160,8 @@ def sweep(tables: Tables, up: bool) -> None:
 
     Leaves with each island the largest change of a contact's speed (`moved`).
     """
-    for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].moved = 0.0
+    for k in range(tables.counters[ACTIVE]):
+        active_island(tables, k).moved = 0.0
     n = tables.counters[QUEUE]
     for k in range(n):
         queued = tables.queue[k if up else n - 1 - k]
@@ -179,6 +178,20 @@ def _note_pushed(row: Any, region: Any, body: Any) -> None:
     if row.l1 + row.l2 > 0.0:
         comes = region.mode != REST and body.pushed & LYING == 0
         body.pushed |= 4 * (COMING if comes else LYING)
+
+
+@kernel(forceinline=True)
+def _spin(body: Any, spin: float, island: Any) -> None:
+    """Turn a body by so much faster (1/time), or by a part of it: no more energy changes than contacts have taken."""
+    energy = (
+        (abs(body.w * spin) + 0.5 * spin * spin) / body.inverse_moment if body.inverse_moment > 0.0 else 0.0
+    )
+    left = max(0.0, -island.ahead)  # `contacts_give_energy`
+    if energy > left:
+        spin *= left / energy
+        energy = left
+    island.ahead += energy
+    body.w += spin
 
 
 @kernel
@@ -209,17 +222,15 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
             if body.kind == DRIFTS:
                 body.x += body.shift_x
                 body.y += body.shift_y
-                body.angle += body.shift_a
                 # What has been shifted by one impulse meets the next with another arm. (Not a disc without friction:
                 # there the direction goes with the arm, and spin would be energy from nowhere.)
                 vx = body.vx - body.came_vx
                 vy = body.vy - body.came_vy
                 turned = abs(body.w - body.came_w) * body.extent
                 if body.inverse_mass > 0.0 and turned > 1e-9 * (abs(vx) + abs(vy)):
-                    turn = body.shift_x * vy - body.shift_y * vx
-                    most = (abs(vx) + abs(vy)) / body.extent  # blow upon blow: no place for second orders
-                    body.w -= min(most, max(-most, turn * body.inverse_moment / body.inverse_mass))
-                place(body)
+                    spin = (body.shift_y * vx - body.shift_x * vy) * body.inverse_moment / body.inverse_mass
+                    _spin(body, spin, tables.islands[tables.mobility[tables.live[k]].island])
+                turn(body, body.shift_a)
             body.shift_x = 0.0
             body.shift_y = 0.0
             body.shift_a = 0.0

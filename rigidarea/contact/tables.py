@@ -42,7 +42,7 @@ COMING, LYING = 1, 2
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
 #: as they were made. How many shapes, bodies and numbers of shapes more than there is room for have come. Islands of
 #: rows (`active`), rows in `queue`, bodies in `members`. Pairs in `near` for whose regions there is room, and what the
-#: user may set of whose shapes has been read.
+#: user may set of whose shapes has been read. Islands of rows that are active.
 FREE_REGION, FREE_REGIONS, FREE_PAIR, FREE_PAIRS, SHAPES, BODIES = range(6)
 SEARCH, SUBSTEP, NEAR, ROWS, APART, ANEW = range(6, 12)
 LIVE, FIRST, LAST, TURN, TURNED, TOOTHED = range(12, 18)
@@ -50,7 +50,7 @@ BOXED, UNSORTED, ASKED, MOVERS, AWAKE, TOLD, ENLISTED, FREE_SHAPE, FREE_BODY, CO
 JOINTS, REJOINED, GONE = range(28, 31)
 MORE_PAIRS, MORE_REGIONS, MORE_JOINTS, MORE_WORK, MORE_KEPT, LOOKS_LEFT, COUNTED = range(31, 38)
 USED_PAIRS, USED_REGIONS, MORE_SHAPES, MORE_BODIES, MORE_SLOTS = range(38, 43)
-ISLANDS, QUEUE, MEMBERS, KNOWN = range(43, 47)
+ISLANDS, QUEUE, MEMBERS, KNOWN, ACTIVE = range(43, 48)
 COUNTERS = 48
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import random
 
 import pymunk
@@ -96,3 +97,48 @@ def test_hinged_bodies_that_touch(pinned: bool, elasticity: float, seed: int) ->
     for _ in range(180):
         space.step(DT)
         assert _energy(space) < 4 / 3 * start
+
+
+def _elastic(space: pymunk.Space, draw: random.Random, kind: str, angle: float, floor: bool) -> None:
+    """A smooth elastic body that comes to the middle from one side."""
+    size, mass = draw.uniform(10, 16), 10 ** draw.uniform(-0.5, 0.5)
+    body = pymunk.Body(mass, mass * size * size)
+    velocity = pymunk.Vec2d(-draw.uniform(50, 400), draw.uniform(-20, 20)).rotated(angle)
+    body.velocity = velocity
+    body.position = (
+        pymunk.Vec2d(draw.uniform(10, 25), 0).rotated(angle)
+        + (0, 22 * floor)
+        - velocity * draw.uniform(0.15, 0.3)
+    )
+    body.angle = draw.uniform(0, 6)
+    body.angular_velocity = draw.uniform(-5, 5)
+    if kind == "dumb-bell":
+        shapes: list[pymunk.Shape] = [pymunk.Circle(body, 0.6 * size, (x, 0)) for x in (-size, size)]
+    else:
+        sides = draw.choice([3, 4, 5])
+        ring = [pymunk.Vec2d(size, 0).rotated(2 * math.pi * i / sides) for i in range(sides)]
+        shapes = [pymunk.Poly(body, ring, None, 4.0 if kind == "rounded" else 0.0)]
+    for shape in shapes:
+        shape.elasticity = 1.0
+    space.add(body, *shapes)
+
+
+@pytest.mark.parametrize("floor", [False, True])
+@pytest.mark.parametrize("kind", ["polygon", "rounded", "dumb-bell"])
+def test_three_elastic_bodies_keep_their_energy(kind: str, floor: bool) -> None:
+    """They meet within a frame or two, a hundred times: 1 % more at the most, 5 % less. (Seen before: 37 % more.)"""
+    for seed in range(100):
+        draw = random.Random(seed)
+        space = pymunk.Space()
+        if floor:
+            ground = pymunk.Poly(space.static_body, [(-900, -60), (900, -60), (900, 0), (-900, 0)])
+            ground.elasticity = 1.0
+            space.add(ground)
+        for i in range(3):
+            angle = math.pi * (i + 0.5) / 3 if floor else 2 * math.pi * i / 3 + draw.uniform(-0.5, 0.5)
+            _elastic(space, draw, kind, angle, floor)
+        start = _energy(space)
+        rigidarea.attach(space)
+        for _ in range(36):
+            space.step(DT)
+        assert 0.95 * start < _energy(space) < 1.01 * start, f"seed {seed}"
