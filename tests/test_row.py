@@ -88,8 +88,6 @@ def test_a_visit_solves_its_row(kernel: Any, a: Any, b: Any, c: Any, h: float, a
     )  # fmt: skip
     force = c["stiffness"] * c["area"]
     damper = damping(kernel, c["stiffness"] * c["chord"], inverse, h, c["elasticity"], FOLLOWED)
-    if c["stiffness"] * c["chord"] * inverse * h * h > FOLLOWED:
-        damper = max(damper, force / (kernel.constants.RELEASE_SPEED * 1e9))
     kernel.row.visit(row, a, b)
     asked = h * (force + damper * closing(row, a, b))
     # the speed after is a difference of nearly equal ones: rounding times h C

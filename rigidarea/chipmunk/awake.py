@@ -81,6 +81,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             body.left_vy = body.vy
             body.thrust_x = 0.0
             body.thrust_y = 0.0
+            body.thrust_turn = 0.0
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w

@@ -14,11 +14,12 @@ FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time): the row's S. It does so without giving speed
 #: (`relax`), so that little depends on it.
 RELEASE_STEPS = 8.0
-#: No overlap is taken apart faster than this many smallest extents of the smaller body a second (1/time): as fast as
-#: what a turning drum, or a platform that is moved by its place, takes up by (Box2D v3: 3 m/s, its bodies of a metre).
-RELEASE_SPEED = 4.0
-#: And one that somebody has put there at this speed: nobody expects to see it go.
+#: An overlap that somebody has put there is taken apart no faster than this many smallest extents of the smaller body
+#: a second (1/time): nobody expects to see it go.
 PUT_SPEED = 1.0
+#: And one into which a body has brought itself that moves as it is told faster, since it may go on: a drum, a press, a
+#: platform that is moved by its place. (Box2D v3: 3 m/s, its bodies of a metre.)
+DRIVEN_SPEED = 4.0
 #: And what somebody has put there with no more than so many times the load that the pair carries, where no stiffness is
 #: given: k A of two discs in one place is thousands of times their weight, which walls and joints would have to bear.
 PLACED_LOADS = 30.0

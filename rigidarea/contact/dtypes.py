@@ -67,6 +67,7 @@ BODY = record(
         ("gain_w", "f8"),
         ("thrust_x", "f8"),  # by what that changed its velocity, whoever did it: the user's functions too
         ("thrust_y", "f8"),
+        ("thrust_turn", "f8"),  # by how much that has turned since the frame before
         # how long it has moved by itself: since the user last set its place or velocity (time)
         ("since", "f8"),
         ("left_vx", "f8"),  # velocity with which the last frame has left it (length/time)

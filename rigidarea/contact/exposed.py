@@ -26,7 +26,7 @@ from .target_speeds import least_extent
 from .tree import STILL, next_beside, next_met
 
 #: A neighbour's boundary is looked for this far beyond an edge, of the smaller one's smallest extent: what lies flush.
-FLUSH = 2e-4
+FLUSH = 3e-3
 #: Of a loop's edges the ones from here on share a bit.
 MOST_EDGES = 62
 #: A direction that turns by less than the angle with this cosine leaves a straight face what it is.
@@ -263,6 +263,38 @@ def _ends_within(
 
 
 @kernel
+def _has_a_corner(look: _Look, loop: Any, side: int, hidden: int, step: float) -> bool:
+    """Whether an exposed edge of the loop ends at a hidden one: a corner of the whole, no foot of a ramp.
+
+    step: so far beyond its end that is looked for (length), and a trifle in: what goes on straight is no corner.
+    """
+    work = look.two.work
+    count = loop.stop - loop.start
+    for n in range(count):
+        m = (n + 1) % count
+        i = loop.start + n
+        j = loop.start + m
+        if work.label[i] != side or work.label[j] != side or (hidden >> n ^ hidden >> m) & 1 == 0:
+            continue
+        exposed, way = (j, -1.0) if hidden >> n & 1 else (i, 1.0)
+        if loop.arcs > 0 and work.bows[exposed, 2] != 0.0:
+            continue
+        far = loop.start + (exposed - loop.start + 1) % count
+        dx = work.polygon[far, 0] - work.polygon[exposed, 0]
+        dy = work.polygon[far, 1] - work.polygon[exposed, 1]
+        length = math.sqrt(dx * dx + dy * dy)
+        if length == 0.0:
+            continue
+        dx *= step / length
+        dy *= step / length
+        x = work.polygon[j, 0] + way * dx - FLUSH * dy
+        y = work.polygon[j, 1] + way * dy + FLUSH * dx
+        if not _within_neighbours(look, x, y):
+            return True
+    return False
+
+
+@kernel
 def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b: bool) -> tuple[Patch, bool]:
     """The patch by what is exposed of one shape's edges; and whether any of them is hidden."""
     pool, work = two.pool, two.work
@@ -341,7 +373,8 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         theirs = _Look(
             two, mover, own, two.a if of_b else two.b, head, pose, pose if of_b else other, look.room
         )
-        if flat or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
+        corner = flat or _has_a_corner(look, loop, side, hidden, min(beyond, nearer))
+        if corner or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
             return patch, True  # it says better where to go
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny

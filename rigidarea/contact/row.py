@@ -29,7 +29,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.turning import turning_speed
 from .birth import drives, flies_off
-from .constants import OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
+from .constants import DRIVEN_SPEED, OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
 from .region import beyond, closing, growth, inverse_mass, is_face, region_stiffness, slipping
@@ -133,7 +133,6 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     else:
         stiffness = max(stiffness, pair.firm)
         driven = drives(a) or drives(b)
-        speed = PUT_SPEED if r.placed == PLACED and not driven else RELEASE_SPEED
         if r.placed == PLACED and law.stiffness == 0.0:
             pressed = pair.least if driven else max(pair.least, pair.load)
             most = PLACED_LOADS * pressed
@@ -144,11 +143,10 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         theta = beyond(law, phase2)
         c = 2.0 * damping_ratio(pair.elasticity) * math.sqrt(stiffness / inverse)
         c += theta * (1.0 + RELEASE_STEPS) * h * stiffness
-        slowest = elastic / (speed * least_extent(a, b))
         if r.placed == SPENT and law.followed < math.inf:
             c = max(c, stiffness / PUT_SPEED)
-        elif theta > 0.0 or r.placed == PLACED:
-            c = max(c, slowest)
+        elif r.placed == PLACED:
+            c = max(c, elastic / ((DRIVEN_SPEED if driven else PUT_SPEED) * least_extent(a, b)))
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)

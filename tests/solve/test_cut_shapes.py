@@ -113,6 +113,54 @@ def falls_on_a_floor(seed: int, kind: str, attach: bool = True) -> float:
     return abs(body.velocity.x - speed) / math.hypot(speed, 300)
 
 
+def overhangs(seed: int) -> float:
+    """By what part of its speed a box of four triangles is stopped that slides on to a platform, one end beyond it."""
+    draw = random.Random(seed)
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    space.add(pymunk.Poly(space.static_body, [(0, -30), (400, -30), (400, 0), (0, 0)]))
+    x, y = draw.uniform(12, 25), draw.uniform(6, 15)
+    body = pymunk.Body(1, 250)
+    ring = [(-x, -y), (x, -y), (x, y), (-x, y)]
+    parts = [[(0, 0), ring[i], ring[(i + 1) % 4]] for i in range(4)]
+    space.add(body, *(pymunk.Poly(body, part) for part in parts))
+    speed = draw.uniform(20, 150)
+    body.position = draw.uniform(0.1, 0.7) * x, y
+    body.velocity = speed, 0
+    ra.attach(space)
+    for _ in range(FRAMES):
+        space.step(1 / 60)
+    return abs(body.velocity.x - speed) / speed
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_pieces_beyond_an_edge(seed: int) -> None:
+    assert overhangs(seed) < KEPT
+
+
+@pytest.mark.parametrize("gap", [1e-6, 1e-3, 0.02])
+def test_tiles_a_hair_apart(gap: float) -> None:
+    """No gap that rounded coordinates leave is a wall: 20 smooth boxes over tiles that far apart (px)."""
+    for seed in range(20):
+        draw = random.Random(seed)
+        space = pymunk.Space()
+        space.gravity = 0, -900
+        wide = draw.uniform(20, 60)
+        for k in range(-10, 30):
+            x = k * (wide + gap)
+            space.add(pymunk.Poly(space.static_body, [(x, -30), (x + wide, -30), (x + wide, 0), (x, 0)]))
+        body = pymunk.Body(1, 250)
+        size = draw.uniform(10, 20)
+        space.add(body, pymunk.Poly.create_box(body, (2 * size, size)))
+        speed = draw.uniform(50, 200)
+        body.position = draw.uniform(0, 60), size / 2
+        body.velocity = speed, 0
+        ra.attach(space)
+        for _ in range(FRAMES):
+            space.step(1 / 60)
+        assert body.velocity.x == pytest.approx(speed, rel=KEPT), f"seed {seed}"
+
+
 KINDS = ["two triangles", "two halves", "six triangles", "arrow"]
 
 

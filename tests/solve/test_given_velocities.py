@@ -214,3 +214,59 @@ def test_a_platform_lifted_by_its_place(size: float, speed: float, thin: bool) -
         space.reindex_shapes_for_body(lift)
         space.step(DT)
     assert all(abs(body.position.y - lift.position.y - 5 - size / 2) < 0.5 * size for body in bodies)
+
+
+@pytest.mark.parametrize("kind", ["once", "held", "turns"])
+@pytest.mark.parametrize("speed", [150, 600, 1000])
+def test_a_dash_stays_on_the_floor(speed: float, kind: str) -> None:
+    """A player who is sent along a smooth floor by a function is sent along it, by just that speed."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    body = pymunk.Body(1, math.inf)
+    body.position = 0, 15
+    space.add(pymunk.Segment(space.static_body, (-9000, -20), (9000, -20), 20), body)
+    space.add(pymunk.Poly.create_box(body, (30, 30)))
+    frame = 0
+
+    def function(body: pymunk.Body, gravity: tuple[float, float], damping: float, dt: float) -> None:
+        pymunk.Body.update_velocity(body, gravity, damping, dt)
+        if kind == "once" and frame == 60:
+            body.velocity += (speed, 0)
+        if kind == "held" and frame >= 60:
+            body.velocity = speed, body.velocity.y
+        if kind == "turns" and frame >= 60:
+            body.velocity = (speed if frame // 20 % 2 else -speed), body.velocity.y
+
+    body.velocity_func = function
+    ra.attach(space)
+    highest = 0.0
+    for frame in range(180):  # noqa: B007 - the function reads it
+        space.step(DT)
+        highest = max(highest, body.position.y)
+    assert highest < 15.01
+    assert abs(body.velocity.x) == pytest.approx(speed, rel=1e-6)
+
+
+@pytest.mark.parametrize("n, speed, friction", [(3, 150, 0.0), (4, 200, 0.0), (6, 100, 0.5)])
+def test_walkers_queue_at_a_wall(n: int, speed: float, friction: float) -> None:
+    """Their velocities are set in every frame: they stand in a row, none in another, and none on another."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    space.add(pymunk.Segment(space.static_body, (-900, -5), (900, -5), 5))
+    space.add(pymunk.Poly(space.static_body, [(300, -50), (340, -50), (340, 400), (300, 400)]))
+    walkers = []
+    for k in range(n):
+        body = pymunk.Body(1, math.inf)
+        body.position = 270 - 27 * k, 12
+        space.add(body, pymunk.Poly.create_box(body, (24, 24)))
+        walkers.append(body)
+    for shape in space.shapes:
+        shape.friction = friction
+    ra.attach(space)
+    for _ in range(240):
+        for body in walkers:
+            body.velocity = speed, body.velocity.y
+        space.step(DT)
+    places = sorted(body.position.x for body in walkers)
+    assert all(24 - (b - a) < 0.5 for a, b in itertools.pairwise([*places, 312]))
+    assert all(abs(body.position.y - 12) < 1 for body in walkers)  # rough, they take one another up by that
