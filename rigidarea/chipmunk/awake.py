@@ -82,6 +82,12 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             body.thrust_x = 0.0
             body.thrust_y = 0.0
             body.thrust_turn = 0.0
+            body.forced_x = 0.0
+            body.forced_y = 0.0
+            body.forced_w = 0.0
+            body.trend_x = 0.0
+            body.trend_y = 0.0
+            body.trend_w = 0.0
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w

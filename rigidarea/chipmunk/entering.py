@@ -79,6 +79,7 @@ def _row_of_body(s: Any, tables: Tables, address: int) -> int:
     body = tables.bodies[i]
     body.address = address
     body.stamp = -1
+    body.replaced = -1
     enter_body(s, address, i)
     read_place(s, address, body)
     put_to_rest(s, body)
@@ -307,8 +308,11 @@ def placed_anew(state: int, addresses: int, n: int) -> None:
         if b < 0 or tables.bodies[b].awake:
             continue
         body = tables.bodies[b]
+        x, y, angle = body.x, body.y, body.angle
         read_place(s, address, body)
         place(body)
+        if body.x != x or body.y != y or body.angle != angle:
+            body.replaced = s.frame + 1
         shape_at = words(address + s.body_shapes, 1)[0]
         while shape_at != 0:
             i = row_of_shape(s, shape_at)

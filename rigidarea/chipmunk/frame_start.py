@@ -11,7 +11,7 @@ from ..contact.space_record import EXTREME, next_row_of_body
 from ..contact.tables import CONCAVE, LED, NEAR, Tables
 from ..contact.verdict import allowed
 from .awake import wake
-from .record import members, read_motion, read_place, time_step, words
+from .record import floats, members, read_motion, read_place, time_step, words
 
 #: A body that goes so many of its sizes in a frame may come near more others than has been made room for.
 FAST = 30.0
@@ -54,6 +54,35 @@ def _look_ahead(body: Any, x: float, y: float) -> None:
     body.thrust_turn = turn
     body.kick_x = math.cos(half) * x - math.sin(half) * y
     body.kick_y = math.sin(half) * x + math.cos(half) * y
+
+
+@kernel(forceinline=True)
+def _half_on(change: float, before: float) -> float:
+    """Half of what a frame has changed, or of what the one before has, the smaller; none where they differ in sign."""
+    return 0.5 * math.copysign(min(abs(change), abs(before)), change) if change * before > 0.0 else 0.0
+
+
+@kernel(forceinline=True)
+def _add_trend(body: Any, x: float, y: float, w: float, longer: float) -> None:
+    """Forces were told where the body was when the frame began, and act in its middle: as they change, they go on.
+
+    (x, y), w: what they give in this frame, `longer` times as long as the one before, damping not among it. Else
+    springs and rafts that a program makes of forces would swing higher and higher: a force that lags by half a frame
+    gives energy. (The second order of Adams and Bashforth, with the minmod of `_look_ahead`: a thruster gives what it
+    is told and nothing else.)
+    """
+    trend_x = x - longer * body.forced_x
+    trend_y = y - longer * body.forced_y
+    trend_w = w - longer * body.forced_w
+    body.gain_x += _half_on(trend_x, body.trend_x)
+    body.gain_y += _half_on(trend_y, body.trend_y)
+    body.gain_w += _half_on(trend_w, body.trend_w)
+    body.trend_x = trend_x
+    body.trend_y = trend_y
+    body.trend_w = trend_w
+    body.forced_x = x
+    body.forced_y = y
+    body.forced_w = w
 
 
 @kernel(forceinline=True)
@@ -141,6 +170,8 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
     # two that are concave may overlap in any number of places: who is at rest keeps its own
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
+    damped = 1.0 - floats(space + s.space_gravity, 3)[2] ** dt  # Chipmunk's damping stands behind its gravity
+    longer = dt / s.before if s.before > 0.0 else 1.0
     pressed = False
     i = -1
     for address in members(space, s.space_bodies):
@@ -167,8 +198,6 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         )  # the user's: whole, as in pymunk
         if own:
             _look_ahead(body, x, y)
-        body.thrust_x = x
-        body.thrust_y = y
         body.gain_x = 0.0
         body.gain_y = 0.0
         body.gain_w = 0.0
@@ -178,6 +207,11 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
             body.gain_x = x
             body.gain_y = y
             body.gain_w = body.w - body.old_w
+            if not s.explicit:
+                fx, fy = x + damped * body.old_vx, y + damped * body.old_vy
+                _add_trend(body, fx, fy, body.gain_w + damped * body.old_w, longer)
+        body.thrust_x = x
+        body.thrust_y = y
         if not (s.explicit or own):
             body.vx = body.old_vx
             body.vy = body.old_vy

@@ -242,6 +242,8 @@ def _delay(tables: Tables, late: int) -> None:
     for i in range(counters[BODIES]):
         if tables.bodies[i].stamp >= 0:
             tables.bodies[i].stamp += late
+        if tables.bodies[i].replaced >= 0:
+            tables.bodies[i].replaced += late
     for i in range(counters[SHAPES]):
         if tables.shapes[i].seen >= 0:
             tables.shapes[i].seen += late

@@ -25,7 +25,7 @@ from ..contact.solve import (
     warm_start_in_part,
 )
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
-from ..contact.tables import BOXED, KNOWN, QUEUE, ROWS, SUBSTEP, UNSORTED, Tables
+from ..contact.tables import BOXED, KNOWN, QUEUE, ROWS, SUBSTEP, UNSORTED, Law, Tables
 from ..contact.taut import free_turning, geometric_stiffness
 from .joints import ask_springs, own_joints
 from .phases import ITERATIONS, OVERLAPS, PAIRS, POSITIONS, SPECULATIVE, lap
@@ -146,9 +146,9 @@ def _relax(s: Any, tables: Tables, h: float, whole: int) -> None:
 
 
 @kernel
-def _give_no_energy(tables: Tables, whole: int) -> None:
+def _give_no_energy(tables: Tables, law: Law, whole: int) -> None:
     """Where contacts have given energy: as much of that solve as gives none, the rest of one that cannot."""
-    if not contacts_give_energy(tables):
+    if not contacts_give_energy(tables, law):
         return
     begin_again(tables)
     for k in range(whole):
@@ -160,7 +160,7 @@ def _give_no_energy(tables: Tables, whole: int) -> None:
         if k == 0:
             search_all(tables, False)
             conjugate_gradients(tables, SEARCH_STEPS, True)
-    mix(tables)
+    mix(tables, law)
 
 
 @kernel
@@ -198,7 +198,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             return False
         lap(s, ITERATIONS)
         _relax(s, tables, h, sweeps)
-        _give_no_energy(tables, sweeps)
+        _give_no_energy(tables, load_law(s), sweeps)
         if joints > 0:
             free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)

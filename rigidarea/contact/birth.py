@@ -11,6 +11,7 @@ from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
 from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
 from .exposed import TwoShapes, exposed_patch
+from .landing import find_other_end
 from .motion import centre_of, earlier, since_of, unseen_for
 from .region import closing, fill, inverse_mass, is_face, others_push, region_stiffness
 from .stiffness import depth_for, stiffness_of
@@ -142,11 +143,11 @@ def arrives(r: Any, a: Any, b: Any, h: float) -> bool:
 
 @kernel
 def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool:
-    """Whether an overlap has become deeper than its bodies' motion can have made it, by far.
+    """Whether an overlap has become deeper than its bodies' motion can have made it, by far: any point of its chord's.
 
     By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
     """
-    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0))
+    speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0)) + abs(a.w - b.w) * r.chord
     inside = r.depth - before - MOST_ARRIVED * h * speed
     least = min(size_of(a), size_of(b))
     if inside <= PUT_FOLLOWED * least:
@@ -156,16 +157,20 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
 
 
 @kernel(forceinline=True)
-def drives(body: Any) -> bool:
-    """Whether a body moves as it is told, whatever is in its way."""
-    return bool(body.kind != FIXED and not body.mobile)
+def drives(law: Law, body: Any) -> bool:
+    """Whether a body moves as it is told, whatever is in its way: a kinematic one, a static one that is placed anew."""
+    return bool(
+        (body.kind != FIXED and not body.mobile) or (body.kind == FIXED and body.replaced == law.frame)
+    )
 
 
 @kernel(forceinline=True)
 def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
     """Whether a kinematic body has pressed another so deep that no bed is stiff enough: it has put it there."""
     return bool(
-        (drives(a) or drives(b)) and law.stiffness == 0.0 and depth > PUT * min(size_of(a), size_of(b))
+        (drives(law, a) or drives(law, b))
+        and law.stiffness == 0.0
+        and depth > PUT * min(size_of(a), size_of(b))
     )
 
 
@@ -204,6 +209,8 @@ def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
             region.mode = REST
     elif region.mode == STRUCK and pair.elasticity == 0.0:
         region.first_speed = 0.0
+    elif region.mode == STRUCK:
+        find_other_end(two, region, h)
 
 
 @kernel(forceinline=True)
@@ -238,7 +245,11 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
         region.rest_depth = 0.0
         region.first_speed = u
         # positions are those of the middle of the substep: the drift yet to come is the half of it
-        return first and touch(two, region, -ahead, h, h) and region.back >= -0.5 * h
+        if not (first and touch(two, region, -ahead, h, h) and region.back >= -0.5 * h):
+            return False
+        if not plastic:
+            find_other_end(two, region, h)
+        return True
     region.mode = NEARING
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same

@@ -60,7 +60,7 @@ def blows(tables: Tables, law: Law, h: float) -> bool:
         i = tables.queue[k].row
         a = tables.bodies[rows[i].a]
         b = tables.bodies[rows[i].b]
-        if drives(a) or drives(b):
+        if drives(law, a) or drives(law, b):
             a.free = 0
             b.free = 0
     struck = False

@@ -67,6 +67,12 @@ BODY = record(
         ("gain_w", "f8"),
         ("thrust_x", "f8"),  # by what that changed its velocity, whoever did it: the user's functions too
         ("thrust_y", "f8"),
+        ("forced_x", "f8"),  # by what forces and gravity did
+        ("forced_y", "f8"),
+        ("forced_w", "f8"),
+        ("trend_x", "f8"),  # by how much more than in the frame before
+        ("trend_y", "f8"),
+        ("trend_w", "f8"),
         ("thrust_turn", "f8"),  # by how much that has turned since the frame before
         # how long it has moved by itself: since the user last set its place or velocity (time)
         ("since", "f8"),
@@ -82,6 +88,7 @@ BODY = record(
         ("old_fx", "f8"),  # force and torque that the user has given it
         ("old_fy", "f8"),
         ("old_torque", "f8"),
+        ("replaced", "i8"),  # frame before which the user has put it elsewhere, if nothing moves it; -1: none
     ]
 )
 
@@ -223,6 +230,9 @@ REGION = record(
         # time since first touch, of an impact shorter than the step; until the place seen, of an overlap yet to come
         ("back", "f8"),
         ("rest_depth", "f8"),  # depth at which it would carry what pushes (length)
+        # so much later than the first a bounce's second end touches (time); negative: earlier; 0: there is but one
+        ("later", "f8"),
+        ("reach", "f8"),  # and where along the tangent the first is, from the point of application (length)
         ("arm_a", "f8"),  # of direction and of tangent about the two centres (length)
         ("arm_b", "f8"),
         ("lean_a", "f8"),

@@ -263,13 +263,16 @@ def _ends_within(
 
 
 @kernel
-def _has_a_corner(look: _Look, loop: Any, side: int, hidden: int, step: float) -> bool:
-    """Whether an exposed edge of the loop ends at a hidden one: a corner of the whole, no foot of a ramp.
+def _goes_on(look: _Look, loop: Any, side: int, hidden: int, step: float) -> tuple[bool, bool]:
+    """What an exposed edge of the loop is where it ends at a hidden one: a corner of the whole; straight on.
 
-    step: so far beyond its end that is looked for (length), and a trifle in: what goes on straight is no corner.
+    A corner has nothing of the neighbours just beyond it, a trifle in. The foot of a ramp is neither: they are there a
+    trifle out as well.
+    step: so far beyond its end that is looked for (length).
     """
     work = look.two.work
     count = loop.stop - loop.start
+    straight = False
     for n in range(count):
         m = (n + 1) % count
         i = loop.start + n
@@ -287,11 +290,12 @@ def _has_a_corner(look: _Look, loop: Any, side: int, hidden: int, step: float) -
             continue
         dx *= step / length
         dy *= step / length
-        x = work.polygon[j, 0] + way * dx - FLUSH * dy
-        y = work.polygon[j, 1] + way * dy + FLUSH * dx
-        if not _within_neighbours(look, x, y):
-            return True
-    return False
+        x = work.polygon[j, 0] + way * dx
+        y = work.polygon[j, 1] + way * dy
+        if not _within_neighbours(look, x - FLUSH * dy, y + FLUSH * dx):
+            return True, False
+        straight = not _within_neighbours(look, x + FLUSH * dy, y - FLUSH * dx)
+    return False, straight
 
 
 @kernel
@@ -314,9 +318,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             caps += curved
         else:
             faces += 2 if curved else 1
-    if (
-        edges < 2 and caps == 0 and two.pair.head >= 0
-    ):  # one edge may lie within neighbours, if it is not met from out
+    if edges < 2 and caps == 0 and two.pair.head >= 0:  # one edge is hidden only if it is not met from out
         return patch, False
     head = pool.heads[two.ia]
     beyond = FLUSH * least_extent(two.a, two.b)
@@ -352,14 +354,19 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             nx += dy
             ny -= dx
     length = math.sqrt(nx * nx + ny * ny)
-    if hidden != 0 and length == 0.0:
+    if hidden == 0:
+        return patch, False
+    corner = straight = False
+    if length > 0.0 and (faces == 1 or length <= beyond):
+        corner, straight = _goes_on(look, loop, side, hidden, min(beyond, nearer))
+    if length == 0.0 or (straight and length <= beyond):  # a neighbour bears what lies on a sliver
         there = two.tables.shapes[mover]
         x = 0.5 * (there.left + there.right)
         y = 0.5 * (there.bottom + there.top)
         if not _hidden(two, own, mover, body, x, y, look.room):  # it is not put into the midst of them
             # all of it within neighbours, which say where the body can go
             return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
-    if hidden == 0 or length == 0.0:
+    if length == 0.0:
         return patch, False
     if side != A_EDGE:  # from A to B is into B
         length = -length
@@ -367,14 +374,11 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
     ny /= length
     if faces == 1:  # along which the chord lies
         across = loop.chord_x * nx + loop.chord_y * ny
-        flat = (
-            across * across <= SMOOTH * patch.chord * patch.chord
-        )  # a piece of it lies on it as the whole does
+        flat = across * across <= SMOOTH * patch.chord * patch.chord  # a piece of it lies as the whole does
         theirs = _Look(
             two, mover, own, two.a if of_b else two.b, head, pose, pose if of_b else other, look.room
         )
-        corner = flat or _has_a_corner(look, loop, side, hidden, min(beyond, nearer))
-        if corner or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
+        if flat or corner or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
             return patch, True  # it says better where to go
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny

@@ -16,7 +16,7 @@ from ..compile.jit import kernel
 from .active import island_of, list_active
 from .birth import drives
 from .constants import UNSOLVED_WORK
-from .tables import ISLANDS, LIVE, QUEUE, ROWS, Tables
+from .tables import ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -31,13 +31,13 @@ def _speeds(row: Any, ux: float, uy: float, wa: float, wb: float) -> tuple[float
 
 
 @kernel(forceinline=True)
-def _may_give(pair: Any, a: Any, b: Any) -> bool:
+def _may_give(law: Law, pair: Any, a: Any, b: Any) -> bool:
     """Whether a contact is asked to give energy: off what moves as it is told, or by a restitution above 1."""
-    return bool(drives(a) or drives(b) or pair.elasticity > 1.0)
+    return bool(drives(law, a) or drives(law, b) or pair.elasticity > 1.0)
 
 
 @kernel
-def contacts_give_energy(tables: Tables) -> bool:
+def contacts_give_energy(tables: Tables, law: Law) -> bool:
     """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
 
     `ahead` of each island is what they have given.
@@ -59,7 +59,7 @@ def contacts_give_energy(tables: Tables) -> bool:
         if island.still:
             continue
         island.curvature += 0.5 * row.held
-        if _may_give(tables.pairs[tables.regions[row.region].pair], a, b):
+        if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
             continue
         came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
         v1, v2, slip = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
@@ -118,7 +118,7 @@ def _largest_part(a0: float, a1: float, a2: float, most: float) -> float:
 
 
 @kernel
-def mix(tables: Tables) -> None:
+def mix(tables: Tables, law: Law) -> None:
     """Of the solve before, which gave energy, the largest part that gives none, the rest of the one without."""
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
@@ -134,7 +134,7 @@ def mix(tables: Tables) -> None:
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
         island.held += 0.5 * row.held
-        if _may_give(tables.pairs[tables.regions[row.region].pair], a, b):
+        if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
             continue
         of_a = tables.mobility[row.a]
         of_b = tables.mobility[row.b]

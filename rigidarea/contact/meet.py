@@ -116,6 +116,7 @@ def _take_region(regions: np.ndarray, counters: np.ndarray, p: int, kept: int, h
     region.placed = 0
     region.born = 1
     region.opened = 0
+    region.later = 0.0
     region.l1 = 0.0
     region.l2 = 0.0
     region.lt = 0.0
@@ -130,6 +131,7 @@ def _take_region(regions: np.ndarray, counters: np.ndarray, p: int, kept: int, h
 def _go_on(law: Law, pair: Any, region: Any, a: Any, b: Any, h: float) -> None:
     """What a region is that was there a substep ago."""
     nearing = region.mode == NEARING
+    region.later = 0.0
     if region.mode == STRUCK and region.first_speed > 0.0:  # a bounce says nothing of a load
         region.l1 = 0.0
         region.l2 = 0.0
@@ -251,18 +253,14 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             patch = faceless(patch, wx, wy, past == 1)
         elif law.law == LAW_ENERGY:  # the gradient's line of action: through the chord's middle
             patch = centred(patch)
-        if not born:
-            before = region.depth
-            if region.mode == REST and region.stiffness * patch.area <= 1.1 * region.force:
-                region.placed = 0  # it bears its load
-            if region.placed == 0 and patch.depth > 2.0 * before:
-                region.depth = patch.depth
-                if jumped_in(law, region, before, a, b, h):
-                    region.placed = PLACED
-            if crushed(law, patch.depth, a, b):
-                region.placed = PLACED
+        before = region.depth
         fill(region, patch, ax, ay, bx, by)
         if not born:
+            if region.mode == REST and region.stiffness * region.area <= 1.1 * region.force:
+                region.placed = 0  # it bears its load
+            deeper = region.placed == 0 and region.depth > 2.0 * before
+            if crushed(law, region.depth, a, b) or (deeper and jumped_in(law, region, before, a, b, h)):
+                region.placed = PLACED
             _go_on(law, pair, region, a, b, h)
     free_regions(regions, counters, old)
     pair.head = kept

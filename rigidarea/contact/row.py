@@ -132,7 +132,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.lt = r.lt * (h / r.step)
     else:
         stiffness = max(stiffness, pair.firm)
-        driven = drives(a) or drives(b)
+        driven = drives(law, a) or drives(law, b)
         if r.placed == PLACED and law.stiffness == 0.0:
             pressed = pair.least if driven else max(pair.least, pair.load)
             most = PLACED_LOADS * pressed
@@ -368,7 +368,7 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     if law.stiffness == 0.0:
         pair.carrying += normal
         # a blow is no load, nor is what joints or kinematic bodies hold overlapped, which presses as far as it is stiff
-        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0 or drives(a) or drives(b))
+        held = r.placed == PLACED and (a.calm < 0 or b.calm < 0 or drives(law, a) or drives(law, b))
         if r.mode == IMPACT or held:
             pair.lies = BLOW
         elif last and r.mode != NEARING and pair.lies != BLOW:

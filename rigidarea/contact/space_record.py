@@ -116,7 +116,6 @@ STATE = record(
         ("tolerance", "f8"),  # error of place allowed in a frame, of a body's smallest extent; 0: none asked
         ("taken", "i8"),  # substeps of the last frame
         ("sweeps", "i8"),  # the space's iterations, while a frame has taken them
-        ("frame", "i8"),  # Chipmunk's number of the step that has begun
         ("asleep", "i8"),  # 1: somebody was, when the last frame began
         ("broken", "i8"),  # row of the body whose state stopped being finite, -1: none
         ("failed", "i8"),  # 1: Python could not do what it was asked for
@@ -381,4 +380,5 @@ def load_law(s: Any) -> Law:
         s.exponent,
         s.rest_speed,
         s.followed,
+        s.frame,
     )

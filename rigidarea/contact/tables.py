@@ -66,6 +66,7 @@ class Law(NamedTuple):
     exponent: float  # q of Eq. 12, for NODAL
     rest_speed: float  # first touch slower than this is rest (length/time); negative: by the load
     followed: float  # (w h)^2 up to which a step follows a contact; infinity: always
+    frame: int = -2  # Chipmunk's number of the step that has begun
 
 
 class Tables(NamedTuple):

@@ -11,8 +11,12 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .constants import REST_KICKS, SMOOTH
+from .motion import centre_of, earlier
 from .region import closing, others_push
 from .tables import LYING
+
+#: So many blows at most: what is left of the speed then is 1/2^12 of it where e is a half, and goes on to bounce later.
+MOST_BLOWS = 12
 
 
 @kernel(forceinline=True)
@@ -65,6 +69,103 @@ def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
 
 
 @kernel
+def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float) -> float:
+    """A face comes down with one end, then with the other, perhaps again: what it is left with a substep of h on.
+
+    Of two bodies by themselves, without friction, what happens, with Newton's restitution at each blow. A corner comes
+    nearer to its body's centre, or goes from it, as that turns: it is that of the body that turns more easily.
+    Leaves the row's ends where their blows act on the mean, one where there is no other, and the speeds that its bodies
+    have in the end as its targets.
+    since: for how long kicks have acted on the bodies after the first touch (time).
+    Returns how long after the first touch the blows are, on the mean (time).
+    """
+    first = r.later > 0.0
+    end1 = r.reach if first else r.middle - 0.5 * r.straight
+    end2 = r.middle + 0.5 * r.straight if first else r.reach
+    masses = a.inverse_mass + b.inverse_mass
+    part = since / h
+    speed = (a.vx - b.vx - part * (a.kick_x - b.kick_x)) * r.nx
+    speed += (a.vy - b.vy - part * (a.kick_y - b.kick_y)) * r.ny
+    wa = a.w - part * a.kick_w
+    wb = b.w - part * b.kick_w
+    gap1 = 0.0
+    gap2 = 0.0
+    if first:
+        gap2 = r.later * max(0.0, speed + wa * (r.arm_a - end2) - wb * (r.arm_b - end2))
+    else:
+        gap1 = -r.later * max(0.0, speed + wa * (r.arm_a - end1) - wb * (r.arm_b - end1))
+    of_a = a.inverse_moment > b.inverse_moment
+    arm, lever, up = (r.arm_a, r.lean_a, -1.0) if of_a else (r.arm_b, r.lean_b, 1.0)
+    lever1 = lever + up * gap1
+    lever2 = lever + up * gap2
+    clock = 0.0
+    l1 = 0.0
+    l2 = 0.0
+    at1 = 0.0
+    at2 = 0.0
+    late = 0.0
+    for _ in range(MOST_BLOWS):
+        u1 = speed + wa * (r.arm_a - end1) - wb * (r.arm_b - end1)
+        u2 = speed + wa * (r.arm_a - end2) - wb * (r.arm_b - end2)
+        wait1 = gap1 / u1 if u1 > 0.0 else math.inf
+        wait2 = gap2 / u2 if u2 > 0.0 else math.inf
+        wait = min(wait1, wait2)
+        if clock + wait > r.back + h:
+            break
+        clock += wait
+        gap1 = max(0.0, gap1 - u1 * wait)
+        gap2 = max(0.0, gap2 - u2 * wait)
+        turn = wait * (wa if of_a else wb)
+        c = math.cos(turn)
+        s = math.sin(turn)
+        end1, lever1 = arm - (arm - end1) * c + lever1 * s, lever1 * c + (arm - end1) * s
+        end2, lever2 = arm - (arm - end2) * c + lever2 * s, lever2 * c + (arm - end2) * s
+        end = end1 if wait1 <= wait2 else end2
+        arm_a = r.arm_a - end
+        arm_b = r.arm_b - end
+        closes = speed + wa * arm_a - wb * arm_b
+        push = (
+            (1.0 + e)
+            * closes
+            / (masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment)
+        )
+        speed -= push * masses
+        wa -= push * arm_a * a.inverse_moment
+        wb += push * arm_b * b.inverse_moment
+        late += push * clock
+        if wait1 <= wait2:
+            l1 += push
+            at1 += push * end
+        else:
+            l2 += push
+            at2 += push * end
+    row.ends = 2 if l1 > 0.0 and l2 > 0.0 else 1
+    row.e1 = at1 / l1 if l1 > 0.0 else at2 / l2 if l2 > 0.0 else r.reach
+    row.e2 = at2 / l2 if row.ends == 2 else 0.0
+    speed += part * ((a.kick_x - b.kick_x) * r.nx + (a.kick_y - b.kick_y) * r.ny)
+    wa += part * a.kick_w
+    wb += part * b.kick_w
+    row.t1 = speed + wa * (r.arm_a - row.e1) - wb * (r.arm_b - row.e1)
+    row.t2 = speed + wa * (r.arm_a - row.e2) - wb * (r.arm_b - row.e2)
+    return late / (l1 + l2) if l1 + l2 > 0.0 else 0.0
+
+
+@kernel
+def _bounce_by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float) -> None:
+    """Aim at what the blows of a face's two ends leave, all of them at one time, where the bodies have been then."""
+    late = _by_turns(row, r, a, b, e, since, h)
+    if row.shift != 0.0:
+        row.shift -= late
+    _one_point(r, a, b, row.friction, row.shift)
+    _by_turns(row, r, a, b, e, since, h)
+    if row.ends == 1:
+        r.arm_a -= row.e1
+        r.arm_b -= row.e1
+        r.straight = 0.0
+        row.e1 = 0.0
+
+
+@kernel
 def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) -> None:
     """A bounce shorter than the step: speeds at first touch returned, and what they have moved since made good.
 
@@ -75,8 +176,8 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
     back = r.back
     if not others_push(a, b):
         row.shift = back
-    if row.shift == 0.0:  # before speeds are asked for: the impulse is to act against those that it returns
-        _one_point(r, a, b, row.friction)
+    # before speeds are asked for: the impulse is to act against those that it returns
+    _one_point(r, a, b, row.friction, row.shift)
     full = closing(r, a, b, 0.0)
     gain = (full - closing(r, a, b, 1.0)) / h
     time = back + 0.5 * h
@@ -86,6 +187,9 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
     e = elasticity if r.first_speed > 0.0 else 0.0
     row.t1 = 0.0
     row.t2 = 0.0
+    if row.ends == 2 and r.later != 0.0 and e > 0.0:
+        _bounce_by_turns(row, r, a, b, e, time, h)
+        return
     for end in range(row.ends):
         at = row.e1 if end == 0 else row.e2
         since = (gain - turn_gain * at) * time
@@ -100,25 +204,35 @@ def aim_bounce(row: Any, r: Any, a: Any, b: Any, elasticity: float, h: float) ->
     if e == 0.0 and row.ends == 1:
         row.t1 = turn_along(r, a, b, max(0.0, row.t1))
         if row.shift == 0.0:
-            _one_point(r, a, b, row.friction)
+            _one_point(r, a, b, row.friction, 0.0)
 
 
 @kernel(forceinline=True)
-def _one_point(r: Any, a: Any, b: Any, friction: float) -> None:
-    """Arms of one point of application, bodies where they are now: the heavier one's gives way.
+def _centre(body: Any, time: float) -> tuple[float, float]:
+    """A body's centre of gravity, so long ago."""
+    if time == 0.0:
+        return body.x, body.y
+    return centre_of(body, earlier(body, time))
+
+
+@kernel(forceinline=True)
+def _one_point(r: Any, a: Any, b: Any, friction: float, time: float) -> None:
+    """Arms of one point of application, bodies where they were so long ago: the heavier one's gives way.
 
     Those of another time, at which nothing is done, would be of two points by now: a couple from nowhere. A disc's
     radius stays one, whatever its weight: nothing but friction turns it; of two discs, where there is none.
     """
     share = b.inverse_mass / (a.inverse_mass + b.inverse_mass)
-    lean = r.lean_a - r.lean_b - ((b.x - a.x) * r.nx + (b.y - a.y) * r.ny)
+    ax, ay = _centre(a, time)
+    bx, by = _centre(b, time)
+    lean = r.lean_a - r.lean_b - ((bx - ax) * r.nx + (by - ay) * r.ny)
     r.lean_a -= share * lean
     r.lean_b += (1.0 - share) * lean
     if r.radial == 3 and friction == 0.0:
         return
     if r.radial == 1 or r.radial == 2:
         share = 0.0 if r.radial == 1 else 1.0
-    arm = r.arm_a - r.arm_b - ((b.x - a.x) * r.ny - (b.y - a.y) * r.nx)
+    arm = r.arm_a - r.arm_b - ((bx - ax) * r.ny - (by - ay) * r.nx)
     r.arm_a -= share * arm
     r.arm_b += (1.0 - share) * arm
 
@@ -133,7 +247,7 @@ def aim_speculative(row: Any, r: Any, a: Any, b: Any, h: float) -> None:
     """
     speed = closing(r, a, b, 0.0)
     turn = a.w - b.w
-    _one_point(r, a, b, row.friction)
+    _one_point(r, a, b, row.friction, 0.0)
     if row.ends == 1:
         row.t1 = turn_along(r, a, b, max(0.0, (speed * r.back - r.depth + r.rest_depth) / h))
         return

@@ -38,6 +38,75 @@ def test_a_force_set_before_each_frame_acts_all_through_it(steps):
     assert body.position.x == pytest.approx(3 - late, rel=1e-9)
 
 
+@pytest.mark.skipif(ENGINE != "area", reason="swings to 2.1, 20 times as far in 10 s")
+@pytest.mark.parametrize("turns", [False, True])
+@pytest.mark.parametrize("rate, most", [(3.0, 1.02), (6.0, 1.1)])
+def test_a_spring_made_of_forces_keeps_its_swing(rate, most, turns):
+    """F = -m w^2 x, set before each frame, ten seconds: the amplitude (1.46, 4.4 with forces that lag by half a frame).
+
+    Limited to the smaller of two changes on end, the force lags where it turns round: 1.01 and 1.07 were measured.
+    """
+    space = pymunk.Space()
+    body = pymunk.Body(1, pymunk.moment_for_circle(1, 0, 10))
+    space.add(body, pymunk.Circle(body, 10))
+    body.position, body.angle = (0, 0) if turns else (100, 0), 1.0 if turns else 0.0
+    ra.attach(space)
+    for _ in frames(10.0):
+        body.force = tuple(-(rate**2) * body.position)
+        body.torque = -body.moment * rate**2 * body.angle
+        space.step(DT)
+    swing = (
+        math.hypot(body.angle, body.angular_velocity / rate)
+        if turns
+        else math.hypot(body.position.length, body.velocity.length / rate) / 100
+    )
+    assert 0.98 < swing < most
+
+
+@pytest.mark.skipif(ENGINE != "area", reason="of forces in callbacks, with our frame")
+def test_a_raft_floats_by_forces_of_a_callback():
+    """Buoyancy given in pre_solve, undamped: 8 px up and down after ten seconds as in the first (44 when it lagged)."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    water = pymunk.Poly(space.static_body, [(0, 0), (800, 0), (800, 250), (0, 250)])
+    water.sensor, water.collision_type = True, 1
+    raft = pymunk.Body(1, pymunk.moment_for_box(1, (40, 40)))
+    shape = pymunk.Poly.create_box(raft, (40, 40))
+    shape.collision_type = 2
+    level = 250 + 20 - 40 / 1.6
+    raft.position = 400, level + 8
+    space.add(water, raft, shape)
+
+    def float_up(arbiter, space, data):
+        box = shape.bb
+        part = min(1.0, max(0.0, (min(box.top, 250) - box.bottom) / (box.top - box.bottom)))
+        raft.apply_force_at_world_point((0, part * 1.6 * 900), raft.position)
+
+    space.on_collision(1, 2, pre_solve=float_up)
+    ra.attach(space)
+    highs = [0.0]
+    for k in frames(10.0):
+        space.step(DT)
+        if k % 60 == 0:
+            highs.append(0.0)
+        highs[-1] = max(highs[-1], abs(raft.position.y - level))
+    assert highs[2] == pytest.approx(8, abs=0.5)
+    assert highs[-1] == pytest.approx(8, abs=1.2)
+
+
+@pytest.mark.skipif(ENGINE != "area", reason="pymunk is first order")
+def test_a_thruster_gives_what_it_is_told():
+    """On for ten frames, off for ten: what a force gives is its sum, however frames before differ."""
+    space = pymunk.Space()
+    body = pymunk.Body(1, pymunk.moment_for_circle(1, 0, 10))
+    space.add(body, pymunk.Circle(body, 10))
+    ra.attach(space)
+    for k in range(60):
+        body.force = (6.0 if k // 10 % 2 == 0 else 0.0), 0
+        space.step(DT)
+    assert body.velocity.x == pytest.approx(6 * 30 * DT, rel=1e-12)
+
+
 @pytest.mark.parametrize("steps", STEPS)
 def test_a_torque_and_a_force_off_the_centre(steps):
     """Torque 0.5 N m on 1/6 kg m² for 1 s: 3 rad/s. A force of 1 N with an arm of 0.25 m adds 0.25 N m."""

@@ -1,0 +1,84 @@
+"""A static body that a program moves by its place, and reindexes, drives as a kinematic one: it shoots nobody.
+
+(Mazes that are turned, walls that are pushed. Before a fin that had gone through a disc's middle sent it off at up to
+3,000 px/s, where a kinematic one did not.)
+"""
+
+from __future__ import annotations
+
+import math
+import random
+
+import pymunk
+import pytest
+
+import rigidarea
+
+DT = 1 / 60
+V = pymunk.Vec2d
+
+
+def maze(body: pymunk.Body, space: pymunk.Space) -> None:
+    """A ring of 24 segments with six fins inside."""
+    for k in range(24):
+        ends = (V(250, 0).rotated(n * math.pi / 12) for n in (k, k + 1))
+        space.add(pymunk.Segment(body, *ends, 6))
+    for k in range(6):
+        space.add(
+            pymunk.Segment(body, V(250, 0).rotated(k * math.pi / 3), V(160, 0).rotated(k * math.pi / 3), 5)
+        )
+
+
+@pytest.mark.parametrize("kind", [pymunk.Body.STATIC, pymunk.Body.KINEMATIC])
+@pytest.mark.parametrize("turn", [0.01, 0.02, 0.04])
+def test_a_maze_that_is_turned_by_its_angle(turn: float, kind: int) -> None:
+    """Twenty discs, ten seconds, after the first: no faster than a fall through the maze makes them, and inside."""
+    for seed in range(3):
+        draw = random.Random(seed)
+        space = pymunk.Space()
+        space.gravity = 0, -900
+        body = pymunk.Body(body_type=kind)
+        space.add(body)
+        maze(body, space)
+        discs = []
+        for _ in range(20):
+            disc = pymunk.Body(1, pymunk.moment_for_circle(1, 0, 12))
+            disc.position = draw.uniform(-100, 100), draw.uniform(-100, 100)
+            space.add(disc, pymunk.Circle(disc, 12))
+            discs.append(disc)
+        for shape in space.shapes:
+            shape.friction, shape.elasticity = 0.6, 0.3
+        rigidarea.attach(space)
+        fastest = 0.0
+        for frame in range(600):
+            body.angle += turn
+            space.reindex_shapes_for_body(body)
+            space.step(DT)
+            if frame > 60:
+                fastest = max(fastest, max(disc.velocity.length for disc in discs))
+        assert fastest < math.sqrt(2 * 900 * 400)
+
+
+def test_what_is_reindexed_where_it_is_drives_nobody() -> None:
+    """A program that reindexes its level in every frame has the bits of one that does not."""
+
+    def course(again: bool) -> list[tuple[float, float]]:
+        space = pymunk.Space()
+        space.gravity = 0, -900
+        floor = pymunk.Segment(space.static_body, (-200, 0), (200, 0), 5)
+        floor.friction = 0.7
+        space.add(floor)
+        for k in range(6):
+            body = pymunk.Body(1000.0 if k == 5 else 1.0, pymunk.moment_for_box(1, (20, 20)))
+            body.position = 0, 15 + 21 * k
+            shape = pymunk.Poly.create_box(body, (20, 20))
+            shape.friction = 0.7
+            space.add(body, shape)
+        rigidarea.attach(space)
+        for _ in range(90):
+            if again:
+                space.reindex_static()
+            space.step(DT)
+        return [tuple(body.position) for body in space.bodies]
+
+    assert course(True) == course(False)
