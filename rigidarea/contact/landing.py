@@ -74,8 +74,10 @@ def find_other_end(two: TwoShapes, region: Any, h: float) -> None:
     """See a bounce's region as the face that comes down, if it does so soon: within two substeps of free motion.
 
     Leaves in `region.later` how much later than the first its second end would touch: negative if it is the first, 0 if
-    both are down at once. Where it is no face, the region stays as it is.
+    both are down at once. Where it is no face, or one of the two is not convex, the region stays as it is.
     """
+    if not (two.pool.heads[two.ia].convex and two.pool.heads[two.ib].convex):
+        return
     a, b = two.a, two.b
     speed = closing(region, a, b, 0.0)
     step = min(h, INTO * least_extent(a, b) / speed) if speed > 0.0 else h
@@ -108,9 +110,12 @@ def find_other_end(two: TwoShapes, region: Any, h: float) -> None:
             continue
         arm = region.arm_a
         lean_a, lean_b, back = region.lean_a, region.lean_b, region.back
+        area, depth = region.area, region.depth
         fill(region, patch, ax, ay, bx, by)
         region.straight = region.chord  # from corner to corner
         region.reach = region.arm_a - arm
+        region.area = area
+        region.depth = depth
         region.lean_a = lean_a
         region.lean_b = lean_b
         region.back = back
