@@ -79,12 +79,9 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         if not met:
             body.left_vx = body.vx
             body.left_vy = body.vy
-            body.thrust_x = 0.0
-            body.thrust_y = 0.0
-            body.thrust_turn = 0.0
-            body.forced_x = 0.0
-            body.forced_y = 0.0
-            body.forced_w = 0.0
+            body.was_x = 0.0
+            body.was_y = 0.0
+            body.was_w = 0.0
             body.trend_x = 0.0
             body.trend_y = 0.0
             body.trend_w = 0.0

@@ -24,6 +24,13 @@ def finish_frame(s: Any, tables: Tables, good: bool) -> None:
         body = tables.bodies[tables.awake[k]]
         if body.stamp != s.frame:
             continue
+        if good:  # a frame that is run again, or fails, has not been
+            body.trend_x = body.forced_x - body.was_x
+            body.trend_y = body.forced_y - body.was_y
+            body.trend_w = body.forced_w - body.was_w
+            body.was_x = body.forced_x
+            body.was_y = body.forced_y
+            body.was_w = body.forced_w
         if body.mobile or not good:
             write_motion(s, body)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:

@@ -38,51 +38,43 @@ def _given_whole(body: Any) -> bool:
 
 
 @kernel(forceinline=True)
+def _half_on(change: float, before: float) -> float:
+    """Half of a change, or of the one before, the smaller; none where they differ in sign.
+
+    (minmod; P. L. Roe, Ann. Rev. Fluid Mech. 18 (1986), doi:10.1146/annurev.fl.18.010186.002005)
+    """
+    return 0.5 * math.copysign(min(abs(change), abs(before)), change) if change * before > 0.0 else 0.0
+
+
+@kernel(forceinline=True)
+def _turn(from_x: float, from_y: float, x: float, y: float) -> float:
+    """The angle from one vector to another."""
+    return math.atan2(from_x * y - from_y * x, from_x * x + from_y * y)
+
+
+@kernel(forceinline=True)
 def _look_ahead(body: Any, x: float, y: float) -> None:
     """What a function of the user's changes a velocity by in the middle of the frame: as it turns, so it goes on.
 
     (x, y): in this frame. It has seen where the body was when the frame began: of a body that rolls round a planet, a
-    weight that lags behind would be a push. Of two turns on end the smaller one, and none where they differ in sign
-    (minmod; P. L. Roe, Ann. Rev. Fluid Mech. 18 (1986)): a player who dashes or stops is given that and nothing else.
+    weight that lags behind would be a push. A player who dashes or stops is given that and nothing else (`_half_on`).
     """
-    turn = math.atan2(body.thrust_x * y - body.thrust_y * x, body.thrust_x * x + body.thrust_y * y)
-    half = (
-        0.5 * math.copysign(min(abs(turn), abs(body.thrust_turn)), turn)
-        if turn * body.thrust_turn > 0.0
-        else 0.0
-    )
-    body.thrust_turn = turn
+    before = _turn(body.was_x - body.trend_x, body.was_y - body.trend_y, body.was_x, body.was_y)
+    half = _half_on(_turn(body.was_x, body.was_y, x, y), before)
     body.kick_x = math.cos(half) * x - math.sin(half) * y
     body.kick_y = math.sin(half) * x + math.cos(half) * y
 
 
 @kernel(forceinline=True)
-def _half_on(change: float, before: float) -> float:
-    """Half of what a frame has changed, or of what the one before has, the smaller; none where they differ in sign."""
-    return 0.5 * math.copysign(min(abs(change), abs(before)), change) if change * before > 0.0 else 0.0
-
-
-@kernel(forceinline=True)
-def _add_trend(body: Any, x: float, y: float, w: float, longer: float) -> None:
+def _add_trend(body: Any, dt: float) -> None:
     """Forces were told where the body was when the frame began, and act in its middle: as they change, they go on.
 
-    (x, y), w: what they give in this frame, `longer` times as long as the one before, damping not among it. Else
-    springs and rafts that a program makes of forces would swing higher and higher: a force that lags by half a frame
-    gives energy. (The second order of Adams and Bashforth, with the minmod of `_look_ahead`: a thruster gives what it
-    is told and nothing else.)
+    Else springs and rafts that a program makes of forces would swing higher and higher: a force that lags by half a
+    frame gives energy. (The second order of Adams and Bashforth; a thruster gives what it is told and nothing else.)
     """
-    trend_x = x - longer * body.forced_x
-    trend_y = y - longer * body.forced_y
-    trend_w = w - longer * body.forced_w
-    body.gain_x += _half_on(trend_x, body.trend_x)
-    body.gain_y += _half_on(trend_y, body.trend_y)
-    body.gain_w += _half_on(trend_w, body.trend_w)
-    body.trend_x = trend_x
-    body.trend_y = trend_y
-    body.trend_w = trend_w
-    body.forced_x = x
-    body.forced_y = y
-    body.forced_w = w
+    body.gain_x += dt * _half_on(body.forced_x - body.was_x, body.trend_x)
+    body.gain_y += dt * _half_on(body.forced_y - body.was_y, body.trend_y)
+    body.gain_w += dt * _half_on(body.forced_w - body.was_w, body.trend_w)
 
 
 @kernel(forceinline=True)
@@ -170,8 +162,8 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
     # two that are concave may overlap in any number of places: who is at rest keeps its own
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
+    rate = 1.0 / dt if dt > 0.0 else 0.0
     damped = 1.0 - floats(space + s.space_gravity, 3)[2] ** dt  # Chipmunk's damping stands behind its gravity
-    longer = dt / s.before if s.before > 0.0 else 1.0
     pressed = False
     i = -1
     for address in members(space, s.space_bodies):
@@ -198,6 +190,11 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         )  # the user's: whole, as in pymunk
         if own:
             _look_ahead(body, x, y)
+        w = body.w - body.old_w
+        lost = 0.0 if own else damped
+        body.forced_x = rate * (x + lost * body.old_vx)
+        body.forced_y = rate * (y + lost * body.old_vy)
+        body.forced_w = rate * (w + lost * body.old_w)
         body.gain_x = 0.0
         body.gain_y = 0.0
         body.gain_w = 0.0
@@ -206,12 +203,9 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         ):  # of an explicit frame it has been given, and contacts want to know it all the same
             body.gain_x = x
             body.gain_y = y
-            body.gain_w = body.w - body.old_w
+            body.gain_w = w
             if not s.explicit:
-                fx, fy = x + damped * body.old_vx, y + damped * body.old_vy
-                _add_trend(body, fx, fy, body.gain_w + damped * body.old_w, longer)
-        body.thrust_x = x
-        body.thrust_y = y
+                _add_trend(body, dt)
         if not (s.explicit or own):
             body.vx = body.old_vx
             body.vy = body.old_vy

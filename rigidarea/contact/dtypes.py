@@ -65,15 +65,15 @@ BODY = record(
         ("gain_x", "f8"),  # velocity that everything but contacts and joints adds in a frame
         ("gain_y", "f8"),
         ("gain_w", "f8"),
-        ("thrust_x", "f8"),  # by what that changed its velocity, whoever did it: the user's functions too
-        ("thrust_y", "f8"),
-        ("forced_x", "f8"),  # by what forces and gravity did
+        ("forced_x", "f8"),  # acceleration by forces and gravity, or all that a function of the user's gives
         ("forced_y", "f8"),
         ("forced_w", "f8"),
-        ("trend_x", "f8"),  # by how much more than in the frame before
+        ("was_x", "f8"),  # that of the frame before
+        ("was_y", "f8"),
+        ("was_w", "f8"),
+        ("trend_x", "f8"),  # and by how much it was more than in the one before that
         ("trend_y", "f8"),
         ("trend_w", "f8"),
-        ("thrust_turn", "f8"),  # by how much that has turned since the frame before
         # how long it has moved by itself: since the user last set its place or velocity (time)
         ("since", "f8"),
         ("left_vx", "f8"),  # velocity with which the last frame has left it (length/time)

@@ -130,7 +130,7 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
         body = tables.bodies[tables.awake[k]]
         body.load = 0.0 if body.inverse_mass > 0.0 else math.inf
         if body.inverse_mass > 0.0:
-            most += max(law.gravity, math.hypot(body.thrust_x, body.thrust_y) / dt) / body.inverse_mass
+            most += max(law.gravity, math.hypot(body.forced_x, body.forced_y)) / body.inverse_mass
     for i in range(tables.counters[NEAR]):
         near = tables.near[i]
         a = tables.bodies[near.a]
