@@ -60,7 +60,10 @@ def test_a_maze_that_is_turned_by_its_angle(turn: float, kind: int) -> None:
 
 
 def test_what_is_reindexed_where_it_is_drives_nobody() -> None:
-    """A program that reindexes its level in every frame has the bits of one that does not."""
+    """A program that reindexes its level in every frame has the bits of one that does not.
+
+    Also of a box that is put into the floor: it comes out as slowly as from what does not move.
+    """
 
     def course(again: bool) -> list[tuple[float, float]]:
         space = pymunk.Space()
@@ -74,6 +77,9 @@ def test_what_is_reindexed_where_it_is_drives_nobody() -> None:
             shape = pymunk.Poly.create_box(body, (20, 20))
             shape.friction = 0.7
             space.add(body, shape)
+        put = pymunk.Body(1.0, pymunk.moment_for_box(1, (20, 20)))
+        put.position = 100, 5
+        space.add(put, pymunk.Poly.create_box(put, (20, 20)))
         rigidarea.attach(space)
         for _ in range(90):
             if again:
