@@ -353,9 +353,9 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         else:
             nx += dy
             ny -= dx
-    length = math.sqrt(nx * nx + ny * ny)
     if hidden == 0:
         return patch, False
+    length = math.sqrt(nx * nx + ny * ny)
     corner = straight = False
     if length > 0.0 and (faces == 1 or length <= beyond):
         corner, straight = _goes_on(look, loop, side, hidden, min(beyond, nearer))

@@ -55,7 +55,7 @@ COUNTERS = 48
 
 
 class Law(NamedTuple):
-    """What the user chose for every region of a space."""
+    """What the user chose for every region of a space, and the frame that it is."""
 
     stiffness: float  # k (force/length^2: a pressure per unit depth of the plane, Eq. 5 and 6); 0: by each pair's load
     penetration: float  # of its smallest extent that a body may sink, where the stiffness is chosen
@@ -66,7 +66,7 @@ class Law(NamedTuple):
     exponent: float  # q of Eq. 12, for NODAL
     rest_speed: float  # first touch slower than this is rest (length/time); negative: by the load
     followed: float  # (w h)^2 up to which a step follows a contact; infinity: always
-    frame: int = -2  # Chipmunk's number of the step that has begun
+    frame: int = -2  # Chipmunk's number of the step that has begun; -2: none
 
 
 class Tables(NamedTuple):

@@ -15,7 +15,7 @@ from .motion import centre_of, earlier
 from .region import closing, others_push
 from .tables import LYING
 
-#: So many blows at most: what is left of the speed then is 1/2^12 of it where e is a half, and goes on to bounce later.
+#: So many blows of a face's two ends at most: what closes still bounces in the substep after.
 MOST_BLOWS = 12
 
 
@@ -68,6 +68,18 @@ def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
     return (left + then * turn) / size
 
 
+@kernel(forceinline=True)
+def _closes(r: Any, speed: float, wa: float, wb: float, end: float) -> float:
+    """How fast the two close so far along the face: speed, that of their centres; wa, wb, how fast they turn."""
+    return speed + wa * (r.arm_a - end) - wb * (r.arm_b - end)
+
+
+@kernel(forceinline=True)
+def _swung(arm: float, end: float, lever: float, c: float, s: float) -> tuple[float, float]:
+    """A corner's place along the face and its lever, once its body has turned by the angle of cosine c, sine s."""
+    return arm - (arm - end) * c + lever * s, lever * c + (arm - end) * s
+
+
 @kernel
 def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float) -> float:
     """A face comes down with one end, then with the other, perhaps again: what it is left with a substep of h on.
@@ -91,9 +103,9 @@ def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float
     gap1 = 0.0
     gap2 = 0.0
     if first:
-        gap2 = r.later * max(0.0, speed + wa * (r.arm_a - end2) - wb * (r.arm_b - end2))
+        gap2 = r.later * max(0.0, _closes(r, speed, wa, wb, end2))
     else:
-        gap1 = -r.later * max(0.0, speed + wa * (r.arm_a - end1) - wb * (r.arm_b - end1))
+        gap1 = -r.later * max(0.0, _closes(r, speed, wa, wb, end1))
     of_a = a.inverse_moment > b.inverse_moment
     arm, lever, up = (r.arm_a, r.lean_a, -1.0) if of_a else (r.arm_b, r.lean_b, 1.0)
     lever1 = lever + up * gap1
@@ -105,8 +117,8 @@ def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float
     at2 = 0.0
     late = 0.0
     for _ in range(MOST_BLOWS):
-        u1 = speed + wa * (r.arm_a - end1) - wb * (r.arm_b - end1)
-        u2 = speed + wa * (r.arm_a - end2) - wb * (r.arm_b - end2)
+        u1 = _closes(r, speed, wa, wb, end1)
+        u2 = _closes(r, speed, wa, wb, end2)
         wait1 = gap1 / u1 if u1 > 0.0 else math.inf
         wait2 = gap2 / u2 if u2 > 0.0 else math.inf
         wait = min(wait1, wait2)
@@ -118,17 +130,14 @@ def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float
         turn = wait * (wa if of_a else wb)
         c = math.cos(turn)
         s = math.sin(turn)
-        end1, lever1 = arm - (arm - end1) * c + lever1 * s, lever1 * c + (arm - end1) * s
-        end2, lever2 = arm - (arm - end2) * c + lever2 * s, lever2 * c + (arm - end2) * s
+        end1, lever1 = _swung(arm, end1, lever1, c, s)
+        end2, lever2 = _swung(arm, end2, lever2, c, s)
         end = end1 if wait1 <= wait2 else end2
         arm_a = r.arm_a - end
         arm_b = r.arm_b - end
-        closes = speed + wa * arm_a - wb * arm_b
-        push = (
-            (1.0 + e)
-            * closes
-            / (masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment)
-        )
+        inverse = masses + arm_a * arm_a * a.inverse_moment + arm_b * arm_b * b.inverse_moment
+        # that it has swung may have turned a corner back
+        push = (1.0 + e) * max(0.0, _closes(r, speed, wa, wb, end)) / inverse
         speed -= push * masses
         wa -= push * arm_a * a.inverse_moment
         wb += push * arm_b * b.inverse_moment
@@ -145,8 +154,8 @@ def _by_turns(row: Any, r: Any, a: Any, b: Any, e: float, since: float, h: float
     speed += part * ((a.kick_x - b.kick_x) * r.nx + (a.kick_y - b.kick_y) * r.ny)
     wa += part * a.kick_w
     wb += part * b.kick_w
-    row.t1 = speed + wa * (r.arm_a - row.e1) - wb * (r.arm_b - row.e1)
-    row.t2 = speed + wa * (r.arm_a - row.e2) - wb * (r.arm_b - row.e2)
+    row.t1 = _closes(r, speed, wa, wb, row.e1)
+    row.t2 = _closes(r, speed, wa, wb, row.e2)
     return late / (l1 + l2) if l1 + l2 > 0.0 else 0.0
 
 

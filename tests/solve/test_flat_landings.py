@@ -130,7 +130,8 @@ def test_a_smooth_bar_lands_on_a_free_plate(e: float) -> None:
     """As pymunk's own response has it at 256 steps a frame: of a hundred the median within a fiftieth, 85 a twentieth.
 
     Seen, of the speed it came with: .004 to .011, .011 to .022. (Before .023 to .051, .047 to .16; pymunk's single step
-    .036 to .24, .057 to .43.) Two that turn are less exact than one: the corner that strikes is taken to be the bar's.
+    .036 to .24, .057 to .43.) Two that turn are less exact than one: the corner is taken to be that of the one
+    that turns more easily.
     """
     found = []
     for seed in range(100):
