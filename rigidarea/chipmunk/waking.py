@@ -7,8 +7,7 @@ import math
 from ..compile.jit import callback
 from ..contact.broad import forget_the_gone
 from ..contact.join import may_touch
-from ..contact.meet import meets_within
-from ..contact.motion import start_looks
+from ..contact.motion import meets_within, start_looks
 from ..contact.space_record import load_pool, load_tables, load_work, row_of_body
 from ..contact.tables import FIXED, MORE_WORK, NEAR, TURN
 from .record import members, notice, state_of, user_data

@@ -12,7 +12,7 @@ from ..geometry.arc import on_arc
 from ..geometry.place import overlap_of_outlines
 from ..geometry.pool import Pool
 from ..geometry.work import Work
-from .meet import pose_of
+from .motion import pose_of
 from .region import inverse_mass, region_stiffness
 from .tables import LAW_AREA, STRUCK, SUBSTEP, Law, Tables
 

@@ -19,7 +19,8 @@ from .bend import bend
 from .broad import swing
 from .constants import LOOK
 from .joint import make_joint_row
-from .meet import earlier, has_seats, jumped, little, meet, meet_ahead, pose_of
+from .meet import has_seats, meet, meet_ahead
+from .motion import earlier, jumped, little, pose_of
 from .row import make_row
 from .tables import (
     BOXED,

@@ -26,15 +26,13 @@ from .motion import (
     centre_of,
     earlier,
     jumped,
-    little,
-    meets_within,
     overlap_before,
     pose_of,
     time_of_impact,
     unseen_for,
 )
 from .patch import centred, faceless
-from .region import closing, fill, inverse_mass, region_stiffness, steer, to_the_surfaces
+from .region import closing, fill, inverse_mass, steer, to_the_surfaces
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness, stiffness_of
 from .tables import (
@@ -57,20 +55,6 @@ from .tables import (
 
 #: Places at which a pair is looked at for one more that is to come.
 MOST_SEATS = 60
-
-__all__ = [
-    "closing",
-    "earlier",
-    "inverse_mass",
-    "jumped",
-    "little",
-    "meet",
-    "meet_ahead",
-    "meets_within",
-    "overlap_before",
-    "pose_of",
-    "region_stiffness",
-]
 
 
 @kernel(forceinline=True)

@@ -16,8 +16,7 @@ from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .birth import size_of
 from .constants import PUT_FOLLOWED
-from .meet import earlier, jumped, overlap_before
-from .motion import afford, pose_of
+from .motion import afford, earlier, jumped, overlap_before, pose_of
 from .region import closing
 from .sides import shown_sides
 from .tables import COUNTED, DRIFTS, MORE_WORK, NEAR, SUBSTEP, Tables
