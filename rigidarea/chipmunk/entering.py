@@ -101,7 +101,7 @@ def _let_go_of_body(s: Any, tables: Tables, i: int) -> None:
 
 
 @kernel
-def _set_box(s: Any, tables: Tables, shape: Any, body: Any, still: bool) -> None:
+def _set_box(s: Any, shape: Any, body: Any, still: bool) -> None:
     """A shape's box where its body is, with some room if it may move."""
     low_x, low_y, high_x, high_y = box_of(load_pool(s), shape, body)
     shape.left = low_x
@@ -164,7 +164,7 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
     counters[CONCAVE] += not load_pool(s).heads[head].convex
     if not body.awake:
         measure(load_pool(s), shape, body)
-    _set_box(s, tables, shape, body, still)
+    _set_box(s, shape, body, still)
     return int(i)
 
 
@@ -318,7 +318,7 @@ def placed_anew(state: int, addresses: int, n: int) -> None:
             i = row_of_shape(s, shape_at)
             if i >= 0:
                 shape = tables.shapes[i]
-                _set_box(s, tables, shape, body, shape.tree == STILL)
+                _set_box(s, shape, body, shape.tree == STILL)
                 put_in_tree(tables, i, shape.tree)
                 ask_about(tables, i)
             shape_at = words(shape_at + s.shape_next, 1)[0]

@@ -79,9 +79,7 @@ def _bias(joint: Any, error: float, h: float) -> float:
 
 
 @kernel(forceinline=True)
-def _place(
-    row: Any, a: Any, b: Any, nx: float, ny: float, ax: float, ay: float, bx: float, by: float
-) -> None:
+def _place(row: Any, nx: float, ny: float, ax: float, ay: float, bx: float, by: float) -> None:
     """The row's direction, and its arms: it acts at (ax, ay) from A's centre, (bx, by) from B's."""
     row.nx = nx
     row.ny = ny
@@ -121,7 +119,7 @@ def _stretch(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
             nx = -nx
             ny = -ny
         _limit(row, joint, -max(over, under), h)
-    _place(row, a, b, nx, ny, ax, ay, bx, by)
+    _place(row, nx, ny, ax, ay, bx, by)
 
 
 @kernel(forceinline=True)
@@ -149,7 +147,7 @@ def _groove(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     across = sx * nx + sy * ny
     ax = across * nx - at * ny
     ay = across * ny + at * nx
-    _place(row, a, b, nx, ny, ax, ay, bx, by)
+    _place(row, nx, ny, ax, ay, bx, by)
     _bias_vector(row, joint, (x - ax) * nx + (y - ay) * ny, -(x - ax) * ny + (y - ay) * nx, h)
     if start - along < along - end:  # its start is nearer: it pushes along -t
         row.low_t = -math.inf
@@ -220,7 +218,7 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     if kind == PIVOT:
         ax, ay = anchor(a, joint.p[0], joint.p[1])
         bx, by = anchor(b, joint.p[2], joint.p[3])
-        _place(row, a, b, 1.0, 0.0, ax, ay, bx, by)
+        _place(row, 1.0, 0.0, ax, ay, bx, by)
         _bias_vector(row, joint, b.x + bx - a.x - ax, b.y + by - a.y - ay, h)
         row.low_t = -math.inf
         row.high_t = math.inf

@@ -42,10 +42,11 @@ def reach_along(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: fl
 
 
 @kernel
-def _depth(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: float, reach: float) -> float:
-    """How far a loop's outlines have gone into each other: its least width, of those across n and its longest edges.
+def _depth(work: Work, start: int, stop: int, arcs: bool, reach: float) -> float:
+    """How far a loop's outlines have gone into each other: its least width.
 
-    Along n (`reach`) alone a thin long strip would seem deep, its chord running from corner to opposite corner.
+    Of those along the direction (`reach`) and across its longest edges. Along the direction alone a thin long strip
+    would seem deep, its chord running from corner to opposite corner.
     """
     least = reach
     longest_a = longest_b = 0.0
@@ -152,7 +153,7 @@ def patch_of(pool: Pool, work: Work, law: Law, k: int, ia: int, ib: int, pose: P
         else:
             reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
         if straight > 0.0 or loop.arcs == 0 or chord == 0.0:
-            depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, nx, ny, reach)
+            depth = _depth(work, loop.start, loop.stop, loop.arcs > 0, reach)
         else:
             depth = min(reach, 2.0 * loop.area / chord)  # of a crescent its chord's normal says too much
             both = 12.0 * loop.area / (chord * chord * chord)

@@ -24,7 +24,7 @@ def poses(x, buf):  # type: ignore[no-untyped-def]
 
 
 @kernel
-def _assemble(sy, buf, st, r, ia, ib):  # type: ignore[no-untyped-def]
+def _assemble(buf, st, r, ia, ib):  # type: ignore[no-untyped-def]
     """Adds a region's force to the loads and, where its loads are no unknowns of their own, its stiffness.
 
     Contact stiffness k L along the direction through the chord's middle, k L³/12 in rotation.
@@ -167,7 +167,7 @@ def evaluate(bodies, sy, buf, q, pairs, st, s, found):  # type: ignore[no-untype
             kept[7], kept[8], kept[9] = r["x_chord"], r["y_chord"], r["serial"]
             buf.force[p, 0] += r["force"] * r["nx"]
             buf.force[p, 1] += r["force"] * r["ny"]
-            _assemble(sy, buf, st, r, ia, ib)
+            _assemble(buf, st, r, ia, ib)
             if sy.friction[p] > 0.0 or sy.ratio[p] > 0.0:
                 resist(sy, buf, st.k, r, p, ia, ib)
             total += 1

@@ -271,8 +271,8 @@ def general(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, work: Work) -> 
                 k == 2
                 and link_two(pa.ring_of, pb.ring_of, work.cross, work.param, work.spot, work.order, near)
             ) and not (
-                link_curved(pa, ia, pb, ib, rel, k, A_EDGE, work, near)
-                and link_curved(pb, ib, pa, ia, rel, k, B_EDGE, work, near)
+                link_curved(pa, pb, ib, rel, k, A_EDGE, work, near)
+                and link_curved(pb, pa, ia, rel, k, B_EDGE, work, near)
             ):
                 return TANGLED
         elif not link(

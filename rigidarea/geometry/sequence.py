@@ -93,11 +93,11 @@ def alternate(
 
 @kernel
 def link_curved(
-    pool: Pool, i: int, other: Pool, o: int, rel: Relative, n: int, along: int, work: Work, near: float
+    pool: Pool, other: Pool, o: int, rel: Relative, n: int, along: int, work: Work, near: float
 ) -> bool:
     """order[2 + along, k]: the crossing after k along its ring of A (0) or B (1), see `crossings.link`.
 
-    pool, i: the outline whose rings they are; other, o: the other one. False: they are not to be brought in order.
+    pool: of the outline whose rings they are; other, o: the other one. False: they are not to be brought in order.
     """
     cross = work.cross
     spot = work.spot
