@@ -11,7 +11,7 @@ from ..contact.blows import blows
 from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.given_energy import begin_again, contacts_give_energy, mix
-from ..contact.islands import note, share_kicks
+from ..contact.islands import share_kicks
 from ..contact.join import SPARE, any_pair_touches, gather, has_room, join, no_pair_comes_near
 from ..contact.order import arrange, find_near, sieve
 from ..contact.relax import begin_to_relax, end_relaxing
@@ -183,7 +183,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
                 tables.counters[SUBSTEP] += 1
                 tables.counters[ROWS] = 0
                 # under constant forces one kick in the middle is exact
-                fly(tables, s.frame, 0.5 * (dt - h), 0.5 * dt, n)
+                fly(tables, s.frame, 0.5 * (dt - h), 0.5 * dt)
                 lap(s, POSITIONS)
                 return True
         if i == 0:
@@ -203,7 +203,6 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
             free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)
     drift(tables, s.frame, 0.5 * h)
-    note(tables, n)
     s.contacts += tables.counters[ROWS]
     lap(s, POSITIONS)
     return True

@@ -26,7 +26,6 @@ BODY = record(
         ("unmeasured", "i1"),  # 1: its shapes have changed since `extent` and `reach` were found
         ("wants", "i4"),  # substeps that it wants in this frame
         ("steps", "i4"),  # that its island takes; 0: it does not move
-        ("taken", "i4"),  # that it took in the last frame; 0: it was not there
         ("asked", "i4"),  # that the user wants for its island, at least; 0: none
         ("island", "i4"),  # row of a body of the same island (`islands`, `active`)
         ("held", "i4"),  # for how many of its shapes, and for the space itself, it has its row

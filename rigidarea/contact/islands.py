@@ -344,12 +344,3 @@ def share_kicks(tables: Tables, n: int) -> None:
         body.kick_x = body.gain_x / n
         body.kick_y = body.gain_y / n
         body.kick_w = body.gain_w / n
-
-
-@kernel
-def note(tables: Tables, n: int) -> None:
-    """Those that are live have taken n substeps."""
-    for k in range(tables.counters[LIVE]):
-        body = tables.bodies[tables.live[k]]
-        if body.kind != FIXED:
-            body.taken = n

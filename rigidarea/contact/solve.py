@@ -16,7 +16,7 @@ from .active import active_island, island_of
 from .constants import ROUNDING
 from .joint import settle_joint
 from .row import push, settle, visit
-from .tables import ACTIVE, AWAKE, COMING, DRIFTS, FIXED, LIVE, LYING, QUEUE, REST, ROWS, Law, Tables
+from .tables import ACTIVE, AWAKE, COMING, DRIFTS, LIVE, LYING, QUEUE, REST, ROWS, Law, Tables
 
 
 @kernel
@@ -35,13 +35,11 @@ def drift(tables: Tables, frame: int, time: float) -> None:
 
 
 @kernel
-def fly(tables: Tables, frame: int, before: float, after: float, n: int) -> None:
-    """`drift`, the whole frame's `kick`, another drift, and n substeps noted: of who meets nobody, in one go."""
+def fly(tables: Tables, frame: int, before: float, after: float) -> None:
+    """`drift`, the whole frame's `kick`, another drift: of who meets nobody, in one go."""
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.pushed = 0
-        if body.kind != FIXED:
-            body.taken = n
         if body.stamp != frame:
             continue
         x = before * body.vx
