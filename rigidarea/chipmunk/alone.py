@@ -93,7 +93,6 @@ def _begin(s: Any, space: int, world: Any, dt: float) -> bool:
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
     s.fragile = 0
-    s.broken = -1
     tables = load_tables(s)
     tables.counters[TOLD] = 0
     forget_the_gone(tables)

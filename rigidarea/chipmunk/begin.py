@@ -103,7 +103,6 @@ def begin(s: Any, space: int, dt: float) -> bool:
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
     s.fragile = 0
-    s.broken = -1
     hook = words(s.global_handler + s.handler_pre_solve, 1)
     heard = words(s.global_handler + s.handler_pre_solve - 8, 4)  # begin, pre_solve, post_solve, separate
     fresh = changed(s, space) or (

@@ -199,7 +199,6 @@ def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
     if region.mode == REST and not placed and phase2 > law.followed and pair.elasticity * u > slow:
         region.mode = STRUCK  # a bounce off somebody else has put it there: it bounces here and now
     region.first_speed = max(u, 0.0)
-    region.opened = 0
     if u <= slow:
         # what parts so fast has met others meanwhile: sent back it bounces
         parts = pair.elasticity > 0.0 and phase2 > law.followed and region.placed == 0

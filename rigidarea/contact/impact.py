@@ -45,19 +45,16 @@ def damping_ratio(e: float) -> float:
 
 
 @kernel
-def begin_impact(r: Any, elasticity: float, speed: float, h: float) -> None:
-    """A region that has just been touched at `speed`."""
-    r.damping = restitution_damping(elasticity) / speed
+def begin_impact(r: Any, elasticity: float, h: float) -> None:
+    """A region that has just been touched, at `first_speed`."""
+    r.damping = restitution_damping(elasticity) / r.first_speed
     r.work = 0.0
     r.loss = 0.0
     r.slowed = 0.0
     r.lasted = 0.0
-    r.late = 0.5 * h - min(h, r.depth / speed)
+    r.late = 0.5 * h - min(h, r.depth / r.first_speed)
     r.withheld = 0.0
     r.opened = 0
-    r.elastic = 0.0
-    r.excess = 0.0
-    r.first_speed = speed
 
 
 @kernel

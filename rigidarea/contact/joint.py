@@ -202,12 +202,8 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
     row.friction = 0.0
     row.e1 = 0.0
     row.e2 = 0.0
-    row.t1 = row.tt = row.t2 = 0.0
+    row.t1 = row.tt = 0.0
     row.bend1 = row.bend_t = 0.0
-    row.theta = 0.0
-    row.slid = 0.0
-    row.shift = 0.0
-    row.jammed = 0
     row.l1 = 0.0
     row.lt = 0.0
     row.low = -math.inf

@@ -99,7 +99,6 @@ def _take_region(regions: np.ndarray, counters: np.ndarray, p: int, kept: int, h
     region.past = 0
     region.placed = 0
     region.born = 1
-    region.opened = 0
     region.later = 0.0
     region.l1 = 0.0
     region.l2 = 0.0

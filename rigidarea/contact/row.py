@@ -95,7 +95,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     middle_speed = closing(r, a, b, 0.5)
     if r.mode == IMPACT:
         if r.born:
-            begin_impact(r, pair.elasticity, r.first_speed, h)
+            begin_impact(r, pair.elasticity, h)
         else:
             follow_impact(r, pair.elasticity, middle_speed, inverse, h)
     r.speed = middle_speed
@@ -189,15 +189,12 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.t1 = 0.5 * (row.t1 + row.t2)
     row.gamma = gamma
     row.w11 = inverse
-    row.w12 = 0.0
-    row.w22 = 0.0
     row.own = 1.0
     row.other = 0.0
     row.f1 = force
     row.f2 = 0.0
     row.held = force / h * r.depth
     row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
-    row.slip2 = 0.0
     take_inverse(row)
     if row.ends == 1:
         return
