@@ -21,8 +21,8 @@ from ..geometry.pool import Pool
 from ..geometry.work import A_EDGE, Relative, Work
 from .constants import SMOOTH
 from .patch import Patch, patch_of, reach_along
+from .region import least_extent
 from .tables import CHORD, FIXED, Law, Tables
-from .target_speeds import least_extent
 from .tree import STILL, next_beside, next_met
 
 #: A neighbour's boundary is looked for this far beyond an edge, of the smaller one's smallest extent: what lies flush.

@@ -15,9 +15,8 @@ from ..geometry.place import overlap_of_outlines
 from ..geometry.work import Work
 from .exposed import SAME_FACE, TwoShapes, exposed_patch
 from .motion import centre_of, earlier
-from .region import closing, fill
+from .region import closing, fill, least_extent
 from .stiffness import allowed_depth
-from .target_speeds import least_extent
 
 #: Where the second end touches is seen when it has come on so much further, of the way to where it was seen first.
 PAST = 0.1

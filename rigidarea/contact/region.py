@@ -1,4 +1,4 @@
-"""A region and its two bodies: arms, closing speed, inverse mass, stiffness."""
+"""A region and its two bodies: arms, closing speed, inverse mass, stiffness, the smaller one's size."""
 
 from __future__ import annotations
 
@@ -67,6 +67,16 @@ def is_face(region: Any) -> bool:
 def others_push(a: Any, b: Any) -> bool:
     """Whether contacts have pushed one of two bodies a substep ago: others are near, and solved with the two."""
     return bool((a.pushed and a.mobile) or (b.pushed and b.mobile))
+
+
+@kernel(forceinline=True)
+def least_extent(a: Any, b: Any) -> float:
+    """The smaller one's smallest extent, of those that can move (length)."""
+    if a.inverse_mass == 0.0:
+        return float(b.extent)
+    if b.inverse_mass == 0.0:
+        return float(a.extent)
+    return float(min(a.extent, b.extent))
 
 
 @kernel

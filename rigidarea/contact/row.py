@@ -32,9 +32,9 @@ from .birth import drives, flies_off
 from .constants import DRIVEN_SPEED, OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
-from .region import beyond, closing, growth, inverse_mass, is_face, region_stiffness, slipping
+from .region import beyond, closing, growth, inverse_mass, is_face, least_extent, region_stiffness, slipping
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
-from .target_speeds import aim_bounce, aim_speculative, least_extent, turn_along
+from .target_speeds import aim_bounce, aim_speculative, turn_along
 
 #: Ends of a face whose determinant is less than this part of what it is the difference of are one: that part is
 #: rounding's where a body turns easily.

@@ -10,18 +10,14 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .constants import DEEPER, LOAD_TIME, WEIGHTLESS_PHASE2
-from .region import beyond, growth, region_stiffness
+from .region import beyond, growth, least_extent, region_stiffness
 from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
 
 @kernel(forceinline=True)
 def allowed_depth(law: Law, a: Any, b: Any) -> float:
     """How deep the two bodies may sink into each other (length): a fraction of the smaller one that can move."""
-    if a.inverse_mass == 0.0:
-        return law.penetration * b.extent
-    if b.inverse_mass == 0.0:
-        return law.penetration * a.extent
-    return law.penetration * min(a.extent, b.extent)
+    return law.penetration * least_extent(a, b)
 
 
 @kernel

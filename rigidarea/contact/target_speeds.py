@@ -19,16 +19,6 @@ from .tables import LYING
 MOST_BLOWS = 12
 
 
-@kernel(forceinline=True)
-def least_extent(a: Any, b: Any) -> float:
-    """The smaller one's smallest extent, of those that can move (length)."""
-    if a.inverse_mass == 0.0:
-        return float(b.extent)
-    if b.inverse_mass == 0.0:
-        return float(a.extent)
-    return float(min(a.extent, b.extent))
-
-
 @kernel
 def turn_along(r: Any, a: Any, b: Any, left: float) -> float:
     """The direction in which a disc is led on, from one fixed side to the next of a chain; the speed to leave it at.
