@@ -8,10 +8,7 @@ from ..compile.jit import kernel
 from ..contact.tables import AWAKE, DRIFTS, Tables
 from ..geometry.place import place
 from .joints import joints_of
-from .record import words, write_motion, write_place
-from .structs import function
-
-_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
+from .record import cache_boxes, words, write_motion, write_place
 
 
 @kernel
@@ -39,10 +36,7 @@ def finish_frame(s: Any, tables: Tables, good: bool) -> None:
             write_place(s, body)
             if body.kind == DRIFTS and s.explicit == 0:
                 words(body.address + s.body_position_func, 1)[0] = s.hold_at
-            shape = words(body.address + s.body_shapes, 1)[0]
-            while shape != 0:
-                _cache_box(s.scratch_at, shape)
-                shape = words(shape + s.shape_next, 1)[0]
+            cache_boxes(s, body)
     if good and s.explicit == 0:  # what joints have made of the velocity of bodies that are in no space
         for joint in joints_of(s):
             for i in (joint.a, joint.b):

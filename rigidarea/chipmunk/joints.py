@@ -19,21 +19,15 @@ import numpy as np
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, caller
 from ..contact.joint import JOINT, KINDS, RATCHET, ROTARY_SPRING, SPRING, spring_reach
-from ..contact.space_record import EXTREME, STATE, row_of_body
+from ..contact.space_record import EXTREME, row_of_body
 from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
-from .structs import function
+from .record import state_of, words
 
-_user_data = function("cpSpaceGetUserData", "uintp(uintp)")
 _call_user = caller("void(uintp, uintp)")
 _call_force = caller("float64(uintp, float64)")
 
 #: Numbers of a `joint_structs.JointKind`.
 KIND_WORDS = 7
-
-
-@kernel(inline="always")
-def _words(address: int, n: int) -> np.ndarray:
-    return array_at(address, (n,), np.uint64)
 
 
 @kernel(inline="always")
@@ -67,10 +61,10 @@ def _joint_of(s: Any, constraint: int) -> int:
 @callback("void(uintp, float64)")
 def prepared(constraint: int, dt: float) -> None:
     """In the place of a joint's preparation: nothing is done, and the joint has its own class again."""
-    s = array_at(_user_data(_words(constraint + 8, 1)[0]), (1,), STATE)[0]
+    s = state_of(words(constraint + 8, 1)[0])
     k = _joint_of(s, constraint)
     if k >= 0:
-        _words(constraint, 1)[0] = joints_of(s)[k].own_class
+        words(constraint, 1)[0] = joints_of(s)[k].own_class
 
 
 @kernel(forceinline=True)
@@ -88,7 +82,7 @@ def partners_known(s: Any, constraints: np.ndarray) -> bool:
     """Whether all bodies that joints hold have rows: some are in no space (the hand that drags), or have no shapes."""
     for address in constraints:
         if address != s.hidden:
-            bodies = _words(address + s.constraint_a, 2)
+            bodies = words(address + s.constraint_a, 2)
             if row_of_body(s, bodies[0]) < 0 or row_of_body(s, bodies[1]) < 0:
                 return False
     return True
@@ -104,10 +98,10 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
             continue
         s.joint_count += 1
         joint = joints_of(s)[s.joint_count - 1]
-        bodies = _words(address + s.constraint_a, 2)
-        before = _words(address + s.constraint_pre_solve, 1)
+        bodies = words(address + s.constraint_a, 2)
+        before = words(address + s.constraint_pre_solve, 1)
         joint.address = address
-        joint.own_class = _words(address, 1)[0]
+        joint.own_class = words(address, 1)[0]
         joint.pre_solve = before[0]
         joint.taken = 0
         i = row_of_body(s, bodies[0])
@@ -148,7 +142,7 @@ def ask_springs(s: Any, tables: Tables) -> None:
     for joint in joints_of(s):
         if joint.mine and joint.asked == 1:
             joint.asked = 2
-            force = _words(joint.address + kinds[joint.kind][5], 1)[0]
+            force = words(joint.address + kinds[joint.kind][5], 1)[0]
             reach = spring_reach(joint, tables.bodies[joint.a], tables.bodies[joint.b])
             joint.force = _call_force(force, joint.address, reach)
 
@@ -220,7 +214,7 @@ def keep_jointed_busy(s: Any, tables: Tables) -> None:
 def give_back(s: Any, joint: Any) -> None:
     """The joint as it was, its impulse that of the whole frame."""
     if joint.taken:
-        _words(joint.address, 1)[0] = joint.own_class
+        words(joint.address, 1)[0] = joint.own_class
         joint.taken = 0
         if joint.kind >= 0:
             kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.kind]
@@ -230,7 +224,7 @@ def give_back(s: Any, joint: Any) -> None:
                 impulse[1] = joint.y
             if joint.kind == RATCHET:
                 array_at(joint.address + kind[3], (1,), np.float64)[0] = joint.p[0]
-    before = _words(joint.address + s.constraint_pre_solve, 1)
+    before = words(joint.address + s.constraint_pre_solve, 1)
     if before[0] == s.seize_at:
         before[0] = joint.pre_solve
 
@@ -240,13 +234,13 @@ def hide(s: Any) -> None:
     """Chipmunk is to find nothing to do where it starts its joints."""
     for joint in joints_of(s):
         if joint.taken:
-            _words(joint.address, 1)[0] = s.idle_kind
+            words(joint.address, 1)[0] = s.idle_kind
 
 
 @callback("void(uintp, uintp)")
 def seize(constraint: int, space: int) -> None:
     """In the place of a joint's pre_solve: the user's first, then Chipmunk is to leave it alone."""
-    s = array_at(_user_data(space), (1,), STATE)[0]
+    s = state_of(space)
     k = _joint_of(s, constraint)
     if k < 0:
         return
@@ -258,5 +252,5 @@ def seize(constraint: int, space: int) -> None:
     joint.asked = 0
     if joint.kind == SPRING or joint.kind == ROTARY_SPRING:
         kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.uint64)[joint.kind]
-        joint.asked = _words(constraint + np.int64(kind[5]), 1)[0] != kind[6]
-    _words(constraint, 1)[0] = s.seized_kind
+        joint.asked = words(constraint + np.int64(kind[5]), 1)[0] != kind[6]
+    words(constraint, 1)[0] = s.seized_kind

@@ -33,8 +33,7 @@ from ..contact.tables import (
     rehash,
 )
 from .joints import KIND_WORDS
-from .record import floats, members, state_of, timestamp, words
-from .structs import function
+from .record import cache_boxes, floats, members, state_of, timestamp, words
 
 #: What a block begins with; the counters follow.
 HEAD = record(
@@ -61,8 +60,6 @@ _JOINT = 32
 _HEAD = HEAD.itemsize
 _TABLES = _HEAD + 8 * COUNTERS
 _BODY, _SHAPE = BODY.itemsize, SHAPE.itemsize
-
-_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
 
 
 @kernel
@@ -294,8 +291,5 @@ def restore(space: int, idle: int, block: int) -> int:
     s.contacts = head.contacts
     s.asleep = head.asleep
     for k in range(tables.counters[AWAKE]):  # queries look at the shapes' boxes
-        shape = words(tables.bodies[tables.awake[k]].address + s.body_shapes, 1)[0]
-        while shape != 0:
-            _cache_box(s.scratch_at, shape)
-            shape = words(shape + s.shape_next, 1)[0]
+        cache_boxes(s, tables.bodies[tables.awake[k]])
     return elsewhere

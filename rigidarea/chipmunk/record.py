@@ -24,6 +24,7 @@ timestamp = function("cpSpaceGetTimestamp", "uint32(uintp)")
 time_step = function("cpSpaceGetCurrentTimeStep", "float64(uintp)")
 space_of = function("cpBodyGetSpace", "uintp(uintp)")
 body_type = function("cpBodyGetType", "int32(uintp)")
+_cache_box = function("cpShapeCacheBB", "void(uintp, uintp)")
 _call_ask = caller("void(uintp)")
 
 
@@ -108,6 +109,15 @@ def write_place(s: Any, body: Any) -> None:
     t[3] = body.c
     t[4] = body.ox
     t[5] = body.oy
+
+
+@kernel
+def cache_boxes(s: Any, body: Any) -> None:
+    """Have Chipmunk's queries find the body's shapes where it is."""
+    shape = words(body.address + s.body_shapes, 1)[0]
+    while shape != 0:
+        _cache_box(s.scratch_at, shape)
+        shape = words(shape + s.shape_next, 1)[0]
 
 
 @kernel(forceinline=True)
