@@ -354,12 +354,6 @@ def passes(one: Any, other: Any) -> bool:
 
 
 @kernel
-def may_collide(tables: Tables, pair: Any) -> bool:
-    """Whether a pair's shapes may collide (`shapes_collide`)."""
-    return bool(shapes_collide(tables, tables.shapes[pair.a], tables.shapes[pair.b]))
-
-
-@kernel
 def shapes_collide(tables: Tables, one: Any, other: Any) -> bool:
     """Whether of two shapes none is a sensor, one can move, and neither filters nor joints keep them apart."""
     a = tables.bodies[one.body]

@@ -7,7 +7,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..geometry.pool import Pool
-from .broad import boxes_part, end_unlisted, find_pairs, list_anew, may_collide, renew_boxes
+from .broad import boxes_part, end_unlisted, find_pairs, list_anew, renew_boxes, shapes_collide
 from .tables import (
     ANEW,
     ASKED,
@@ -83,7 +83,7 @@ def sieve(tables: Tables, frame: int) -> None:
             continue
         if parted:
             forget_pair(tables, p)
-        collides = not parted and may_collide(tables, pair)
+        collides = not parted and shapes_collide(tables, one, other)
         near[k].pair = near[n].pair if collides else p
         if collides:
             near[n].pair = p

@@ -216,25 +216,25 @@ def put_tables_back(s: Any, tables: Tables) -> None:
 @entry
 def enter_bodies(keys: np.ndarray, rows: np.ndarray, addresses: np.ndarray, values: np.ndarray) -> None:
     """Fill the hash table of bodies."""
-    mask = len(keys) - 1
     for k in range(len(addresses)):
-        i = int(addresses[k] >> np.uint64(4)) & mask
-        while keys[i] != 0:
-            i = (i + 1) & mask
-        keys[i] = addresses[k]
-        rows[i] = values[k]
+        _enter(keys, rows, addresses[k], values[k])
 
 
 @kernel
 def enter_body(s: Any, address: int, row: int) -> None:
     """Have a body found by its address."""
-    keys = array_at(s.body_keys_at, (s.body_keys_n,), np.uint64)
+    rows = array_at(s.body_rows_at, (s.body_rows_n,), np.int32)
+    _enter(array_at(s.body_keys_at, (s.body_keys_n,), np.uint64), rows, address, row)
+
+
+@kernel
+def _enter(keys: np.ndarray, rows: np.ndarray, address: int, row: int) -> None:
     mask = len(keys) - 1
     i = int(address >> np.uint64(4)) & mask
     while keys[i] != 0:
         i = (i + 1) & mask
     keys[i] = address
-    array_at(s.body_rows_at, (s.body_rows_n,), np.int32)[i] = row
+    rows[i] = row
 
 
 @kernel
