@@ -1,4 +1,4 @@
-"""How far two boundaries are apart, against shapely; and that nothing covers a distance sooner than it is said to."""
+"""How far two boundaries are apart, against shapely."""
 
 import math
 
@@ -42,17 +42,3 @@ def test_distance_is_shapelys(seed):
     rel = place.seen_from(pool.heads[0], pose_a, pool.heads[1], pose_b)
     assert clearance.clearance(pool, 0, pool, 1, rel, 1e9, work) == pytest.approx(want, rel=1e-9, abs=1e-12)
     assert clearance.clearance(pool, 0, pool, 1, rel, 0.5 * want, work) == 0.5 * want
-
-
-def test_time_to_cover():
-    """speed t + acceleration t^2 / 2 = distance, also where that is all but linear."""
-    time_to_cover = kernel_module("clearance").time_to_cover
-    for distance, speed, acceleration in (
-        (2.0, 3.0, 0.0),
-        (2.0, 3.0, 5.0),
-        (2.0, 0.0, 5.0),
-        (2.0, 3.0, 1e-14),
-    ):
-        t = time_to_cover(distance, speed, acceleration)
-        assert speed * t + 0.5 * acceleration * t * t == pytest.approx(distance, rel=1e-12)
-    assert time_to_cover(2.0, 0.0, 0.0) == math.inf and time_to_cover(0.0, 0.0, 0.0) == 0.0

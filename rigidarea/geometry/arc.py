@@ -103,15 +103,17 @@ def on_arc(px: float, py: float, qx: float, qy: float, r: float, x: float, y: fl
     return ((qx - px) * (y - py) - (qy - py) * (x - px)) * r < 0.0
 
 
-@kernel
-def near_edge(ax: float, ay: float, bx: float, by: float, x: float, y: float, room: float) -> bool:
-    """Whether a point lies within `room` (length) of the edge a -> b."""
+@kernel(forceinline=True)
+def to_edge2(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> float:
+    """Squared distance of a point from the edge a -> b (length^2)."""
     ux = bx - ax
     uy = by - ay
-    t = min(1.0, max(0.0, ((x - ax) * ux + (y - ay) * uy) / (ux * ux + uy * uy)))
-    dx = x - ax - t * ux
-    dy = y - ay - t * uy
-    return dx * dx + dy * dy <= room * room
+    vx = px - ax
+    vy = py - ay
+    t = min(1.0, max(0.0, (ux * vx + uy * vy) / (ux * ux + uy * uy)))
+    dx = vx - t * ux
+    dy = vy - t * uy
+    return dx * dx + dy * dy
 
 
 @kernel
@@ -188,8 +190,8 @@ def line_arc(
     close = room * room * length2
     deep = 2.0 * room * abs(r)
     if (
-        (p_side * p_side <= close and near_edge(ax, ay, bx, by, px, py, room))
-        or (q_side * q_side <= close and near_edge(ax, ay, bx, by, qx, qy, room))
+        (p_side * p_side <= close and to_edge2(px, py, ax, ay, bx, by) <= room * room)
+        or (q_side * q_side <= close and to_edge2(qx, qy, ax, ay, bx, by) <= room * room)
         or (abs(a_deep) <= deep and near_arc(px, py, qx, qy, r, ax, ay, room))
         or (abs(b_deep) <= deep and near_arc(px, py, qx, qy, r, bx, by, room))
     ):

@@ -7,22 +7,9 @@ import math
 import numpy as np
 
 from ..compile.jit import kernel
-from .arc import on_arc
+from .arc import on_arc, to_edge2
 from .pool import LEAF, Pool
 from .work import Relative, Work, placed
-
-
-@kernel(forceinline=True)
-def _to_edge2(px: float, py: float, ax: float, ay: float, bx: float, by: float) -> float:
-    """Squared distance of a point from an edge."""
-    ux = bx - ax
-    uy = by - ay
-    vx = px - ax
-    vy = py - ay
-    t = min(1.0, max(0.0, (ux * vx + uy * vy) / (ux * ux + uy * uy)))
-    dx = vx - t * ux
-    dy = vy - t * uy
-    return dx * dx + dy * dy
 
 
 @kernel
@@ -39,8 +26,8 @@ def _leaves2(
             ay = qa[i, 1]
             bx = qa[next_a[i], 0]
             by = qa[next_a[i], 1]
-            best = min(best, _to_edge2(cx, cy, ax, ay, bx, by), _to_edge2(ax, ay, cx, cy, dx, dy))
-            best = min(best, _to_edge2(dx, dy, ax, ay, bx, by), _to_edge2(bx, by, cx, cy, dx, dy))
+            best = min(best, to_edge2(cx, cy, ax, ay, bx, by), to_edge2(ax, ay, cx, cy, dx, dy))
+            best = min(best, to_edge2(dx, dy, ax, ay, bx, by), to_edge2(bx, by, cx, cy, dx, dy))
     return best
 
 
@@ -90,7 +77,7 @@ def _edge_to_arc2(
     px: float, py: float, qx: float, qy: float, cx: float, cy: float, r: float,
 ) -> float:  # fmt: skip
     """Squared distance of an edge from an arc that does not cross it."""
-    best = min(_to_edge2(px, py, ax, ay, bx, by), _to_edge2(qx, qy, ax, ay, bx, by))
+    best = min(to_edge2(px, py, ax, ay, bx, by), to_edge2(qx, qy, ax, ay, bx, by))
     best = min(best, _to_arc2(ax, ay, px, py, qx, qy, cx, cy, r), _to_arc2(bx, by, px, py, qx, qy, cx, cy, r))
     ux = bx - ax
     uy = by - ay
@@ -143,8 +130,8 @@ def _curved_leaves2(
             ey = pa.arcs[i, 1]
             r = pa.arcs[i, 2]
             if r == 0.0 and u == 0.0:
-                best = min(best, _to_edge2(px, py, ax, ay, bx, by), _to_edge2(ax, ay, px, py, qx, qy))
-                best = min(best, _to_edge2(qx, qy, ax, ay, bx, by), _to_edge2(bx, by, px, py, qx, qy))
+                best = min(best, to_edge2(px, py, ax, ay, bx, by), to_edge2(ax, ay, px, py, qx, qy))
+                best = min(best, to_edge2(qx, qy, ax, ay, bx, by), to_edge2(bx, by, px, py, qx, qy))
             elif r == 0.0:
                 best = min(best, _edge_to_arc2(ax, ay, bx, by, px, py, qx, qy, cx, cy, u))
             elif u == 0.0:
@@ -226,14 +213,3 @@ def clearance(pa: Pool, ia: int, pb: Pool, ib: int, rel: Relative, most: float, 
         stack[depth + 1, 1] = near_b
         depth += 2
     return math.sqrt(best)
-
-
-@kernel
-def time_to_cover(distance: float, speed: float, acceleration: float) -> float:
-    """Time in which a body at `speed` at the most, gaining `acceleration` at the most, covers `distance`."""
-    if distance <= 0.0:
-        return 0.0
-    if acceleration == 0.0:
-        return distance / speed if speed > 0.0 else np.inf
-    # the positive root of speed t + acceleration t^2 / 2 = distance, without cancellation
-    return 2.0 * distance / (speed + math.sqrt(speed * speed + 2.0 * acceleration * distance))

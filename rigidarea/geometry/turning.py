@@ -27,6 +27,14 @@ from .arc import FLAT, distance2, flat_segment
 from .work import A_EDGE
 
 
+@kernel(forceinline=True)
+def _between(x: float) -> float:
+    """Area between chord and arc, no more than half a turn, over the radius squared; x: half chord over radius."""
+    if x * x < FLAT:
+        return flat_segment(x, x * x)[0]
+    return math.asin(x) - x * math.sqrt((1.0 - x) * (1.0 + x))
+
+
 @kernel
 def curvatures(
     polygon: np.ndarray, label: np.ndarray, bows: np.ndarray, start: int, stop: int, area: float, chord: float
@@ -62,11 +70,7 @@ def curvatures(
             r = bows[j, 2]
             if r != 0.0:
                 x = min(1.0, 0.5 * math.sqrt(distance2(vx, vy, ux, uy)) / abs(r))
-                if x * x < FLAT:
-                    between, _ = flat_segment(x, x * x)
-                else:
-                    between = math.asin(x) - x * math.sqrt((1.0 - x) * (1.0 + x))
-                doubled += 2.0 * between * r * abs(r)
+                doubled += 2.0 * _between(x) * r * abs(r)
         before = own
         ux = vx
         uy = vy
@@ -83,11 +87,7 @@ def curvatures(
 def curvature_of_disc(radius: float, chord: float) -> float:
     """The same of a disc's side alone, no more than half a turn (1/length)."""
     x = min(1.0, 0.5 * chord / radius)
-    if x * x < FLAT:
-        between, _ = flat_segment(x, x * x)
-    else:
-        between = math.asin(x) - x * math.sqrt((1.0 - x) * (1.0 + x))
-    return 1.5 * between / (radius * x * x * x)
+    return 1.5 * _between(x) / (radius * x * x * x)
 
 
 @kernel
