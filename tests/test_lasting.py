@@ -12,7 +12,7 @@ import pytest
 import rigidarea as ra
 from rigidarea.chipmunk import memory, moved
 from rigidarea.chipmunk.structs import address_of
-from rigidarea.contact.space_record import LASTING, LASTING_STATE, SCRATCH
+from rigidarea.contact.space_record import LASTING, LASTING_STATE
 from rigidarea.contact.tables import (
     ASKED,
     AWAKE,
@@ -27,6 +27,8 @@ from rigidarea.contact.tables import (
 )
 from test_snapshots import SCENES, attached, steps
 
+#: What no frame starts from: made anew in each, or from the others (`table`).
+SCRATCH = ("rows", "factors", "mobility", "islands", "queue", "members", "told", "table")
 #: Of pairs, who Chipmunk's arbiter is; of shapes, where they are in lists and trees that are compared themselves.
 OWN = {"bodies": memory._OWN, "shapes": {*memory._OWN, "asked"}, "pairs": {"arbiter"}, "near": {"a", "b"}}
 #: Numbers of frames: a space goes on counting after a restore.

@@ -61,8 +61,6 @@ LASTING: dict[str, tuple[Any, int]] = {
     "apart": (("i4", 2), APART),
     "joints": (JOINT, JOINTS),
 }
-#: What no frame starts from: made anew in each, or from the others (`table`).
-SCRATCH = ("rows", "factors", "mobility", "islands", "queue", "members", "told", "table")
 #: Of the state record, what outlives a frame.
 LASTING_STATE = ("before", "frame", "taken", "contacts", "asleep")
 #: What `move` does.

@@ -288,8 +288,10 @@ def test_rocking_quarter_period():
     """Quadrature, differential equation and, for small slender blocks, Housner's formula agree."""
     quarter = rocking_scene.quarter()
     assert rocking_scene.tilt_at(np.array([0.0, quarter]))[-1] == pytest.approx(0.0, abs=1e-10)
-    # sin x = x (1 − x²/6): Housner's small angles cost α²/6 = 0.6 % at most
-    assert quarter == pytest.approx(rocking_scene.housner_quarter(), rel=rocking_scene.ALPHA**2 / 6)
+    # T/4 = arccosh(1/(1 − θ₀/α))/p, for a slender block (Housner 1963);
+    # sin x = x (1 − x²/6): his small angles cost α²/6 = 0.6 % at most
+    housner = math.acosh(1 / (1 - rocking_scene.TILT / rocking_scene.ALPHA)) / rocking_scene.P
+    assert quarter == pytest.approx(housner, rel=rocking_scene.ALPHA**2 / 6)
 
 
 @pytest.mark.parametrize(
@@ -513,8 +515,13 @@ def test_gears_start_touching():
 
 
 def test_standing_falls_on_too_soft_a_bed():
-    """About where `softest` says: twice as soft it tips over within the scene's time (at half as soft again it still
-    leans by 0.03), at half of it it stands."""
+    """About where statics says, on a bed that lets the width, lying flat, sink by a part m³ w/6h of it: twice as
+    soft it tips over within the scene's time (at half as soft again it still leans by 0.03), at half it stands.
+
+    The weight lies a part m of half the base from the lower edge, m w/2. Turned by φ the block is pressed along c from
+    that edge, with k c²/2 φ = m g where k = m g/(p w²), and the resultant is c/3 from it: m w/2 − φ h/2 = c/3. So
+    (m w/2 − φ h/2)² φ = 2 p w²/9, whose left side is at most (4/27) (m w/2)³/(h/2), where φ = m w/3h.
+    """
     from rigidarea.study.peers import get_peer, record
 
     scene = scenes()["standing"]
@@ -523,7 +530,8 @@ def test_standing_falls_on_too_soft_a_bed():
         run = get_peer("rigidarea").build(scene, {"penetration": penetration, "steps": 2})
         return scene.measure(record(run, scene))
 
-    limit = standing_scene.softest()
+    slender = standing_scene.WIDTH / standing_scene.HEIGHT
+    limit = (1.0 - math.tan(standing_scene.THETA) / slender) ** 3 * slender / 6.0
     assert limit == pytest.approx(8.33e-5, rel=1e-3)
     assert error(0.5 * limit) < 0.01
     assert error(2.0 * limit) > 1.0

@@ -14,11 +14,6 @@ P = math.sqrt(3 * G / (4 * R))
 TILT = ALPHA / 2
 
 
-def housner_quarter(tilt: float = TILT) -> float:
-    """T/4 = arccosh(1/(1 − θ₀/α))/p, for a slender block (Housner 1963)."""
-    return math.acosh(1 / (1 - tilt / ALPHA)) / P
-
-
 def tilt_at(t: Array) -> Array:
     """Tilt at times `t`: θ'' = −p² sin(α − θ), from rest at θ₀; no small-angle assumption, up to the impact."""
     return angle(lambda _, y: (y[1], -(P**2) * math.sin(ALPHA - y[0])), TILT, t)

@@ -24,14 +24,3 @@ def scene() -> Scene:
         pressure=G / WIDTH**2,
         tags=frozenset({"rest", "corner", "flat"}),
     )
-
-
-def softest() -> float:
-    """The largest penetration (of the width, lying flat) at which the block stands on a bed of springs: m³ w/6h.
-
-    The weight lies a part m of half the base from the lower edge, m w/2. Turned by φ the block is pressed along c from
-    that edge, with k c²/2 φ = m g where k = m g/(p w²), and the resultant is c/3 from it: m w/2 − φ h/2 = c/3. So
-    (m w/2 − φ h/2)² φ = 2 p w²/9, whose left side is at most (4/27) (m w/2)³/(h/2), where φ = m w/3h.
-    """
-    margin = 1.0 - math.tan(THETA) * HEIGHT / WIDTH
-    return margin**3 * WIDTH / (6.0 * HEIGHT)
