@@ -184,47 +184,16 @@ def list_active(tables: Tables) -> None:
             tables.queue[n].island = number
             n += 1
     counters[QUEUE] = n
-    for k in range(counters[LIVE]):
-        tables.members[k] = tables.live[k]
-    counters[MEMBERS] = counters[LIVE]
-    _drop_bodies(tables)
-
-
-@kernel
-def _drop_bodies(tables: Tables) -> None:
-    """Take bodies of islands that are not active any more out of the list."""
     n = 0
-    for k in range(tables.counters[MEMBERS]):
-        i = tables.members[k]
+    for k in range(counters[LIVE]):
+        i = tables.live[k]
         number = tables.mobility[i].island
         active = number < 0 or tables.islands[number].active
         tables.mobility[i].solved = not active
         if active:
             tables.members[n] = i
             n += 1
-    tables.counters[MEMBERS] = n
-
-
-@kernel
-def _drop(tables: Tables) -> None:
-    """Take islands that are not active any more, their rows and their bodies out of the lists."""
-    counters = tables.counters
-    n = 0
-    for k in range(counters[ACTIVE]):
-        number = tables.islands[k].listed
-        if tables.islands[number].active:
-            tables.islands[n].listed = number
-            n += 1
-    counters[ACTIVE] = n
-    n = 0
-    for k in range(counters[QUEUE]):
-        number = tables.queue[k].island
-        if tables.islands[number].active:
-            tables.queue[n].row = tables.queue[k].row
-            tables.queue[n].island = number
-            n += 1
-    counters[QUEUE] = n
-    _drop_bodies(tables)
+    counters[MEMBERS] = n
 
 
 @kernel
@@ -250,7 +219,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
     if diverges:
         _hold_friction(tables)
     if dropped:
-        _drop(tables)
+        list_active(tables)
 
 
 @kernel
@@ -275,4 +244,4 @@ def rest_small(tables: Tables) -> None:
         island = active_island(tables, k)
         if island.moved <= island.small and not island.still:
             island.active = 0
-    _drop(tables)
+    list_active(tables)
