@@ -117,17 +117,12 @@ def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: fl
         pair = tables.pairs[tables.near[i].pair]
         if pair.stamp == frame or not _heard(tables, pair):
             continue
-        sa = tables.shapes[pair.a]
-        sb = tables.shapes[pair.b]
-        a = tables.bodies[sa.body]
-        b = tables.bodies[sb.body]
+        a = tables.bodies[tables.near[i].a]
+        b = tables.bodies[tables.near[i].b]
         looks = jumped(tables, pair, a, b, dt)
         if looks == 1 or (a.kind != DRIFTS and b.kind != DRIFTS):
             continue
-        ia = sa.outline
-        ib = sb.outline
-        if sa.mirror >= 0 or sb.mirror >= 0:
-            ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
+        ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
         n, back = overlap_before(pool, work, ia, ib, a, b, dt, afford(tables.counters, looks))
         if n == OVERFLOW:
             tables.counters[MORE_WORK] = 1
