@@ -46,10 +46,10 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
-    numbers = number(tables)
-    if numbers > 1 and connect_in_reach(tables, dt):
-        numbers = number(tables)
-    if numbers < 2:
+    differ = number(tables)
+    if differ and connect_in_reach(tables, dt):
+        differ = number(tables)
+    if not differ:
         all_in_one_group(load_tables(s))
         taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
         return int(taken) if substeps(s, space, dt, taken) else 0

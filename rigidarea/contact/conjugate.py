@@ -58,7 +58,7 @@ def _residual(row: Any, f: Any, a: Any, b: Any) -> None:
 
 @kernel(forceinline=True)
 def _bears(f: Any) -> bool:
-    return bool(f.first or f.second or f.grip)
+    return bool(f.first or f.grip)  # no second end bears without the first (`preconditioner`)
 
 
 @kernel

@@ -217,8 +217,8 @@ def part(tables: Tables, dt: float) -> None:
 
 
 @kernel
-def number(tables: Tables) -> int:
-    """Each island takes as many substeps as the body of it that wants most; how many numbers: 0, 1, or 2 for more.
+def number(tables: Tables) -> bool:
+    """Each island takes as many substeps as the body of it that wants most; whether two take different numbers.
 
     After `part` and `connect`.
     """
@@ -228,13 +228,12 @@ def number(tables: Tables) -> int:
     for k in range(counters[AWAKE]):
         root = root_of(tables, awake[k])
         bodies[root].steps = max(bodies[root].steps, bodies[awake[k]].steps)
-    numbers = min(1, counters[AWAKE])
+    differ = False
     for k in range(counters[AWAKE]):
         body = bodies[awake[k]]
         body.steps = bodies[root_of(tables, awake[k])].steps
-        if body.steps != bodies[awake[0]].steps:
-            numbers = 2
-    return int(numbers)
+        differ |= body.steps != bodies[awake[0]].steps
+    return differ
 
 
 @kernel

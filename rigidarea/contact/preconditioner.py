@@ -164,7 +164,7 @@ def _bears(row: Any, f: Any) -> bool:
     f.e11 = give * row.own
     f.e12 = give * row.other
     f.et = row.alpha_t / row.gamma_t
-    return bool(f.first or f.second or f.grip)
+    return bool(f.first or f.grip)
 
 
 @kernel
