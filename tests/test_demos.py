@@ -20,7 +20,7 @@ from rigidarea.report import envelope, plain, write_json
 pygame = pytest.importorskip("pygame")
 
 from rigidarea.__main__ import main  # noqa: E402
-from rigidarea.draw import canvas, demo, film, window  # noqa: E402
+from rigidarea.draw import canvas, demo, film, picture, window  # noqa: E402
 from rigidarea.draw.picture import SIZE, Picture  # noqa: E402
 
 SCRIPTS = Path(__file__).parent.parent / "demos"
@@ -270,6 +270,12 @@ print(json.dumps([[*(star.position - bucket.position)] for star in space.bodies 
 
 
 # --- the command ---
+
+
+def test_a_picture_says_what_a_frame_took():
+    """Ours are substeps, and one is one."""
+    told = [picture._taken(1, "area"), picture._taken(2, "area"), picture._taken(4, "pymunk")]
+    assert told == ["1 substep a frame", "2 substeps a frame", "4 steps a frame"]
 
 
 def test_demo_writes_picture_film_and_json(tmp_path, capsys):

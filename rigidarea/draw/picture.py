@@ -257,7 +257,8 @@ class Picture:
         if run.frame_ms:
             recent = float(np.median(run.frame_ms[-HISTORY:]))
             self._text(f"{recent:.3g} ms a frame (median)", (right + 8, y - 30), 13, tint(INK, 0.85))
-            self._text(f"{run.frame_steps[-1]} steps a frame", (right + 8, y + 14), 13, tint(INK, 0.85))
+            taken = _taken(run.frame_steps[-1], run.engine)
+            self._text(taken, (right + 8, y + 14), 13, tint(INK, 0.85))
 
     def _text(
         self, text: str, at: tuple[float, float], size: int, color: Color, *, right: bool = False
@@ -275,6 +276,11 @@ class Picture:
             if value >= factor * 0.999:
                 return f"{value / factor:.3g} {prefix}{unit}"
         return f"{value:.2g} {unit}"
+
+
+def _taken(count: int, engine: str) -> str:
+    """What a frame took: substeps of area contact, whole steps of Chipmunk."""
+    return f"{count} {'substep' if engine == 'area' else 'step'}{'' if count == 1 else 's'} a frame"
 
 
 @cache
