@@ -18,6 +18,7 @@ import shapely
 import rigidarea as ra
 from harness import page as study_page
 from rigidarea.__main__ import COMMANDS
+from rigidarea.gallery import NAMES
 
 ROOT = Path(__file__).parent.parent
 DOCS = ROOT / "docs"
@@ -83,6 +84,16 @@ def typed_figures(text: str) -> list[str]:
     return [unit.strip() for unit in units if re.search(r"\d", unit) and "<!-- given: " not in unit]
 
 
+def test_the_gallery_shows_every_demo_and_its_source():
+    """Each demo's still, and a mark by which the site puts its source there: `--8<-- "file"`, spaces as here."""
+    text = (DOCS / "gallery.md").read_text()
+    marks = re.findall(r'^ *--8<-- "(.+)"$', text, re.MULTILINE)
+    assert sorted(marks) == sorted(f"rigidarea/demos/{name}.py" for name in NAMES)
+    assert sorted(re.findall(r"!\[.*\]\((\w+)\.png\)", text)) == sorted(NAMES)
+    for page in DOCS.rglob("*.md"):  # a formatter of code spreads it: 8 < --
+        assert not re.search(r"8 *< +--|-- +8 *<", page.read_text()), page
+
+
 def test_a_typed_figure_is_found():
     """In a paragraph, an item, a row; not in code, a heading, an equation's number, a mark, or where it is given."""
     text = (
@@ -116,6 +127,7 @@ def site(tmp_path_factory):
     )
     assert built.returncode == 0, built.stderr
     assert "WARNING" not in built.stderr and "built in" in built.stderr
+    assert (folder / "gallery.html").read_text().count("Headline") >= len(NAMES)  # the demos' sources
     return folder
 
 
