@@ -235,3 +235,61 @@ def test_no_kernel_counts_rows_from_the_end() -> None:
         if any(isinstance(i, ast.UnaryOp) and isinstance(i.op, ast.USub) for i in node.slice.elts)
     ]
     assert negative == []
+
+
+# --- what Python calls is an entry ---
+
+
+def decorators(function: ast.FunctionDef | ast.AsyncFunctionDef) -> set[str]:
+    return {re.split(r"\W", ast.unparse(one))[0] for one in function.decorator_list}
+
+
+def parts(trees: dict[str, ast.Module]) -> set[tuple[str, str]]:
+    """All `@kernel`s of modules: (module, name)."""
+    return {
+        (module, node.name)
+        for module, tree in trees.items()
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef) and "kernel" in decorators(node)
+    }
+
+
+def called_by_python(trees: dict[str, ast.Module], paths: dict[str, Path]) -> list[str]:
+    """Calls of `@kernel`s from what is Python when it runs: "module:line name"."""
+    kernels, found = parts(trees), []
+    for module, tree in trees.items():
+        mine = {name: (module, name) for of, name in kernels if of == module}
+        for node in ast.walk(tree):
+            if isinstance(node, ast.ImportFrom):
+                base = imported_from(node, module, paths[module])
+                mine |= {a.asname or a.name: (base, a.name) for a in node.names}
+        todo: list[ast.AST] = [tree]
+        while todo:
+            node = todo.pop()
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and decorators(node) & COMPILES:
+                continue
+            todo += ast.iter_child_nodes(node)
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+                if mine.get(node.func.id) in kernels:
+                    found.append(f"{module}:{node.lineno} {node.func.id}")
+    return sorted(found)
+
+
+COMPILES = {"kernel", "entry", "njit", "callback", "vectorized"}
+
+
+def test_a_kernel_that_python_calls_is_found() -> None:
+    """Called beside a kernel, and by its own name or another; not called by what is compiled itself."""
+    source = {
+        "a": "@kernel(forceinline=True)\ndef f(x):\n    return x\n\n@entry\ndef g(x):\n    return f(x)\n",
+        "b": "from a import f as h, g\n\ndef call():\n    return [g(1), h(2)]\n",
+    }
+    trees = {name: ast.parse(text) for name, text in source.items()}
+    assert called_by_python(trees, {name: Path(f"{name}.py") for name in source}) == ["b:4 h"]
+
+
+def test_python_calls_no_kernel() -> None:
+    """What is made to be a part of others is compiled anew in each process that calls it: `@entry` is kept on disk."""
+    trees = {name: ast.parse(path.read_text()) for name, path in MODULES.items()}
+    assert len(parts(trees)) > 500
+    assert called_by_python(trees, MODULES) == []

@@ -64,7 +64,7 @@ def swing(shape: Any, body: Any) -> float:
     return float(abs(body.w) * (abs(x) + abs(y)))
 
 
-@kernel(forceinline=True)
+@entry(forceinline=True)
 def ask_about(tables: Tables, i: int) -> None:
     """Shape i is to be asked about: whom does its box meet."""
     n = tables.counters[ASKED]

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from ..compile.jit import kernel
+from ..compile.jit import entry, kernel
 from .constants import LEAST_RESTITUTION, REST_DAMPING
 from .tables import REST, SPENT
 
@@ -35,7 +35,7 @@ def restitution_damping(e: float) -> float:
     return 0.5 * (low + high)
 
 
-@kernel
+@entry
 def damping_ratio(e: float) -> float:
     """Damping ratio of the linear spring and dashpot that returns e: 0 for e = 1, near REST_DAMPING for e = 0."""
     if e >= 1.0:
