@@ -91,7 +91,7 @@ def tiny(folder: Path, kept: Path | None = None) -> tuple[str, str]:
 def test_first_use_says_what_it_waits_for_and_damage_is_mended(tmp_path):
     out, said = tiny(tmp_path)
     assert out == "42 2.0\n"
-    assert said.startswith(f"rigidarea: compiling once, {cache.USUALLY}, kept in ")
+    assert said.startswith(f"rigidarea: compiling once (all of it: {cache.USUALLY}), kept in ")
     assert str(tmp_path) in said and said.count("compiling") == 1 and said.endswith(" s\n")
     assert tiny(tmp_path) == ("42 2.0\n", "")  # nothing compiles, nothing is said
     files = sorted((tmp_path / "cache").rglob("*.nb[ci]"))
@@ -126,7 +126,9 @@ def test_the_notice_shows_that_it_is_alive(monkeypatch):
     while not written[-1].endswith("s\n") and time.monotonic() < deadline:
         time.sleep(0.05)
     said = "".join(written)
-    assert said.startswith(f"rigidarea: compiling once, {cache.USUALLY}, kept in there ......... 10 s ")
+    assert said.startswith(
+        f"rigidarea: compiling once (all of it: {cache.USUALLY}), kept in there ......... 10 s "
+    )
     assert said.count("\n") == 1
 
 

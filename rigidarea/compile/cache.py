@@ -21,7 +21,7 @@ FORMAT = b"1"
 """What the files below look like: another number, another folder."""
 
 USUALLY = "ten minutes" if os.environ.get("RIGIDAREA_AHEAD") else "two to four minutes"
-"""What it takes: 3 minutes of one core (`bench start`); a library for a wheel compiles more."""
+"""What all of it takes: 3 minutes of one core (`bench start`); a library for a wheel compiles more."""
 
 _DIGEST = hashlib.sha256().digest_size
 
@@ -131,7 +131,7 @@ class Notice(event.Listener):
             self._since = time.monotonic()
         again = "compiling" in self._said
         self._said.add("compiling")
-        words = "compiling more" if again else f"compiling once, {USUALLY}, kept in {self.folder}"
+        words = "compiling more" if again else f"compiling once (all of it: {USUALLY}), kept in {self.folder}"
         _write(f"rigidarea: {words} ")
         threading.Thread(target=self._tick, daemon=True).start()
 
