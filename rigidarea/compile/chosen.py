@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 #: Machine code made ahead of time, which a wheel has beside this file; by numba, here; the kernels' text as Python.
@@ -39,7 +40,18 @@ def _chosen() -> str:
     raise ImportError(f"{wanted} needs {needs}")
 
 
-BACKEND = _chosen()
+def _is_the_command(program: str, words: list[str]) -> bool:
+    """Whether these, `sys.argv[0]` and `sys.orig_argv`, are of `python -m rigidarea` or `rigidarea`."""
+    return Path(program).stem == "rigidarea" or (program == "-m" and ("-m", "rigidarea") in pairwise(words))
+
+
+try:
+    BACKEND = _chosen()
+except (ImportError, ValueError) as error:
+    if not _is_the_command(sys.argv[0] if sys.argv else "", sys.orig_argv):
+        raise
+    print(f"rigidarea: {error}", file=sys.stderr)  # the package is imported before its command line
+    raise SystemExit(2) from None
 
 
 def backend() -> str:
