@@ -42,7 +42,7 @@ MODULES = {
 EXTRAS = {
     **dict.fromkeys(("pygame", "imageio", "imageio_ffmpeg"), "demos"),
     **dict.fromkeys(("scipy", "threadpoolctl"), "flexible"),
-    **dict.fromkeys(("matplotlib", "b2d", "pyb2d3", "distributed"), "studies"),
+    **dict.fromkeys(("matplotlib", "b2d", "pyb2d3", "distributed", "dask"), "studies"),
 }
 STUDIES = ("bench", "chart", "atlas", "compare")
 
@@ -109,9 +109,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         with contextlib.nullcontext() if quiet else alive(since=time.process_time()):  # since it was started
             code = arguments.run(arguments)
     except ModuleNotFoundError as error:
-        if (error.name or "").split(".")[0] == "rigidarea":
+        extra = EXTRAS.get((error.name or "").split(".")[0])
+        if extra is None:  # nothing that one of our extras would bring
             raise
-        extra = EXTRAS.get((error.name or "").split(".")[0], "demos,studies,flexible")
         top.exit(2, f"rigidarea: {error.name} is not installed: pip install 'rigidarea[{extra}]'\n")
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")

@@ -6,6 +6,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import sys
+import traceback
 from pathlib import Path
 from typing import Any
 
@@ -112,6 +113,8 @@ def of_script(name: str, arguments: argparse.Namespace) -> Plan:
     """The plan of the first space that a program steps, before that step; the program ends there.
 
     What its bodies are made of it says by `body.material = rigidarea.flexible.Material(...)`.
+    Raises ValueError for what is no Python file, or steps no space; SystemExit of 1 for what ends in an error before
+    its first step, told as Python does.
     """
     from ..programs.host import Host
 
@@ -129,6 +132,9 @@ def of_script(name: str, arguments: argparse.Namespace) -> Plan:
         Host("pymunk", None).run(name)
     except _Found:
         pass
+    except Exception:  # the program's own: told as Python would tell it
+        traceback.print_exc()
+        raise SystemExit(1) from None
     finally:
         pymunk.Space.step = step  # type: ignore[method-assign]
     if not spaces:
