@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import hashlib
+import importlib
 import json
 import math
 import os
@@ -113,6 +114,28 @@ def write_json(value: Any, file: str | Path | None) -> None:
     part = path.with_name(path.name + ".part")
     part.write_text(text)
     part.replace(path)
+
+
+def check_writable(file: str | Path) -> None:
+    """OSError for a file that cannot be written: before the work for it, not after. Makes its folder, leaves no file.
+
+    A device or a pipe is left to who writes to it.
+    """
+    path = Path(file)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if path.exists() and not path.is_file() and not path.is_dir():
+        return
+    new = not path.exists()
+    with path.open("ab"):
+        pass
+    if new:
+        path.unlink()
+
+
+def needed(*modules: str) -> None:
+    """ModuleNotFoundError for one of these that is not installed: before the work that ends in it, not after."""
+    for name in modules:
+        importlib.import_module(name)
 
 
 def output_arguments(parser: argparse.ArgumentParser, out: Path) -> None:

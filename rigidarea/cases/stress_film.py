@@ -205,7 +205,7 @@ def film(scene: Scene, out: Path) -> Path:
 
     from rigidarea.draw.film import Film
 
-    with Film(out / f"{scene.name}_stress.mp4") as into:
+    with Film(out / f"{scene.name}_stress") as into:
         for picture in frames(scene):
             even = picture[: picture.shape[0] // 8 * 8, : picture.shape[1] // 8 * 8]
             into.add(pygame.surfarray.make_surface(even.swapaxes(0, 1)))

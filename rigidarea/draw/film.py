@@ -9,6 +9,8 @@ from typing import Any
 
 import pygame
 
+from ..report import check_writable
+
 FPS = 30
 """Pictures a second."""
 
@@ -21,17 +23,24 @@ def save_png(surface: pygame.Surface, path: Path) -> Path:
 
 
 class Film:
-    """Collects pictures into `path` (its suffix is chosen: .mp4, or .gif without imageio-ffmpeg).
+    """Collects pictures into `path`: .mp4, or .gif; without a suffix .mp4, or .gif where no encoder is installed.
 
-    With neither imageio nor imageio-ffmpeg installed ModuleNotFoundError says what to install.
+    Raises, before there is a picture, ValueError for another suffix, OSError where the file cannot be written, and
+    ModuleNotFoundError without imageio, or for .mp4 without imageio-ffmpeg.
     """
 
     def __init__(self, path: Path) -> None:
+        suffix = path.suffix.lower()
+        if suffix not in ("", ".mp4", ".gif"):
+            raise ValueError(f"a film must end in .mp4 or .gif, or have no suffix, got {str(path)!r}")
         import imageio.v2 as imageio
 
-        path.parent.mkdir(parents=True, exist_ok=True)
-        self.mp4 = importlib.util.find_spec("imageio_ffmpeg") is not None
-        self.path = path.with_suffix(".mp4" if self.mp4 else ".gif")
+        encodes = importlib.util.find_spec("imageio_ffmpeg") is not None
+        if suffix == ".mp4" and not encodes:
+            raise ModuleNotFoundError("a film as .mp4 needs imageio-ffmpeg", name="imageio_ffmpeg")
+        self.mp4 = suffix == ".mp4" or (encodes and not suffix)
+        self.path = path if suffix else path.with_suffix(".mp4" if self.mp4 else ".gif")
+        check_writable(self.path)
         self._count = 0
         self._writer: Any
         if self.mp4:

@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--film",
         type=Path,
         metavar="FILE",
-        help="write what it shows, or what moves, as a film (.mp4, or .gif)",
+        help="write what it shows, or what moves, as a film: .mp4 or .gif (no suffix: what can be made here)",
     )
     add("--window", action="store_true", help="let the program open its own window, in real time")
     output_arguments(parser, Path("out") / "run")
