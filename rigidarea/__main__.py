@@ -99,6 +99,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
     argv None: that of this process, which ends with it and shows that it is alive.
     """
+    started = time.time() - 0.02  # files have the time of a coarser clock
     given = list(sys.argv[1:] if argv is None else argv)
     top = parser(next((word for word in given if not word.startswith("-")), None))
     arguments = top.parse_args(given)
@@ -116,7 +117,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (ValueError, OSError) as error:
         top.exit(2, f"rigidarea {arguments.command}: {error}\n")
     except KeyboardInterrupt:
-        kept = f"; what was finished is in {arguments.out}" if hasattr(arguments, "out") else ""
+        out = getattr(arguments, "out", None)
+        kept = f"; what was finished is in {out}" if out is not None and written(out, started) else ""
         print(f"rigidarea {arguments.command}: stopped{kept}", file=sys.stderr)
         return 130
     finally:
@@ -127,6 +129,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 def leave_nothing_to_llvm() -> None:
     """Once Python has ended as ever, the process does too: glibc's `on_exit` with `_exit`, which takes its status.
+def written(folder: Path, since: float) -> bool:
+    """Whether a file in it, or in its folders, was written since (s, as `time.time`)."""
+    return any(path.is_file() and path.stat().st_mtime >= since for path in folder.rglob("*"))
+
+
 
     Else LLVM, which comes last, takes apart what it has compiled: 2 to 3 s after the last word, for memory that the
     system has back at once anyway. Without glibc nothing is changed.

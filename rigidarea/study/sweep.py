@@ -96,9 +96,13 @@ def run_tasks(
             try:
                 for future in as_completed(futures) if not scheduler else _dask_completed(futures):
                     keep(futures[future], future.result())
-            except BaseException:  # an interrupt, or one that failed: what others have finished is kept
+            except BaseException as error:
+                # an interrupt, or one that failed: what others have finished is kept. At an interrupt our own workers
+                # are ended, which tells all futures so: one that is cancelled cannot be told
+                stopped = isinstance(error, KeyboardInterrupt) and not scheduler
                 for future, task in futures.items():
-                    if not future.cancel() and future.done() and future.exception() is None:
+                    off = not stopped and future.cancel()
+                    if not off and future.done() and future.exception() is None:
                         if key(task) not in known:
                             keep(task, future.result())
                 raise
