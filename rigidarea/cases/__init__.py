@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from ..report import write_json
+from ..report import needed, write_json
 
 NAMES = ("hertz", "pin-joint", "patch", "geneva", "gearbox")
 MODES = ("rigid", "compliant", "modal")
@@ -44,7 +44,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
 
     The object is also kept in ``args.out``/NAME.json while it grows: an interrupted run leaves there, and in
     ``args.json`` if that was asked for, what was computed until then. Raises ValueError for options the case has
-    no use for, and for mesh sizes it cannot mesh.
+    no use for, and for mesh sizes it cannot mesh; ModuleNotFoundError, before the work, without what draws.
     """
     out = getattr(args, "out", None)
     wanted = getattr(args, "film", False)
@@ -57,6 +57,7 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         return _run(args, None)
     file = Path(out) / f"{args.name}.json"
     file.unlink(missing_ok=True)
+    needed("matplotlib", *(("pygame", "imageio") if wanted else ()))
     try:
         told = _run(args, Path(out))
     except KeyboardInterrupt:

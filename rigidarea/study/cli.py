@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from ..checkout import harness, pages
-from ..report import lines, output_arguments, write_json
+from ..report import at_least_one, at_least_zero, lines, needed, output_arguments, write_json
 
 BENCHES = {
     "everyday": "game scenes at the defaults, beside pymunk at 1 and 4 steps a frame and Box2D",
@@ -26,6 +26,8 @@ BENCHES = {
     "step": "one area step beside one native step; where a frame's time goes",
     "worlds": "many copies of a space at once, beside pymunk's own loop over as many",
 }
+DRAWN = ("everyday", "frames", "growth", "kernels", "step")
+"""Those that end in a picture."""
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
 
@@ -158,6 +160,7 @@ def _atlas(arguments: argparse.Namespace) -> int:
         _keep(arguments.docs, "atlas", {**report, "results": atlas.passed(report["results"])}, shown)
     return _tell(arguments, report, atlas.passed(report["results"]))
 
+    needed("matplotlib")
 
 def _bench(arguments: argparse.Namespace) -> int:
     from . import (
@@ -169,6 +172,7 @@ def _bench(arguments: argparse.Namespace) -> int:
         island_bench,
         jointed,
         many_worlds,
+    needed("matplotlib")
         start_time,
     )
 
@@ -193,6 +197,8 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = everyday.sleep(peer_names=arguments.peer)
     elif arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
+    if arguments.what in DRAWN:
+        needed("matplotlib")
         report = bench.frames(arguments.scene, sizes, arguments.peer)
         draw_bench.frame_times(report, arguments.out)
     elif arguments.what == "kernels":
@@ -255,3 +261,4 @@ def _chart(arguments: argparse.Namespace) -> int:
     if arguments.json != "-":
         print("\n".join(lines(report["summary_defaults"])))
     return 0
+    needed("matplotlib")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from rigidarea.report import lines, write_json
+from rigidarea.report import lines, needed, write_json
 from rigidarea.study.records import write_csv
 
 from . import page, plan_picture, validate
@@ -18,6 +18,7 @@ TOLD = (
 
 def run(arguments: argparse.Namespace) -> int:
     """Run `rigidarea plan --validate`: files, and a table of how often plans are right."""
+    needed("matplotlib")
     report = validate.validate(arguments.out, arguments.what, arguments.variations, fresh=arguments.fresh)
     write_json(report, arguments.out / "plan-validate.json")
     write_csv(arguments.out / "plan-validate.csv", report["rows"])
