@@ -18,7 +18,7 @@ from pathlib import Path
 from . import __version__
 from .alive import alive
 from .checkout import harness
-from .report import lines, output_arguments, write_json
+from .report import check_writable, lines, output_arguments, write_json
 
 COMMANDS = {
     "demo": "render the game scenes: stills, films, a table of frame times",
@@ -108,6 +108,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     quiet = not own or arguments.command == "run" or getattr(arguments, "window", False)
     try:
         with contextlib.nullcontext() if quiet else alive(since=time.process_time()):  # since it was started
+            if getattr(arguments, "json", None) not in (None, "-"):
+                check_writable(arguments.json)
             code = arguments.run(arguments)
     except ModuleNotFoundError as error:
         extra = EXTRAS.get((error.name or "").split(".")[0])
@@ -127,13 +129,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     return int(code or 0)
 
 
-def leave_nothing_to_llvm() -> None:
-    """Once Python has ended as ever, the process does too: glibc's `on_exit` with `_exit`, which takes its status.
 def written(folder: Path, since: float) -> bool:
     """Whether a file in it, or in its folders, was written since (s, as `time.time`)."""
     return any(path.is_file() and path.stat().st_mtime >= since for path in folder.rglob("*"))
 
 
+def leave_nothing_to_llvm() -> None:
+    """Once Python has ended as ever, the process does too: glibc's `on_exit` with `_exit`, which takes its status.
 
     Else LLVM, which comes last, takes apart what it has compiled: 2 to 3 s after the last word, for memory that the
     system has back at once anyway. Without glibc nothing is changed.

@@ -174,9 +174,18 @@ class Progress:
 
 def at_least_one(text: str) -> int:
     """An argument that counts something; argparse.ArgumentTypeError for what is no whole number of at least 1."""
-    value = int(text) if text.isdecimal() else 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, got {text!r}")
+    return _at_least(1, text)
+
+
+def at_least_zero(text: str) -> int:
+    """As `at_least_one`, where there may be none."""
+    return _at_least(0, text)
+
+
+def _at_least(least: int, text: str) -> int:
+    value = int(text) if text.isdecimal() else -1
+    if value < least:
+        raise argparse.ArgumentTypeError(f"expected a whole number of at least {least}, got {text!r}")
     return value
 
 

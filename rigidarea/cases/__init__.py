@@ -20,7 +20,9 @@ MODES = ("rigid", "compliant", "modal")
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """The arguments of ``case``; ``--out`` and ``--json`` belong to every command and are added by the caller."""
-    parser.add_argument("name", choices=NAMES, help="which of the paper's examples")
+    parser.add_argument(
+        "name", choices=NAMES, metavar="NAME", help=f"which of the paper's examples: {', '.join(NAMES)}"
+    )
     parser.add_argument(
         "--mode", choices=MODES, help="level of model (default: rigid for pin-joint, else compliant)"
     )
@@ -55,9 +57,9 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
         )
     if out is None:
         return _run(args, None)
+    needed("matplotlib", *(("pygame", "imageio") if wanted else ()))
     file = Path(out) / f"{args.name}.json"
     file.unlink(missing_ok=True)
-    needed("matplotlib", *(("pygame", "imageio") if wanted else ()))
     try:
         told = _run(args, Path(out))
     except KeyboardInterrupt:

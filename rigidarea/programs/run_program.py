@@ -25,7 +25,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.usage = "rigidarea run [options] SCRIPT.py [ARGS ...]"
     add = parser.add_argument
     add("script", metavar="SCRIPT.py", help="the program; what follows it is passed on to it")
-    add("arguments", nargs=argparse.REMAINDER, metavar="ARGS", help="its arguments")
+    own = add("arguments", nargs=argparse.REMAINDER, metavar="ARGS", help="its arguments")
+    own.required = False  # else argparse says so where SCRIPT.py is missing
     add(
         "--engine",
         choices=ENGINES,

@@ -36,7 +36,7 @@ def _sweep(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--quick", action="store_true", help="few settings, at most two minutes")
     add("--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)")
-    add("--workers", type=int, metavar="N", help="local processes; 0: none (default: one a core)")
+    add("--workers", type=at_least_zero, metavar="N", help="local processes; 0: none (default: one a core)")
     add("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     add("--fresh", action="store_true", help="forget what an earlier run left in DIR")
     _docs(parser)
@@ -54,6 +54,10 @@ def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
+def _sentence(text: str) -> str:
+    return f"{text[0].upper()}{text[1:]}."
+
+
 def _docs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--docs",
@@ -67,19 +71,19 @@ def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
     text = "speed and memory, beside shapely, pymunk's solver and Box2D"
     described = "; ".join(f"{name}: {what}" for name, what in BENCHES.items())
-    bench = subparsers.add_parser(
-        "bench", help=text, description=f"{text[0].upper()}{text[1:]}. {described}."
-    )
-    bench.add_argument("what", choices=tuple(BENCHES))
+    bench = subparsers.add_parser("bench", help=text, description=f"{_sentence(text)} {described}.")
+    bench.add_argument("what", choices=tuple(BENCHES), metavar="WHAT", help=f"one of {', '.join(BENCHES)}")
     bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
     output_arguments(bench, Path("out") / "bench")
     bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
-    bench.add_argument("--bodies", type=int, action="append", metavar="N", help="this many (repeatable)")
+    bench.add_argument(
+        "--bodies", type=at_least_one, action="append", metavar="N", help="this many (repeatable)"
+    )
     bench.add_argument(
         "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
     )
     bench.add_argument(
-        "--seeds", type=int, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
+        "--seeds", type=at_least_one, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
     )
     bench.add_argument(
         "--seconds", type=float, metavar="S", help="everyday: simulated time (default 7; towers 2)"
@@ -93,19 +97,36 @@ def add_commands(subparsers: Any) -> None:
     )
     _docs(bench)
     bench.set_defaults(run=_bench)
-    chart = subparsers.add_parser("chart", help="accuracy against speed, beside pymunk's solver and Box2D")
+    text = "accuracy against speed, beside pymunk's solver and Box2D"
+    chart = subparsers.add_parser(
+        "chart",
+        help=text,
+        description=f"{_sentence(text)} Each engine at many settings on each scene: its error, and what it costs.",
+    )
     output_arguments(chart, Path("out") / "chart")
     _sweep(chart)
     chart.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this (repeatable)")
-    chart.add_argument("--repeats", type=int, metavar="N", help="rounds of timing (default 5, quick 2)")
+    chart.add_argument(
+        "--repeats", type=at_least_one, metavar="N", help="rounds of timing (default 5, quick 2)"
+    )
     chart.set_defaults(run=_chart)
 
-    atlas = subparsers.add_parser("atlas", help="where methods fail: maps over two knobs")
+    text = "where methods fail: maps over two knobs"
+    atlas = subparsers.add_parser(
+        "atlas",
+        help=text,
+        description=f"{_sentence(text)} Every point of a map is a scene run to its end: held, or how it failed.",
+    )
     output_arguments(atlas, Path("out") / "atlas")
     _sweep(atlas)
     atlas.add_argument("--map", action="append", default=[], metavar="NAME", help="only this (repeatable)")
     atlas.set_defaults(run=_atlas)
-    compare = subparsers.add_parser("compare", help="rigid, compliant and modal on the same scenes")
+    text = "rigid, compliant and modal on the same scenes"
+    compare = subparsers.add_parser(
+        "compare",
+        help=text,
+        description=f"{_sentence(text)} What each level of model finds, and what it costs.",
+    )
     compare.add_argument("scene", nargs="*", metavar="SCENE", help="scenes (default: all)")
     output_arguments(compare, Path("out") / "compare")
     _docs(compare)
@@ -139,6 +160,7 @@ def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict
 def _compare(arguments: argparse.Namespace) -> int:
     from . import compare, draw_compare
 
+    needed("matplotlib")
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
     _write(arguments, "compare", report)
     picture, *_ = draw_compare.levels(report, traces, arguments.out)
@@ -150,6 +172,7 @@ def _compare(arguments: argparse.Namespace) -> int:
 def _atlas(arguments: argparse.Namespace) -> int:
     from . import atlas, draw_atlas
 
+    needed("matplotlib")
     report = atlas.atlas(map_names=arguments.map, **_swept(arguments))
     _write(arguments, "atlas", report)
     draw_atlas.atlas_maps(report, arguments.out)
@@ -160,7 +183,6 @@ def _atlas(arguments: argparse.Namespace) -> int:
         _keep(arguments.docs, "atlas", {**report, "results": atlas.passed(report["results"])}, shown)
     return _tell(arguments, report, atlas.passed(report["results"]))
 
-    needed("matplotlib")
 
 def _bench(arguments: argparse.Namespace) -> int:
     from . import (
@@ -172,10 +194,11 @@ def _bench(arguments: argparse.Namespace) -> int:
         island_bench,
         jointed,
         many_worlds,
-    needed("matplotlib")
         start_time,
     )
 
+    if arguments.what in DRAWN:
+        needed("matplotlib")
     if arguments.what == "everyday":
         report = everyday.everyday(
             arguments.scene,
@@ -197,8 +220,6 @@ def _bench(arguments: argparse.Namespace) -> int:
         report = everyday.sleep(peer_names=arguments.peer)
     elif arguments.what == "frames":
         sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
-    if arguments.what in DRAWN:
-        needed("matplotlib")
         report = bench.frames(arguments.scene, sizes, arguments.peer)
         draw_bench.frame_times(report, arguments.out)
     elif arguments.what == "kernels":
@@ -244,6 +265,7 @@ def _setting(text: str) -> tuple[str, Any]:
 def _chart(arguments: argparse.Namespace) -> int:
     from . import chart, draw
 
+    needed("matplotlib")
     report = chart.chart(scene_names=arguments.scene, repeats=arguments.repeats, **_swept(arguments))
     _write(arguments, "chart", report)
     draw.chart_pages(report, arguments.out)
@@ -261,4 +283,3 @@ def _chart(arguments: argparse.Namespace) -> int:
     if arguments.json != "-":
         print("\n".join(lines(report["summary_defaults"])))
     return 0
-    needed("matplotlib")
