@@ -69,13 +69,24 @@ def _crossings(a: Points, b: Points, edges: _Edges) -> tuple[Points, Points]:
     return fractions, normals
 
 
+def _check(space: object, shape_filter: object) -> None:
+    for name, given, kind in (
+        ("space", space, pymunk.Space),
+        ("shape_filter", shape_filter, pymunk.ShapeFilter),
+    ):
+        if not isinstance(given, kind):
+            raise ValueError(f"{name} must be a pymunk.{kind.__name__}, got {given!r:.80}")
+
+
 def point_query(
     space: pymunk.Space, point: tuple[float, float], shape_filter: pymunk.ShapeFilter = ANY
 ) -> list[pymunk.Shape]:
     """The shapes that cover a point (length): `space.point_query(point, 0, shape_filter)`, outlines as they are.
 
-    A hole, a slot and the gap between two teeth are none of a shape. Raises ValueError for no two finite numbers.
+    A hole, a slot and the gap between two teeth are none of a shape. Raises ValueError for no two finite numbers, no
+    space, or no filter.
     """
+    _check(space, shape_filter)
     at = numbers(point, "point", 2)
     hits: list[PointQueryInfo] = space.point_query((float(at[0]), float(at[1])), 0, shape_filter)
     return [hit.shape for hit in hits if hit.shape is not None and _covers(hit.shape, point)]
@@ -98,8 +109,9 @@ def segment_query(
 
     One for each shape, where the ray first enters it, the nearest first: point, normal out of the solid, alpha (the
     fraction of the way). A ray that starts inside an outline hits it at once, with the way back as its normal.
-    Raises ValueError for places that are no two finite numbers.
+    Raises ValueError for places that are no two finite numbers, no space, or no filter.
     """
+    _check(space, shape_filter)
     a, b = (np.array(numbers(place, name, 2), float) for place, name in ((start, "start"), (end, "end")))
     found = []
     for hit in space.segment_query(tuple(a.tolist()), tuple(b.tolist()), 0, shape_filter):

@@ -17,7 +17,7 @@ from ..compile.jit import lock_for_fork
 from ..contact.constants import FOLLOWED, MOST_SUBSTEPS, SUBSTEPS
 from ..contact.join import SPARE
 from ..contact.tables import CHORD, LAW_AREA, LAW_ENERGY, NODAL
-from ..geometry.gate import positive, whole
+from ..geometry.gate import fraction, positive, whole
 from .arrays import Store, load_growth
 from .asked import keep, raise_kept, serve
 from .contact_report import regions_of, total_energy
@@ -42,9 +42,16 @@ if hasattr(os, "register_at_fork"):  # a child in which a thread that it has not
 class AreaContact:
     """Area contact of one space: what `attach` returns."""
 
+    # what is not here cannot be set: `contact.steps = 8` would do nothing
+    __slots__ = (
+        *("__weakref__", "_ask", "_before", "_error", "_hook", "_kinds", "_memory", "_plain", "_register"),
+        *("_rouse", "_scratch", "_settings", "_snapshot_room", "_space", "_state", "_stepping", "_store"),
+    )
     _compiled = False  # what measures energy, in this process
 
     def __init__(self, space: pymunk.Space, settings: dict[str, Any]) -> None:
+        if "law" not in settings:
+            raise ValueError(f"expected the settings of rigidarea.attach (which makes this), got {settings}")
         self._settings = settings
         self._memory: Memory | None = None
         self._space: pymunk.Space | None = None
@@ -181,13 +188,13 @@ class AreaContact:
         """How deep bodies may sink, as a fraction of the smallest extent, where no stiffness is given.
 
         Set between frames: pairs that touch for the first time take it at once, the others' stiffness follows by a few
-        per cent a frame, so that the energy which they store does not jump. ValueError unless positive and finite.
+        per cent a frame, so that the energy which they store does not jump. ValueError unless between 0 and 1.
         """
         return float(self._state["penetration"])
 
     @penetration.setter
     def penetration(self, value: float) -> None:
-        self._settings["penetration"] = self._state["penetration"] = positive(value, "penetration")
+        self._settings["penetration"] = self._state["penetration"] = fraction(value, "penetration")
 
     # --- stepping ---
 
@@ -196,7 +203,7 @@ class AreaContact:
     ) -> int:
         """Advance the space by `frames` frames of dt (time) each: what `space.step(dt)` does, and settings for it.
 
-        steps: substeps of each frame. More are more accurate; any number is stable. Default: two, one while hardly
+        steps: substeps of each frame, to 1,024. More are more accurate, all are stable. Default: two, one while hardly
             anything moves, more for islands where teeth or slots of a concave outline would pass each other unseen.
             `ask` has islands take more.
         tolerance: as many substeps as each frame needs for no body's place to change by more than this fraction of
@@ -217,7 +224,7 @@ class AreaContact:
         if tolerance is not None:
             positive(tolerance, "tolerance")
         if steps is not None:
-            whole(steps, "steps", 1, 2**31 - 1)
+            whole(steps, "steps", 1, MOST_SUBSTEPS)
         self._state["substeps"], self._state["steps_given"] = steps or SUBSTEPS, steps is not None
         self._state["tolerance"] = tolerance or 0.0
         try:
@@ -386,6 +393,6 @@ class AreaContact:
         return {"_settings": dict(self._settings), "_memory": memory}
 
     def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
+        self._settings, self._memory = state["_settings"], state["_memory"]
         self._space = None
         self._error = None

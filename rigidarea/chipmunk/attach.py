@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Literal, TypedDict
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..geometry.gate import not_negative, one_of, positive
+from ..geometry.gate import fraction, not_negative, one_of, positive
 from .area_contact import DIRECTIONS, LAWS, AreaContact
 from .space import KEY
 
@@ -69,9 +69,11 @@ def attach(
     """
     if not isinstance(space, pymunk.Space):
         raise ValueError(f"space must be a pymunk.Space, got {type(space).__name__}")
+    if space._locked:
+        raise RuntimeError("attach() within a step: call it after the step")
     settings = {
         "stiffness": None if stiffness is None else positive(stiffness, "stiffness"),
-        "penetration": positive(penetration, "penetration"),
+        "penetration": fraction(penetration, "penetration"),
         "law": one_of(law, "law", LAWS),
         "length": None if length is None else positive(length, "length"),
         "direction": one_of(direction, "direction", DIRECTIONS),
@@ -86,8 +88,6 @@ def attach(
         raise ValueError("this space is attached already; use attached(space), or detach() it first")
     if lib.cpSpaceGetUserData(space._space) != ffi.NULL:
         raise ValueError("expected a space whose user data is free; something else has taken it")
-    if space._locked:
-        raise RuntimeError("attach() within a step: call it after the step")
     return AreaContact(space, settings)
 
 

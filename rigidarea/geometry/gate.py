@@ -20,21 +20,21 @@ LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 def positive(value: float, name: str) -> float:
     """The value as a float; ValueError with its name unless it is positive and finite."""
-    if not (isinstance(value, int | float | np.number) and _real(value) and value > 0):
+    if not (_real(value) and value > 0):
         raise ValueError(f"{name} must be positive and finite, got {value!r:.80}")
     return float(value)
 
 
 def finite(value: float, name: str) -> float:
     """The value as a float; ValueError with its name unless it is a finite number."""
-    if not (isinstance(value, int | float | np.number) and _real(value)):
+    if not _real(value):
         raise ValueError(f"{name} must be a finite number, got {value!r:.80}")
     return float(value)
 
 
 def not_negative(value: float, name: str) -> float:
     """The value as a float; ValueError with its name unless it is finite and not negative."""
-    if not (isinstance(value, int | float | np.number) and _real(value) and value >= 0):
+    if not (_real(value) and value >= 0):
         raise ValueError(f"{name} must be finite and not negative, got {value!r:.80}")
     return float(value)
 
@@ -46,8 +46,17 @@ def size(value: float, name: str) -> float:
     return float(value)
 
 
+def fraction(value: float, name: str) -> float:
+    """The value as a float; ValueError with its name unless it is more than 0 and less than 1."""
+    if not (_real(value) and 0 < value < 1):
+        raise ValueError(f"{name} must be a fraction, more than 0 and less than 1, got {value!r:.80}")
+    return float(value)
+
+
 def _real(value: Any) -> bool:
-    """Whether a number is finite as a double: whole numbers can be too large for one."""
+    """Whether it is a real number, no truth value, and finite as a double: whole numbers can be too large for one."""
+    if not isinstance(value, int | float | np.integer | np.floating) or isinstance(value, bool):
+        return False
     try:
         return math.isfinite(float(value))
     except OverflowError:
@@ -141,7 +150,7 @@ def checked_ring(points: ArrayLike, name: str) -> Points:
     than three distinct points, and no area.
     """
     try:
-        ring = np.array(points, dtype=np.float64)
+        ring = _floats(points)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} must be numbers of shape (n, 2), got {points!r:.80}") from error
     if ring.ndim != 2 or ring.shape[1] != 2:
@@ -173,10 +182,17 @@ def checked_ring(points: ArrayLike, name: str) -> Points:
     return ring
 
 
+def _floats(values: ArrayLike) -> Points:
+    """A copy as float64; TypeError for complex numbers, of which numpy would take the real part."""
+    if np.iscomplexobj(values):
+        raise TypeError("complex numbers")
+    return np.array(values, dtype=np.float64)
+
+
 def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
     """(points (n, 2), arcs (n, 3)) of a ring of x, y, bulge; ValueError naming what is wrong with it."""
     try:
-        rows = np.array(ring, dtype=np.float64)
+        rows = _floats(ring)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
     if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:

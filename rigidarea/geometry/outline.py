@@ -59,6 +59,8 @@ class Outline(Solid):
     hole outside its ring, holes that overlap.
     """
 
+    _resample: Callable[..., Outline] | None
+
     def __init__(self, points: ArrayLike, holes: Iterable[ArrayLike] = ()) -> None:
         rings = [checked_ring(points, "points")]
         rings += [checked_ring(hole, f"holes[{i}]") for i, hole in enumerate(listed(holes, "holes"))]
@@ -124,10 +126,11 @@ class Outline(Solid):
         arcs: Sequence[Points] = (),
     ) -> None:
         found = measured(rings, arcs)
-        self.rings, self.arcs = found.rings, found.arcs
-        self.area, self.centroid, self.bounds = found.area, found.centroid, found.bounds
-        self.mirror = None
-        self._resample = resample
+        self.__dict__.update(
+            **{name: getattr(found, name) for name in ("rings", "arcs", "area", "centroid", "bounds")},
+            mirror=None,
+            _resample=resample,
+        )
 
     # --- made from other things ---
 
@@ -231,6 +234,14 @@ class Outline(Solid):
 
     # --- immutable: copies share it ---
 
+    def __setattr__(self, name: str, value: Any) -> None:
+        raise AttributeError(
+            f"an Outline is immutable: make another one; {name} cannot be set to {value!r:.80}"
+        )
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"an Outline is immutable: make another one; {name} cannot be deleted")
+
     def __copy__(self) -> Outline:
         return self
 
@@ -304,7 +315,7 @@ def _half_space(
 
 
 def _face_each_other(one: Outline, other: Outline) -> None:
-    one.mirror, other.mirror = other, one
+    one.__dict__["mirror"], other.__dict__["mirror"] = other, one
 
 
 def _resample_moved(

@@ -14,7 +14,8 @@ import numpy as np
 import pymunk
 
 from ..chipmunk import AreaContact, SimulationError, attach, attached
-from ..geometry.gate import one_of, positive, truth, whole
+from ..contact.constants import MOST_SUBSTEPS
+from ..geometry.gate import fraction, one_of, positive, truth, whole
 from ..geometry.outline import Outline
 from . import elastic
 from .choose import Found, Search, budget_of
@@ -156,7 +157,7 @@ class Plan:
         Raises ValueError for what is none of these, before anything has changed.
         """
         for name, value in settings.items():
-            _check(target, name, value, self.materials)
+            _check(self.space, target, name, value, self.materials)
         kept: dict[str, Any] = {**self.overrides.get(target, {}), **settings}
         self.overrides[target] = {name: value for name, value in kept.items() if value is not None}
         return self.again()
@@ -282,7 +283,9 @@ def relative(tolerance: float | str) -> float:
     return positive(number, "tolerance") / (100.0 if text.endswith("%") else 1.0)
 
 
-def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]) -> None:
+def _check(
+    space: pymunk.Space, target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, Any]
+) -> None:
     if target is None:
         allowed: tuple[str, ...] = SETTINGS[:-1]
     elif isinstance(target, pymunk.Shape):
@@ -291,14 +294,22 @@ def _check(target: Any, name: str, value: Any, materials: Mapping[pymunk.Body, A
         allowed = ("steps", "level") if target in materials else ("steps",)
     else:
         raise ValueError(f"expected None, a shape, or a body to override, got {target!r}")
+    if (
+        target is not None and target.space is not space and value is not None
+    ):  # one that left: words taken back
+        raise ValueError(f"expected a shape or a body of the plan's space to override, got {target!r:.80}")
     if name not in allowed:
         raise ValueError(f"expected one of {', '.join(allowed)} to override here, got {name!r}")
     if value is None:
         return
     if name == "level":
         one_of(value, name, LEVELS if target is None else ("rigid", *ELASTIC))
-    elif name in ("steps", "sweeps"):
+    elif name == "steps":
+        whole(value, name, 1, MOST_SUBSTEPS)
+    elif name == "sweeps":
         whole(value, name, 1)
+    elif name == "penetration":
+        fraction(value, name)
     else:
         positive(value, name)
 
