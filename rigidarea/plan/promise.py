@@ -83,7 +83,10 @@ def name_of(space: pymunk.Space, who: Any) -> str:
         return "a body that is gone"
     shapes = list(who.shapes)
     kind = _kind(max(shapes, key=lambda shape: shape.area)) if shapes else "body"
-    return f"{kind} at ({who.position.x:.4g}, {who.position.y:.4g})"
+    box = max((shape.cache_bb() for shape in shapes), key=lambda b: b.right - b.left, default=pymunk.BB())
+    small = 1e-9 * max(box.right - box.left, box.top - box.bottom)  # what rounding leaves of 0
+    x, y = (0.0 if abs(at) < small else at for at in who.position)
+    return f"{kind} at ({x:.4g}, {y:.4g})"
 
 
 def _kind(shape: pymunk.Shape) -> str:

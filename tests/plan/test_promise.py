@@ -72,6 +72,13 @@ def test_names():
     assert name_of(space, pymunk.Poly(other, [(0, 0), (2, 0), (1, 3)])).startswith("polygon of")
 
 
+def test_a_place_that_rounding_left_of_zero_is_told_as_zero():
+    """As small as that beside the body itself; what is small with it is told."""
+    (crate, shape), (grain, round_) = box(1.0, 1.0, 1.0, (-7.239e-26, 0.5)), disc(1e-12, 1.0, (3e-12, 0.0))
+    space = space_with((crate, shape), (grain, round_))
+    assert name_of(space, crate) == "box at (0, 0.5)" and name_of(space, grain) == "disc at (3e-12, 0)"
+
+
 def test_a_pile_and_what_rests_are_promised():
     pile = [box(1.0, 1.0, 1.0, (0.0, 0.5 + i)) for i in range(5)]
     assert ra.plan(space_with(*pile, gravity=9.81), 0.01).unpromised == []
