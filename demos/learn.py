@@ -80,9 +80,12 @@ def draw(curves: dict[str, list], out: str, name: str) -> None:
     axes = figure.subplots()
     for (label, curve), colour, dash in zip(curves.items(), CURVES, ("-", "--", "-.", ":", (0, (5, 1)))):
         seconds, _, success = np.array(curve).T
-        axes.plot(seconds, 100 * success, color=colour, linestyle=dash, label=label)
+        axes.plot(seconds, 100 * success, color=colour, linestyle=dash, marker="o", ms=3, label=label)
     axes.set(
-        xlabel="learning time (s)", ylabel=f"of {TESTS} new episodes succeed (%)", ylim=(-3, 103), title=name
+        xlabel="learning time (s)",
+        ylabel=f"successes in {TESTS} new episodes (%)",
+        ylim=(-3, 103),
+        title=name,
     )
     axes.legend(frameon=False, loc="lower right")
     figure.savefig(out, dpi=120)

@@ -221,6 +221,7 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
     handles = [
         plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), label=f"against {p}") for p in peers
     ]
+    handles.append(_beyond(plt))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
     return save(figure, out, "chart-summary")
 
@@ -275,8 +276,14 @@ def chart_defaults(report: Row, out: Path) -> list[Path]:
         plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), mfc="white", label=f"{p}: error")
         for p in peers
     ]
+    handles.append(_beyond(plt))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
     return save(figure, out, "chart-defaults")
+
+
+def _beyond(plt: Any) -> Any:
+    """The legend's line for what is not within RANGE."""
+    return plt.Line2D([], [], ls="", color="#666666", marker=5, label="beyond the edge")
 
 
 def _mean_log(summary: Sequence[Row], scene: str, key: str = "cost_ratio_at_matched_error") -> float:

@@ -80,7 +80,7 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     ax.xaxis.set_minor_formatter("{x:.1g}")
     ax.axvline(1, color="#666666", lw=1)
     note = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "center"}
-    ax.annotate("* shown, not judged", (0, 0), (-8, -30), fontsize=8, **note)
+    ax.annotate("* shown, not counted in the summary", (0, 0), (-8, -30), fontsize=8, **note)
     figure.legend(*ax.get_legend_handles_labels(), loc="outside upper center", ncols=4)
     return save(figure, out, "bench-everyday")
 
@@ -124,6 +124,9 @@ def growth(report: Row, out: Path) -> list[Path]:
         ax.set_visible(False)
     for ax in axes[:, 0]:
         ax.set_ylabel("µs a frame, bar: worst tenth")
+    figure.supxlabel(
+        "how many: pieces of level or terrain (radius 0: lines without thickness), bodies", fontsize=9
+    )
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return save(figure, out, "bench-growth")
 

@@ -37,7 +37,12 @@ def costs_and_errors(rows: Sequence[Row], target: Path) -> Path:
         left.axhline(tolerance, color=colour, lw=0.8, ls=":")
     ends = (FLOOR, 10.0)
     left.plot(ends, ends, color="#999999", lw=0.8)
-    left.set(xscale="log", yscale="log", xlabel="predicted error", ylabel="measured error of the planned run")
+    left.set(
+        xscale="log",
+        yscale="log",
+        xlabel=f"predicted error (below {FLOOR:g}: drawn there)",
+        ylabel="measured error of the planned run",
+    )
     left.legend(fontsize=8, loc="lower right")
     right.axvline(1.5, color="#999999", lw=0.8, ls=":")
     right.axvline(5.0, color="#999999", lw=0.8, ls=":")
@@ -46,6 +51,7 @@ def costs_and_errors(rows: Sequence[Row], target: Path) -> Path:
         xlabel="cost over the cheapest adequate setting's",
         ylabel="share of all that is planned (%)",
     )
+    right.legend(fontsize=8, loc="lower right")
     ticks = (1.0, 1.5, 2.0, 3.0, 5.0)
     right.set_xticks(ticks, [f"{tick:g}" for tick in ticks])
     right.set_xticks([], minor=True)
