@@ -181,8 +181,8 @@ def test_a_shape_sampled_as_asked():
 @pytest.mark.parametrize(
     ("target", "settings", "message"),
     [
-        (None, {"steps": 0}, "whole number of at least 1, got 0"),
-        (None, {"steps": 1.5}, "whole number of at least 1, got 1.5"),
+        (None, {"steps": 0}, "whole number from 1 to 1024, got 0"),
+        (None, {"steps": 1.5}, "whole number from 1 to 1024, got 1.5"),
         (None, {"level": "modal"}, "'rigid', 'pymunk', got 'modal'"),
         (None, {"colour": 3}, "got 'colour'"),
         (None, {"penetration": -1.0}, "penetration"),
@@ -398,5 +398,5 @@ def test_a_body_may_be_given_more_substeps():
     made.override(ball, steps=None).apply()
     assert ball not in made.finer
     assert contact.step(1 / 60, steps=made.steps) == max(made.finer.values())
-    with pytest.raises(ValueError, match="whole number of at least 1, got 0"):
+    with pytest.raises(ValueError, match="whole number from 1 to 1024, got 0"):
         made.override(ball, steps=0)
