@@ -135,6 +135,33 @@ def bounces_again(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool
     return bool(r.first_speed > 0.0)
 
 
+@kernel
+def end_comes_down(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> bool:
+    """Whether one end of a face at rest has come down in the last substep, fast enough to bounce.
+
+    What stands on a corner topples: its region is not new, but at the thicker end all of the thickness is of that
+    substep's motion. Each end leaves at e times its own speed (`aim_bounce`), so that the one it stands on stays.
+    Not of what turns so far in a substep that it may have come from anywhere, or opens at its other end.
+    """
+    if pair.elasticity == 0.0 or law.followed == math.inf or not is_face(r):
+        return False
+    u = closing(r, a, b, 0.5)
+    half = math.copysign(0.5 * r.straight, r.middle)
+    turn = a.w - b.w
+    down = u - turn * (r.middle - half)
+    lean = min(1.0, 6.0 * abs(r.middle) / r.straight)
+    if turn * turn * h * h > SMOOTH or r.area / r.chord * (1.0 + lean) > MOST_ARRIVED * h * down:
+        return False
+    rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
+    slow = _slow(law, _pushed(law, 2.0 * (u - closing(r, a, b, 1.0)), h), rate2, h)
+    opens = turn * (r.middle + half) - u > slow
+    if rate2 * h * h <= law.followed or pair.elasticity * down <= slow or opens:
+        return False
+    r.first_speed = down
+    r.back = 0.0
+    return True
+
+
 @kernel(forceinline=True)
 def arrives(r: Any, a: Any, b: Any, h: float) -> bool:
     """Whether what has been let come just to touch is there, and closes as fast as before: now it is to be stopped."""

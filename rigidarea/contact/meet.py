@@ -18,7 +18,7 @@ from ..geometry.overlap import A_EDGE, OVERFLOW, Work
 from ..geometry.place import Pose, overlap_of_outlines, push_out, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Relative
-from .birth import arrives, bounces_again, crushed, enter, expect, jumped_in, size_of
+from .birth import arrives, bounces_again, crushed, end_comes_down, enter, expect, jumped_in, size_of
 from .constants import HIT
 from .exposed import TwoShapes, exposed_patch
 from .motion import (
@@ -122,6 +122,8 @@ def _go_on(law: Law, pair: Any, region: Any, a: Any, b: Any, h: float) -> None:
     if region.mode >= STRUCK:
         region.mode = REST
     if region.mode == REST and bounces_again(law, pair, region, a, b, h):
+        region.mode = STRUCK
+    elif region.mode == REST and end_comes_down(law, pair, region, a, b, h):
         region.mode = STRUCK
     elif nearing and arrives(region, a, b, h):
         region.born = 1  # hit at a speed of which its present overlap says nothing
