@@ -141,7 +141,7 @@ def end_comes_down(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> boo
 
     What stands on a corner topples: its region is not new, but at the thicker end all of the thickness is of that
     substep's motion. Each end leaves at e times its own speed (`aim_bounce`), so that the one it stands on stays.
-    Not of what turns so far in a substep that it may have come from anywhere, or opens at its other end.
+    Not of what turns so far in a substep that it may have come from anywhere.
     """
     if pair.elasticity == 0.0 or law.followed == math.inf or not is_face(r):
         return False
@@ -154,8 +154,7 @@ def end_comes_down(law: Law, pair: Any, r: Any, a: Any, b: Any, h: float) -> boo
         return False
     rate2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b)
     slow = _slow(law, _pushed(law, 2.0 * (u - closing(r, a, b, 1.0)), h), rate2, h)
-    opens = turn * (r.middle + half) - u > slow
-    if rate2 * h * h <= law.followed or pair.elasticity * down <= slow or opens:
+    if rate2 * h * h <= law.followed or pair.elasticity * down <= slow:
         return False
     r.first_speed = down
     r.back = 0.0

@@ -107,12 +107,13 @@ def find_other_end(two: TwoShapes, region: Any, h: float) -> None:
             found = True
             then -= (1.0 - PAST) * since
             continue
-        arm = region.arm_a
+        of_a = a.inverse_moment > b.inverse_moment  # its corners come down
+        arm = region.arm_a if of_a else region.arm_b
         lean_a, lean_b, back = region.lean_a, region.lean_b, region.back
         area, depth = region.area, region.depth
         fill(region, patch, ax, ay, bx, by)
         region.straight = region.chord  # from corner to corner
-        region.reach = region.arm_a - arm
+        region.reach = (region.arm_a if of_a else region.arm_b) - arm
         region.area = area
         region.depth = depth
         region.lean_a = lean_a

@@ -193,7 +193,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     row.other = 0.0
     row.f1 = force
     row.f2 = 0.0
-    row.held = force / h * r.depth
+    # what a step is too long for opens without giving speed (`relax`); of those who bounce, restitution gives
+    kept = 1.0 - row.theta if pair.elasticity > 0.0 else 1.0
+    row.held = kept * force / h * r.depth
     row.slip1 = r.arm_a * lean_a + r.arm_b * lean_b
     take_inverse(row)
     if row.ends == 1:
