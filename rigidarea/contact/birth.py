@@ -17,6 +17,13 @@ from .region import closing, fill, inverse_mass, is_face, others_push, region_st
 from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 
+#: Going back from an overlap by so much of its depth, it is seen about as it touched; what is nothing there, nearer.
+SEEN = (0.999, 0.9, 0.5)
+#: A face that is shorter by more than this part as it touches comes down with one end first.
+WALLS = 0.1
+#: Square of the sine of the angle from which on it is askew.
+ASKEW = 1e-4
+
 
 @kernel
 def _nearest(two: TwoShapes, region: Any, n: int, pose: Pose, other: Pose) -> int:
@@ -59,7 +66,7 @@ def touch(two: TwoShapes, region: Any, back: float, h: float, unseen: float) -> 
         come = True
         best = -1
         then = back
-        for share in (0.999, 0.9, 0.5):
+        for share in SEEN:
             then = back + share * tau
             pose = earlier(a, then)
             other = earlier(b, then)
@@ -249,6 +256,41 @@ def _lands_on_a_face(region: Any) -> bool:
 
 
 @kernel
+def _as_it_touches(two: TwoShapes, region: Any, ahead: float) -> float:
+    """See a face that will be there in `ahead` as it touches, where it shows another way then; in what time that is.
+
+    Deep in each other the chord runs askew, from the wall below an edge to the wall of what has come down beside it.
+    What comes down with one end first is shorter by then, and stays as it is.
+    """
+    a, b = two.a, two.b
+    for _ in range(2):
+        u = closing(region, a, b, 0.0)
+        if u <= 0.0:
+            break
+        best = -1
+        then = ahead
+        for share in SEEN:
+            then = ahead - share * region.depth / u
+            pose = earlier(a, -then)
+            other = earlier(b, -then)
+            n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
+            best = _nearest(two, region, n, pose, other)
+            if best >= 0:
+                break
+        if best < 0:
+            break
+        patch = exposed_patch(two, best, pose, other)
+        askew = patch.nx * region.ny - patch.ny * region.nx
+        if not is_face(patch) or patch.chord < (1.0 - WALLS) * region.chord or askew * askew <= ASKEW:
+            break
+        ax, ay = centre_of(a, pose)
+        bx, by = centre_of(b, other)
+        fill(region, patch, ax, ay, bx, by)
+        ahead = then
+    return ahead
+
+
+@kernel
 def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> bool:
     """What a region that will be there in `ahead` is: NEARING, or a bounce within this drift; False: neither.
 
@@ -276,6 +318,8 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
             find_other_end(two, region, h)
         return True
     region.mode = NEARING
+    if is_face(region):
+        ahead = _as_it_touches(two, region, ahead)
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
     rest = max(law.gravity / (inverse * pair.rate), depth_for(law, pair, region, gain / inverse))
