@@ -40,6 +40,23 @@ def _nearest(two: TwoShapes, region: Any, n: int, pose: Pose, other: Pose) -> in
 
 
 @kernel
+def _seen_nearer(two: TwoShapes, region: Any, back: float, tau: float) -> tuple[int, float, Pose, Pose]:
+    """A region that has touched `tau` before a time `back` ago, as it was soon after that.
+
+    Which of the work's loops it is then (-1: none), how long ago, and where its bodies were.
+    """
+    for share in SEEN:
+        then = back + share * tau
+        pose = earlier(two.a, then)
+        other = earlier(two.b, then)
+        n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
+        best = _nearest(two, region, n, pose, other)
+        if best >= 0:
+            break
+    return best, then, pose, other
+
+
+@kernel
 def touch(two: TwoShapes, region: Any, back: float, h: float, unseen: float) -> bool:
     """Put a new region where the two have touched first; False: it has not come there by moving.
 
@@ -64,16 +81,7 @@ def touch(two: TwoShapes, region: Any, back: float, h: float, unseen: float) -> 
         if tau + back > min(MOST_ARRIVED * unseen, since_of(a, b)):
             return come
         come = True
-        best = -1
-        then = back
-        for share in SEEN:
-            then = back + share * tau
-            pose = earlier(a, then)
-            other = earlier(b, then)
-            n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
-            best = _nearest(two, region, n, pose, other)
-            if best >= 0:
-                break
+        best, then, pose, other = _seen_nearer(two, region, back, tau)
         if best < 0:
             return come
         patch = exposed_patch(two, best, pose, other)
@@ -267,16 +275,7 @@ def _as_it_touches(two: TwoShapes, region: Any, ahead: float) -> float:
         u = closing(region, a, b, 0.0)
         if u <= 0.0:
             break
-        best = -1
-        then = ahead
-        for share in SEEN:
-            then = ahead - share * region.depth / u
-            pose = earlier(a, -then)
-            other = earlier(b, -then)
-            n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
-            best = _nearest(two, region, n, pose, other)
-            if best >= 0:
-                break
+        best, then, pose, other = _seen_nearer(two, region, -ahead, region.depth / u)
         if best < 0:
             break
         patch = exposed_patch(two, best, pose, other)
@@ -286,7 +285,7 @@ def _as_it_touches(two: TwoShapes, region: Any, ahead: float) -> float:
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)
         fill(region, patch, ax, ay, bx, by)
-        ahead = then
+        ahead = -then
     return ahead
 
 

@@ -121,9 +121,9 @@ def _go_on(law: Law, pair: Any, region: Any, a: Any, b: Any, h: float) -> None:
         region.lt = 0.0
     if region.mode >= STRUCK:
         region.mode = REST
-    if region.mode == REST and bounces_again(law, pair, region, a, b, h):
-        region.mode = STRUCK
-    elif region.mode == REST and end_comes_down(law, pair, region, a, b, h):
+    if region.mode == REST and (
+        bounces_again(law, pair, region, a, b, h) or end_comes_down(law, pair, region, a, b, h)
+    ):
         region.mode = STRUCK
     elif nearing and arrives(region, a, b, h):
         region.born = 1  # hit at a speed of which its present overlap says nothing
