@@ -41,6 +41,14 @@ def test_a_module_that_a_program_lacks_is_its_own_error(asked, tmp_path):
     assert 'bad.py", line 1' in done.stderr and done.stderr.strip().endswith("No module named 'nonsense_mod'")
 
 
+def test_nor_is_one_of_our_extras_that_it_asks_for(tmp_path):
+    """Whoever wrote the program is told where it asks, as Python tells it."""
+    (tmp_path / "bad.py").write_text("raise ModuleNotFoundError('no scipy here', name='scipy')\n")
+    done = command(tmp_path, "plan", "bad.py")
+    assert done.returncode == 1 and "pip install" not in done.stderr
+    assert 'bad.py", line 1' in done.stderr and done.stderr.strip().endswith("no scipy here")
+
+
 @pytest.mark.parametrize("name", ["a.gif", "a.mp4", "a"])
 def test_a_film_has_the_suffix_that_was_asked_for(name, tmp_path):
     imageio = pytest.importorskip("imageio.v2")
@@ -55,12 +63,14 @@ def test_a_film_has_the_suffix_that_was_asked_for(name, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("film", "message"), [("a.avi", "must end in .mp4 or .gif"), ("game.py/a.mp4", "game.py")]
+    ("film", "message"),
+    [("a.avi", "must end in .mp4 or .gif"), ("game.py/a.mp4", "game.py"), ("there.mp4", "there.mp4")],
 )
 def test_a_film_that_cannot_be_is_refused_before_the_program_runs(film, message, tmp_path):
     pytest.importorskip("imageio")
     pytest.importorskip("pygame")
     (tmp_path / "game.py").write_text("print('it ran')\n")
+    (tmp_path / "there.mp4").mkdir()
     done = command(tmp_path, "run", "--film", film, "game.py")
     assert done.returncode == 2 and "it ran" not in done.stdout
     (said,) = [line for line in done.stderr.splitlines() if not line.startswith("rigidarea run: game.py, ")]
