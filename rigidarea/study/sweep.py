@@ -57,6 +57,19 @@ def _leave_interrupts_to_the_parent() -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
+@contextmanager
+def _interrupts_wait() -> Iterator[None]:
+    """Ctrl-C comes at the end, and to no worker that is started meanwhile (blocked, until it leaves them to us)."""
+    if not hasattr(signal, "pthread_sigmask"):  # Windows
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
 def run_tasks(
     function: Callable[..., Row],
     tasks: Sequence[Task],
@@ -92,7 +105,10 @@ def run_tasks(
             keep(task, function(**task))
     elif missing:
         with open_executor(scheduler, workers) as executor:
-            futures: dict[Future[Row], Task] = {executor.submit(function, **task): task for task in missing}
+            with _interrupts_wait():
+                futures: dict[Future[Row], Task] = {
+                    executor.submit(function, **task): task for task in missing
+                }
             try:
                 for future in as_completed(futures) if not scheduler else _dask_completed(futures):
                     keep(futures[future], future.result())
