@@ -4,7 +4,8 @@ Newton's restitution returns speeds, and knows nothing of the work of friction t
 "A dynamics puzzle", Stanford Mechanics Alumni Club Newsletter, 1984), nor of what is hinged to who bounces; nor does a
 solve that has not converged. Without restitution and friction a solve gives none from its first visit on: it lessens a
 convex function that begins at 0 (J. J. Moreau, doi:10.1007/978-3-7091-2624-0_1). Of the two any mean obeys joints and
-friction's cone as both do, and its work is a square of the part: the largest part is taken that gives nothing.
+friction's cone as both do, and its work is a square of the part: the largest part is taken that gives nothing. What
+joints do counts as well, through which a contact may give what it does not itself; not what motors and springs do.
 """
 
 from __future__ import annotations
@@ -16,18 +17,24 @@ from ..compile.jit import kernel
 from .active import island_of, list_active
 from .birth import drives
 from .constants import UNSOLVED_WORK
+from .joint import MOTOR, ROTARY_SPRING, SPRING
 from .tables import ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
 
 
 @kernel(forceinline=True)
-def _speeds(row: Any, ux: float, uy: float, wa: float, wb: float) -> tuple[float, float, float]:
+def _speeds(row: Any, kind: int, ux: float, uy: float, wa: float, wb: float) -> tuple[float, float, float]:
     """The speeds that a row's three impulses act against: closing at either end, and the slip.
 
-    ux, uy: A's velocity less B's (length/time); wa, wb: how fast the two turn (1/time).
+    kind: as of `_kind`; ux, uy: A's velocity less B's (length/time); wa, wb: how fast the two turn (1/time). On a
+    surface that moves, and by a motor, it is how much is missing of the speed that is asked for.
     """
     v = ux * row.nx + uy * row.ny + (wa * row.arm_a - wb * row.arm_b)
     slip = uy * row.nx - ux * row.ny + (wa * row.lean_a - wb * row.lean_b)
-    return v - (wa - wb) * row.e1, v - (wa - wb) * row.e2, slip - row.tt
+    if kind == MOTOR:
+        v -= row.t1
+    elif kind < 0:
+        slip -= row.tt
+    return v - (wa - wb) * row.e1, v - (wa - wb) * row.e2, slip
 
 
 @kernel(forceinline=True)
@@ -36,11 +43,18 @@ def _may_give(law: Law, pair: Any, a: Any, b: Any) -> bool:
     return bool(drives(law, a) or drives(law, b) or pair.elasticity > 1.0)
 
 
+@kernel(forceinline=True)
+def _kind(tables: Tables, row: Any) -> int:
+    """Which joint's row it is; -1: a contact's."""
+    return int(tables.joints[row.region].kind) if row.ends == 0 else -1
+
+
 @kernel
 def contacts_give_energy(tables: Tables, law: Law) -> bool:
     """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
 
-    `ahead` of each island is what they have given.
+    `ahead` of each island is what they have given. Joints may take it, or give it in their place: not what they give as
+    they mend an error of place, unless contacts have.
 
     Who is at rest gives none.
     """
@@ -49,26 +63,42 @@ def contacts_give_energy(tables: Tables, law: Law) -> bool:
         island.active = 0
         island.ahead = 0.0
         island.curvature = 0.0
+        island.product = 0.0
+        island.part = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        if row.ends == 0 or row.l1 + row.l2 == 0.0:
+        kind = _kind(tables, row)
+        if kind == SPRING or kind == ROTARY_SPRING or (kind < 0 and row.l1 + row.l2 == 0.0):
             continue
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
         island = tables.islands[island_of(tables, row)]
         if island.still:
             continue
-        island.curvature += 0.5 * row.held
-        if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
-            continue
-        came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
-        v1, v2, slip = _speeds(row, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
-        island.ahead -= 0.5 * (row.l1 * (came1 + v1) + row.l2 * (came2 + v2) + row.lt * (came_t + slip))
-        island.curvature += UNSOLVED_WORK * (row.l1 * abs(v1 - came1) + row.l2 * abs(v2 - came2))
+        if kind < 0:
+            island.curvature += 0.5 * row.held
+            if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
+                continue
+        ux, uy = a.came_vx - b.came_vx, a.came_vy - b.came_vy
+        came1, came2, came_t = _speeds(row, kind, ux, uy, a.came_w, b.came_w)
+        v1, v2, slip = _speeds(row, kind, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
+        given = -0.5 * (row.l1 * (came1 + v1) + row.l2 * (came2 + v2) + row.lt * (came_t + slip))
+        if kind < 0:
+            change1, change2 = abs(v1 - came1), abs(v2 - came2)
+            alone1, alone2 = change1 / row.weight, change2 / row.weight
+            unsolved = min(row.l1, alone1) * change1 + min(row.l2, alone2) * change2
+            island.ahead += given
+            island.curvature += UNSOLVED_WORK * unsolved
+        else:
+            island.product += given
+            if kind != MOTOR:
+                island.part += row.l1 * row.t1 + row.lt * row.tt
     again = False
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        island.active = island.ahead > island.curvature
+        given = island.ahead + island.product
+        gives = max(given + island.part, min(island.ahead, given)) > island.curvature
+        island.active = gives and island.ahead != 0.0  # not where joints are alone
         island.again = island.active
         again |= island.active
     return again
@@ -105,10 +135,10 @@ def begin_again(tables: Tables) -> None:
 
 @kernel(forceinline=True)
 def _largest_part(a0: float, a1: float, a2: float, most: float) -> float:
-    """The largest s up to 1 before which a0 + a1 s + a2 s^2 is no more than `most`; 0 where it is more at 0."""
-    c = a0 - most
-    if c >= 0.0:
-        return 0.0
+    """The largest s up to 1 before which a0 + a1 s + a2 s^2 is no more than `most`, or than at 0 where it is more."""
+    c = min(0.0, a0 - most)
+    if c == 0.0:
+        return min(1.0, -a1 / a2) if a1 < -a2 and a2 > 0.0 else 0.0
     root = a1 * a1 - 4.0 * a2 * c
     if root < 0.0:
         return 1.0
@@ -129,18 +159,21 @@ def mix(tables: Tables, law: Law) -> None:
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         island = tables.islands[island_of(tables, row)]
-        if row.ends == 0 or not island.again:
+        kind = _kind(tables, row)
+        if not island.again or kind == SPRING or kind == ROTARY_SPRING:
             continue
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        island.held += 0.5 * row.held
-        if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
-            continue
+        if kind < 0:
+            island.held += 0.5 * row.held
+            if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
+                continue
         of_a = tables.mobility[row.a]
         of_b = tables.mobility[row.b]
         ux, uy, wa, wb = a.vx - b.vx, a.vy - b.vy, a.w, b.w
-        came1, came2, came_t = _speeds(row, a.came_vx - b.came_vx, a.came_vy - b.came_vy, a.came_w, b.came_w)
-        v1, v2, slip = _speeds(row, ux, uy, wa, wb)
+        came_x, came_y = a.came_vx - b.came_vx, a.came_vy - b.came_vy
+        came1, came2, came_t = _speeds(row, kind, came_x, came_y, a.came_w, b.came_w)
+        v1, v2, slip = _speeds(row, kind, ux, uy, wa, wb)
         if of_a.island >= 0:
             ux += of_a.vx - a.vx
             uy += of_a.vy - a.vy
@@ -149,7 +182,7 @@ def mix(tables: Tables, law: Law) -> None:
             ux -= of_b.vx - b.vx
             uy -= of_b.vy - b.vy
             wb = of_b.vw
-        d1, d2, dt = _speeds(row, ux, uy, wa, wb)
+        d1, d2, dt = _speeds(row, kind, ux, uy, wa, wb)
         d1 -= v1
         d2 -= v2
         dt -= slip

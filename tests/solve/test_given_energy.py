@@ -99,6 +99,53 @@ def test_hinged_bodies_that_touch(pinned: bool, elasticity: float, seed: int) ->
         assert _energy(space) < 4 / 3 * start
 
 
+def _hinged_pair(seed: int, elasticity: float, friction: float) -> pymunk.Space | None:
+    """Two boxes in flight, hinged anywhere near the line of their centres; None: they overlap."""
+    draw = random.Random(seed)
+    space = pymunk.Space()
+    boxes = []
+    for k in range(2):
+        size = draw.uniform(20, 50), draw.uniform(10, 30)
+        mass = draw.uniform(0.5, 3)
+        body = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
+        shape = pymunk.Poly.create_box(body, size)
+        shape.elasticity, shape.friction = elasticity**0.5, friction**0.5
+        body.position = (0, 0) if k == 0 else (draw.uniform(25, 50), draw.uniform(-20, 20))
+        body.angle = draw.uniform(0, 3)
+        body.velocity = draw.uniform(-30, 30), draw.uniform(-30, 30)
+        body.angular_velocity = draw.uniform(-5, 5)
+        space.add(body, shape)
+        shape.cache_bb()
+        boxes.append(shape)
+    if any(found.shape is boxes[0] for found in space.shape_query(boxes[1])):
+        return None
+    first, second = (shape.body for shape in boxes)
+    at = first.position + (second.position - first.position) * draw.uniform(-0.3, 1.3)
+    space.add(pymunk.PivotJoint(first, second, at))
+    return space
+
+
+@pytest.mark.parametrize("elasticity, friction", [(0, 0), (0, 1), (0.3, 0.5), (0.8, 0.5), (1, 0), (1, 1)])
+def test_a_hinged_pair_has_what_it_had(elasticity: float, friction: float) -> None:
+    """Seventy pairs, a second each: a contact whose line passes the hinge asks the joint for 1e6 times its own impulse.
+
+    2 % more at the most: what the hinge mends moves them. (86 to 1,190 times as much before, where rough and elastic;
+    4.5 where smooth: the joint gave what the contact had asked of it. Pymunk: up to 1.3 times.)
+    """
+    seen = 0
+    for seed in range(100):
+        space = _hinged_pair(seed, elasticity, friction)
+        if space is None:
+            continue
+        seen += 1
+        start = _energy(space)
+        rigidarea.attach(space)
+        for _ in range(60):
+            space.step(DT)
+            assert _energy(space) < 1.02 * start, f"seed {seed}"
+    assert seen > 70
+
+
 def _elastic(space: pymunk.Space, draw: random.Random, kind: str, angle: float, floor: bool) -> None:
     """A smooth elastic body that comes to the middle from one side."""
     size, mass = draw.uniform(10, 16), 10 ** draw.uniform(-0.5, 0.5)
