@@ -142,7 +142,7 @@ class Watch:
         found = {name: (value, name_of(space, where)) for name, (value, where) in worst.items()}
         if contact is not None and not _driven(space):
             energy = contact.energy()
-            kinetic = sum(body.kinetic_energy for body in space.bodies)
+            kinetic = 0.5 * sum(body.kinetic_energy for body in space.bodies)
             self._scale = max(self._scale, kinetic, self._weight)
             if self._energy is not None and self._scale > 0.0:
                 found["energy"] = max(0.0, energy - self._energy) / self._scale, "the space"

@@ -163,7 +163,7 @@ def measured(make: Callable[[pymunk.Space], None], steps: int, attached: bool) -
             space.step(DT / steps)
         taken += (time.process_time() - start) * (frame >= 5)
         most = max(most, drift(space)) if frame >= SETTLING else 0.0
-    energy = math.fsum(body.kinetic_energy for body in space.bodies) / len(space.bodies)
+    energy = 0.5 * math.fsum(body.kinetic_energy for body in space.bodies) / len(space.bodies)
     return {"ms": 1e3 * taken / (FRAMES - 5), "drift_px": most, "energy_a_body": energy}
 
 

@@ -39,7 +39,7 @@ def lines(space, points, radius=0.0, friction=0.0, elasticity=0.0):
 
 
 def kinetic(space):
-    return sum(b.kinetic_energy for b in space.bodies)
+    return sum(0.5 * b.kinetic_energy for b in space.bodies)
 
 
 @pytest.mark.parametrize("seed", [3, 4, 5, 6])
@@ -245,7 +245,7 @@ def swings(sides, radius, mu, count, gravity=900.0):
     ra.attach(space)
 
     def energy():
-        return ball.kinetic_energy / ball.mass + gravity * (ball.position.y + way)
+        return 0.5 * ball.kinetic_energy / ball.mass + gravity * (ball.position.y + way)
 
     start, turned, before = energy(), 0, 0.0
     for _ in range(2000):
