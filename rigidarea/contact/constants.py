@@ -9,7 +9,8 @@ SUBSTEPS = 2
 #: Most substeps that a tolerance may ask for.
 MOST_SUBSTEPS = 1024
 #: (w h)^2 up to which a step h follows a contact of frequency w explicitly: 28 steps an oscillation. Symplectic Euler
-#: is stable up to 4; its restitution is then within 0.002.
+#: is stable up to 4; its restitution is then within 0.002. Only of a stiffness that was given: one that we choose says
+#: how deep a body lies, and its oscillation is nobody's.
 FOLLOWED = 0.05
 #: A contact pressed too far opens again in so many substeps (1/e time): the row's S. It does so without giving speed
 #: (`relax`), so that little depends on it.
@@ -82,6 +83,9 @@ MOVED = 0.003
 #: Energy that contacts give is no reason to solve again where it is less than this part of what they do: a solve ends
 #: when a sweep changes so little (SETTLED), which gives or takes; taken back alone, elastic bodies would lose by it.
 UNSOLVED_WORK = 1e-3
+#: And this part of the bodies' own, where what is pressed in opens without giving speed (`relax`), as far as it is
+#: solved: to a tenth (LEFT). All that is pressed in is far more where thin bodies are deep in each other.
+LOOSE = 0.1
 #: It leads away from one, where a sweep changes so many times as much as one before.
 DIVERGES = 4.0
 #: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.

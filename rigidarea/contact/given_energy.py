@@ -16,7 +16,7 @@ from typing import Any
 from ..compile.jit import kernel
 from .active import island_of, list_active
 from .birth import drives
-from .constants import UNSOLVED_WORK
+from .constants import LOOSE, UNSOLVED_WORK
 from .joint import MOTOR, ROTARY_SPRING, SPRING
 from .tables import ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
 
@@ -50,6 +50,40 @@ def _kind(tables: Tables, row: Any) -> int:
 
 
 @kernel
+def _note_held(tables: Tables) -> None:
+    """What springs may give back, `held` of each island.
+
+    What a step is too long for opens without giving speed (`relax`). That is not solved exactly: a LOOSE part of the
+    bodies' energy may come of it.
+    """
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].held = 0.0
+        tables.islands[k].energy = 0.0
+        tables.islands[k].product = 0.0
+    for i in range(tables.counters[ROWS]):
+        row = tables.rows[i]
+        if row.ends > 0:
+            island = tables.islands[island_of(tables, row)]
+            island.held += 0.5 * (1.0 - row.theta) * row.held
+            island.product += 0.5 * row.theta * row.held
+    for k in range(tables.counters[LIVE]):
+        number = tables.mobility[tables.live[k]].island
+        if number < 0:
+            continue
+        body = tables.bodies[tables.live[k]]
+        energy = 0.0
+        if body.inverse_mass > 0.0:
+            energy += (body.came_vx * body.came_vx + body.came_vy * body.came_vy) / body.inverse_mass
+        if body.inverse_moment > 0.0:
+            energy += body.came_w * body.came_w / body.inverse_moment
+        tables.islands[number].energy += 0.5 * energy
+    for k in range(tables.counters[ISLANDS]):
+        island = tables.islands[k]
+        island.held += min(island.product, LOOSE * island.energy)
+        island.product = 0.0
+
+
+@kernel
 def contacts_give_energy(tables: Tables, law: Law) -> bool:
     """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
 
@@ -58,12 +92,12 @@ def contacts_give_energy(tables: Tables, law: Law) -> bool:
 
     Who is at rest gives none.
     """
+    _note_held(tables)
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.active = 0
         island.ahead = 0.0
-        island.curvature = 0.0
-        island.product = 0.0
+        island.curvature = island.held
         island.part = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
@@ -75,10 +109,8 @@ def contacts_give_energy(tables: Tables, law: Law) -> bool:
         island = tables.islands[island_of(tables, row)]
         if island.still:
             continue
-        if kind < 0:
-            island.curvature += 0.5 * row.held
-            if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
-                continue
+        if kind < 0 and _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
+            continue
         ux, uy = a.came_vx - b.came_vx, a.came_vy - b.came_vy
         came1, came2, came_t = _speeds(row, kind, ux, uy, a.came_w, b.came_w)
         v1, v2, slip = _speeds(row, kind, a.vx - b.vx, a.vy - b.vy, a.w, b.w)
@@ -155,7 +187,6 @@ def mix(tables: Tables, law: Law) -> None:
         island.ahead = 0.0
         island.curvature = 0.0
         island.product = 0.0
-        island.held = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         island = tables.islands[island_of(tables, row)]
@@ -164,10 +195,8 @@ def mix(tables: Tables, law: Law) -> None:
             continue
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        if kind < 0:
-            island.held += 0.5 * row.held
-            if _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
-                continue
+        if kind < 0 and _may_give(law, tables.pairs[tables.regions[row.region].pair], a, b):
+            continue
         of_a = tables.mobility[row.a]
         of_b = tables.mobility[row.b]
         ux, uy, wa, wb = a.vx - b.vx, a.vy - b.vy, a.w, b.w
