@@ -98,7 +98,7 @@ def test_stack_interface_i_carries_what_is_above_it():
     masses = [b.mass for b in bodies]
     forces = sorted(contact.regions["force"], reverse=True)
     exact = [G * sum(masses[i:]) for i in range(n)]
-    assert forces == pytest.approx(exact, rel=1e-7)  # what 8 s of damping leaves of the first jolt
+    assert forces == pytest.approx(exact, rel=1e-6)  # a solve ends at 4e-7, sooner or later
 
 
 @pytest.mark.parametrize("slope", [0.3, 0.8])

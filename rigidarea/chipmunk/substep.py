@@ -191,7 +191,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         kick(tables, s.frame)
         if joints > 0:
             ask_springs(s, tables)
-            geometric_stiffness(tables, h, s.followed)
+            geometric_stiffness(tables, h)
         if not find_contacts(s, space, h, dt - i * h, joints > 0):
             return False
         if not _solve(s, tables, h, sweeps, joints > 0):

@@ -9,7 +9,7 @@ import numpy as np
 
 from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
-from .constants import MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
+from .constants import FOLLOWED, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
 from .exposed import TwoShapes, exposed_patch
 from .landing import find_other_end
 from .motion import centre_of, earlier, since_of, unseen_for
@@ -194,7 +194,7 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
     if inside <= PUT_FOLLOWED * least:
         return False
     phase2 = region_stiffness(law, r.stiffness, r.chord) * inverse_mass(r, a, b) * h * h
-    return bool(phase2 <= law.followed or inside > PUT * least)
+    return bool(phase2 <= max(law.followed, FOLLOWED) or inside > PUT * least)
 
 
 @kernel(forceinline=True)

@@ -228,7 +228,7 @@ def _has_room(tables: Tables, shapes: int, more: int, time: float) -> bool:
 
 
 @kernel
-def _add_joints(tables: Tables, law: Law, h: float) -> None:
+def _add_joints(tables: Tables, h: float) -> None:
     """Rows for the turn's joints."""
     counters = tables.counters
     for k in range(counters[JOINTS]):
@@ -241,7 +241,7 @@ def _add_joints(tables: Tables, law: Law, h: float) -> None:
             row.b = joint.b
             a = tables.bodies[joint.a]
             b = tables.bodies[joint.b]
-            if make_joint_row(row, joint, a, b, h, law.followed):
+            if make_joint_row(row, joint, a, b, h):
                 bend(row, joint, a, b, h)
                 counters[ROWS] += 1
 
@@ -257,7 +257,7 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
     first = counters[FIRST]
     size = counters[LAST] - first
     if jointed and size == 0:
-        _add_joints(tables, law, h)
+        _add_joints(tables, h)
     for n in range(2 * size if jointed else size):
         i = first + (n - size if n >= size else n)
         p = tables.near[i].pair
@@ -265,7 +265,7 @@ def gather(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: floa
         a = tables.bodies[tables.near[i].a]
         b = tables.bodies[tables.near[i].b]
         if jointed and n == size:
-            _add_joints(tables, law, h)
+            _add_joints(tables, h)
         if a.stamp != frame and b.stamp != frame:
             continue
         if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:

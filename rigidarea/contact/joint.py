@@ -27,7 +27,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
 from .active import moves
-from .constants import JOINT_GIVE
+from .constants import FOLLOWED, JOINT_GIVE
 
 PIN, SLIDE, PIVOT, GROOVE, SPRING, ROTARY_SPRING, LIMIT, RATCHET, GEAR, MOTOR = range(10)
 #: Kinds of joints.
@@ -192,10 +192,10 @@ def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
 
 
 @kernel
-def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> bool:
+def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float) -> bool:
     """The row of a joint where its bodies are; False: it can do nothing. `a`, `b`: its bodies, the kick already given.
 
-    Row.region, a, b are set by the caller. followed: (w h)^2 up to which a step follows a spring.
+    Row.region, a, b are set by the caller.
     """
     kind = joint.kind
     row.ends = 0
@@ -279,7 +279,7 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float, followed: flo
         row.w22 *= 1.0 + give
         row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     if kind == SPRING or kind == ROTARY_SPRING:
-        _load_spring(row, joint, a, b, h, followed)
+        _load_spring(row, joint, a, b, h)
     elif joint.step > 0.0:
         scale = h / joint.step
         row.l1, row.lt = clamp_joint(row, scale * _along(row, joint), scale * _across(row, joint))
@@ -327,7 +327,7 @@ def _unfollowed(phase2: float, most: float) -> float:
 
 
 @kernel(forceinline=True)
-def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float) -> None:
+def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     """A spring's force where it is now, its damping, and its stiffness as far as the step does not follow it.
 
     Of place and velocity that leapfrog, the force a quarter of a step times the change of velocity further on keeps an
@@ -349,7 +349,7 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float, followed: float
     force = min(joint.max_force, max(-joint.max_force, force))
     w = row.weight
     phase2 = stiffness * w * h * h
-    kept = 0.25 * phase2 * _unfollowed(phase2, followed)
+    kept = 0.25 * phase2 * _unfollowed(phase2, FOLLOWED)
     q = math.expm1(min(700.0, damping * h * w)) + _unfollowed(phase2, 1.0) * phase2 + kept
     if kept > 0.0:
         ux = a.vx - a.kick_x - b.vx + b.kick_x

@@ -377,6 +377,6 @@ def load_law(s: Any) -> Law:
         s.direction,
         s.exponent,
         s.rest_speed,
-        s.followed,
+        s.followed if s.explicit or s.stiffness_given else 0.0,
         s.frame,
     )

@@ -65,7 +65,7 @@ class Law(NamedTuple):
     direction: int  # CHORD or NODAL
     exponent: float  # q of Eq. 12, for NODAL
     rest_speed: float  # first touch slower than this is rest (length/time); negative: by the load
-    followed: float  # (w h)^2 up to which a step follows a contact; infinity: always
+    followed: float  # (w h)^2 up to which a step follows a contact; 0: never; infinity: always
     frame: int = -2  # Chipmunk's number of the step that has begun; -2: none
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
+from .constants import FOLLOWED
 from .joint import PIVOT, anchor
 from .tables import JOINTS, LIVE, Tables
 
 
 @kernel
-def geometric_stiffness(tables: Tables, h: float, followed: float) -> None:
+def geometric_stiffness(tables: Tables, h: float) -> None:
     """Bodies that their joints pull at turn more slowly: a taut chain sways no faster than the step can follow.
 
     A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
@@ -32,8 +33,8 @@ def geometric_stiffness(tables: Tables, h: float, followed: float) -> None:
         body.own_inverse_moment = body.inverse_moment
         if body.calm < 0 and body.inverse_moment > 0.0:
             phase2 = h * h * body.tension * body.inverse_moment
-            if phase2 > followed:
-                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (followed / phase2) ** 2)
+            if phase2 > FOLLOWED:
+                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (FOLLOWED / phase2) ** 2)
 
 
 @kernel
