@@ -358,9 +358,7 @@ def test_the_depth_that_bears_a_load(kernel: Any, law: int, depth: float, k: flo
 def chosen(kernel: Any, **changes: Any) -> tuple[Any, Any, Any, Any]:
     """A law without a stiffness, two bodies of 20 N and 100 N, and their pair at first touch; a face of 0.5."""
     tables = kernel.tables
-    law = tables.Law(0.0, 1e-3, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 0.5, 0.0, FOLLOWED)._replace(
-        **changes
-    )
+    law = tables.Law(0.0, 1e-3, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 0.5, 0.0, 0.0)._replace(**changes)
     a, b = body(kernel, inverse_mass=0.5, extent=0.4), body(kernel, inverse_mass=0.1, extent=2.0)
     pair = np.zeros(1, kernel.dtypes.PAIR)[0]
     kernel.stiffness.choose_stiffness(law, pair, 0.5, a, b, 1 / 60)
@@ -379,18 +377,18 @@ def test_whatever_lies_there_bears_its_load_at_the_depth_allowed(
     if n == 1.0:  # a face, its two ends' depths as 1 to 1 - tilt
         r["straight"], r["area"] = 3.0, 3.0 * depth * (1.0 - 0.5 * tilt)
         pressed = depth * (1.0 - 0.5 * tilt)
-    coarse, fine = 1e3, 1e-9
-    k = kernel.stiffness.stiffness_of(law, pair, r, 0.5, coarse)
+    k = kernel.stiffness.stiffness_of(law, pair, r)
     assert k * r["area"] == pytest.approx(pair["rate"] * pressed, rel=1e-6)
     assert pair["rate"] * 1e-3 * 0.4 == pytest.approx(20.0)  # the lighter one's weight, at the depth allowed
-    # a step that follows the contact has a k with a potential: always the face's
-    assert kernel.stiffness.stiffness_of(law, pair, r, 0.5, fine) == pytest.approx(pair["rate"] / 0.5)
+    # an explicit step has a k with a potential: always the face's
+    law = law._replace(followed=math.inf)
+    assert kernel.stiffness.stiffness_of(law, pair, r) == pytest.approx(pair["rate"] / 0.5)
 
 
 def test_a_given_stiffness_is_that_of_every_region(kernel: Any) -> None:
     law, _, _, pair = chosen(kernel, stiffness=77.0)
     r = np.zeros(1, kernel.dtypes.REGION)[0]
-    assert kernel.stiffness.stiffness_of(law, pair, r, 0.5, 1 / 60) == 77.0
+    assert kernel.stiffness.stiffness_of(law, pair, r) == 77.0
     assert pair["rate"] == 77.0 * 0.5
 
 

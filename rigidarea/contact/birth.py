@@ -220,7 +220,7 @@ def enter(two: TwoShapes, region: Any, back: float, h: float) -> None:
     """What a new region is: an impact that the steps follow, one shorter than the step, or rest."""
     law, pair, a, b = two.law, two.pair, two.a, two.b
     inverse = inverse_mass(region, a, b)
-    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    region.stiffness = stiffness_of(law, pair, region)
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     phase2 = stiffness * inverse * h * h
     push = 2.0 * (closing(region, a, b, 0.5) - closing(region, a, b, 1.0)) / (h * inverse)
@@ -297,7 +297,7 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
     """
     law, pair, a, b = two.law, two.pair, two.a, two.b
     inverse = inverse_mass(region, a, b)
-    region.stiffness = stiffness_of(law, pair, region, inverse, h)
+    region.stiffness = stiffness_of(law, pair, region)
     stiffness = max(pair.rate, region_stiffness(law, region.stiffness, region.chord))
     if stiffness * inverse * h * h <= law.followed:
         return False  # the steps follow it

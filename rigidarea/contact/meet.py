@@ -32,7 +32,7 @@ from .motion import (
     unseen_for,
 )
 from .patch import centred, faceless
-from .region import closing, fill, inverse_mass, steer, to_the_surfaces
+from .region import closing, fill, steer, to_the_surfaces
 from .sides import length_on_first_edge, shown_sides
 from .stiffness import choose_stiffness, stiffness_of
 from .tables import (
@@ -257,7 +257,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
         if region.born:
             enter(two, region, back, h)
         steer(pair, region, a, b)
-        region.stiffness = stiffness_of(law, pair, region, inverse_mass(region, a, b), h)
+        region.stiffness = stiffness_of(law, pair, region)
         r = region.next
     return True
 

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .constants import DEEPER, LOAD_TIME, WEIGHTLESS_PHASE2
-from .region import beyond, growth, least_extent, region_stiffness
+from .region import growth, least_extent, region_stiffness
 from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
 
@@ -57,26 +57,25 @@ def choose_stiffness(law: Law, pair: Any, face: float, a: Any, b: Any, h: float)
 
 
 @kernel
-def stiffness_of(law: Law, pair: Any, r: Any, inverse: float, h: float) -> float:
+def stiffness_of(law: Law, pair: Any, r: Any) -> float:
     """k of a region as it is now (force/length^2): what presses it to the depth allowed when the pair bears its load.
 
     k A is then the pair's rate times the mean thickness A / L of a face, times twice that of a corner: linear in the
     depth of either, so that neither the corner on which a body lands is too soft for it nor, a frame later, the face
-    that comes down too hard. By the energy law, and where the steps follow the contact, k is that of the face all
-    along: only a k that does not follow the region's shape has a potential (theory 1).
+    that comes down too hard. By the energy law, and of an explicit step, k is that of the face all along: only a k that
+    does not follow the region's shape has a potential (theory 1).
     """
     if law.stiffness > 0.0:
         return float(law.stiffness)
     if law.law != LAW_AREA:
         return float(pair.rate / pair.face * law.length / pair.face)
+    if law.followed == math.inf:
+        return float(pair.rate / pair.face)
     n = growth(r)
     if r.chord > 0.0:
         part = r.straight / r.chord if n > 1.0 else 0.0
-        k = (n + (1.0 - n) * part) * pair.rate / r.chord
-    else:
-        k = pair.rate * r.depth / r.area
-    theta = beyond(law, pair.rate * inverse * h * h)
-    return float(k if theta == 1.0 else (1.0 - theta) * pair.rate / pair.face + theta * k)
+        return float((n + (1.0 - n) * part) * pair.rate / r.chord)
+    return float(pair.rate * r.depth / r.area)
 
 
 @kernel(forceinline=True)
