@@ -321,6 +321,29 @@ def test_a_box_rests_on_a_part():
     )  # pivots push apart a little
 
 
+@pytest.mark.parametrize("elasticity", [0.0, 0.5])
+@pytest.mark.parametrize("young", [1e7, 1e9])
+def test_a_part_comes_to_rest_on_another(elasticity, young):
+    """A disc falls on a slab, both yield: as it leaves, the dashpot takes all of the region's force, but no more."""
+    space = pymunk.Space()
+    space.gravity = 0, -9.81
+    ground = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    outline = shapes.circle(0.1)
+    disc = outline.body(density=100.0)
+    disc.position = 0, 0.3
+    parts = shapes.box(0.6, 0.2).add_to(ground, elasticity=elasticity), outline.add_to(disc, elasticity=1.0)
+    space.add(ground, disc, *parts)
+    assembly = Assembly(k=3e6)
+    for part in parts:
+        assembly.part(part, Material(young, 0.3, 1000.0, 0.1), mesh=0.05)
+    ra.attach(space, flexible=assembly)
+    for _ in range(120):
+        space.step(1 / 120)
+    # half a second of impacts, each with half the speed of that before; what is left is that of a micrometre's fall
+    assert disc.velocity.length < 5e-3
+    assert assembly.forces()[0, 1][1] == pytest.approx(disc.mass * 9.81, rel=1e-2)
+
+
 def test_stress_of_a_part():
     """Two blocks pressed together by forces: the pressure between them over the height is what the stress says."""
     space, assembly, (one, two, ball) = two_blocks("compliant", gap=-0.05)
