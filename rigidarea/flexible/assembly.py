@@ -99,8 +99,8 @@ class Assembly:
         mesh: spacing of the boundary nodes (length). level: "rigid" (then neither mesh nor hub), "compliant" or
         "modal" with ``modes`` and their ``damping`` ratio. hub: the ring (1 … the holes) that the body's joints hold;
         None: they pull at all of the body at once. contact: the rings that touch other parts. refine: contact points a
-        mesh edge. Raises ValueError for settings out of range, a body that is a part already or has a position or
-        velocity function of the user's; RuntimeError once attached.
+        mesh edge. Raises ValueError for settings out of range and a body that is a part already; RuntimeError once
+        attached.
         """
         if self._space is not None:
             raise RuntimeError("part() on an attached assembly: add parts before attach()")
@@ -111,8 +111,6 @@ class Assembly:
             raise ValueError("expected the shape of a dynamic or kinematic body, got one of a static body")
         if any(other.body is body for other, _ in self._parts):
             raise ValueError("expected one part a body, got a second shape of the same body")
-        if getattr(body, "_position_func", None) or getattr(body, "_velocity_func", None):
-            raise ValueError("expected a body without position_func and velocity_func, got one that has them")
         made = outline_body(
             Outline.from_pymunk(shape), material, level, mesh, contact=contact, hub=hub, modes=modes, refine=refine,
             damping=damping, cache=self._cache,
@@ -171,7 +169,8 @@ class Assembly:
     # --- in a space: what the area contact calls ---
 
     def enter(self, space: pymunk.Space) -> None:
-        """Takes its parts' motion over. ValueError for bodies of another space, or parts that overlap too deeply."""
+        """Takes its parts' motion over. ValueError for bodies of another space, parts that overlap too deeply, and
+        position and velocity functions of the user's on a part or on what joints tie to one."""
         if self._space is not None:
             raise ValueError("this assembly is in a space already: expected one that is free")
         if len(self._parts) == 0:
@@ -179,17 +178,16 @@ class Assembly:
         for n, (shape, _) in enumerate(self._parts):
             if shape.space is not space or shape.body is None or shape.body.space is not space:
                 raise ValueError(f"part {n}: expected its shape and body in the space, got them elsewhere")
-        self._start(space)
-        self._space = space
+        self._tied = Tied(self._parts, tuple(space.constraints))
+        self._space, self._apart = space, []  # from here on leave() undoes it
+        self._start()
         # a joint that does nothing but keep Chipmunk and the area contact from colliding them, unseen by pymunk
-        self._apart = []
         for (one, _), (two, _) in combinations(self._parts, 2):
             joint = lib.cpSimpleMotorNew(one.body._body, two.body._body, 0.0)  # type: ignore[union-attr]
             lib.cpConstraintSetMaxForce(joint, 0.0)
             lib.cpConstraintSetCollideBodies(joint, False)
             lib.cpSpaceAddConstraint(space._space, joint)
             self._apart.append(joint)
-        self._tied = Tied(self._parts, tuple(space.constraints))
         if self._memory is not None:
             self._tied.recall(self._memory[3])
             self._memory = None
@@ -205,7 +203,17 @@ class Assembly:
         self._tied.release()
         self._space = None
 
-    def _start(self, space: pymunk.Space) -> None:
+    def _pairs(self) -> list[tuple[int, int]]:
+        """Which parts may touch, as pymunk has it: not sensors, nor what filters or a joint keep apart."""
+        apart = self._tied.apart()
+        told = [(n, s.body, s.filter) for n, (s, _) in enumerate(self._parts) if not s.sensor]
+        return [
+            (i, j)
+            for (i, one, a), (j, two, b) in combinations(told, 2)
+            if not a.rejects_collision(b) and frozenset((one, two)) not in apart
+        ]
+
+    def _start(self) -> None:
         """The stepper, with every frame given: it finds loads and modes."""
         bodies = []
         for shape, made in self._parts:
@@ -214,14 +222,26 @@ class Assembly:
             x, y = body.local_to_world(made.position)
             bodies.append(replace(made, position=(float(x), float(y)), angle=body.angle, fixed=True))
         size = min(float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in bodies)
-        self.simulation = Simulation(
-            bodies, list(combinations(range(len(bodies)), 2)), self._k, self._q, margin=0.01 * size
-        )
+        self.simulation = Simulation(bodies, self._pairs(), self._k, self._q, margin=0.01 * size)
         self._step, self._before = math.inf, 0.0
         if self._memory is not None:
             self._step, self._before, arrays, _ = self._memory
             for array, old in zip(self._kept(), arrays, strict=True):
                 array[:] = old
+
+    def _pair_anew(self, pairs: list[tuple[int, int]]) -> None:
+        """The stepper goes on with these pairs of parts, where they are others than before."""
+        sim = self.simulation
+        assert sim is not None
+        before = list(map(tuple, sim.pairs.tolist()))
+        if pairs == before:
+            return
+        for spring in sim._buffers.springs[1]:  # friction's, of the pairs that stay
+            pair = before[int(spring[0])] if 0 <= spring[0] < len(before) else ()
+            spring[0] = pairs.index(pair) if pair in pairs else -1
+        self._memory = self._step, self._before, self._kept(), None
+        self._start()
+        self._memory = None
 
     def _compile(self, space: pymunk.Space) -> None:
         """Has what a frame calls compiled now, on no bodies and for no steps, and not in the first frame."""
@@ -241,7 +261,7 @@ class Assembly:
         """A frame of dt: the parts' motion, then ``rest``, the space's own frame.
 
         idle: address of the class of a joint that does nothing. Raises RuntimeError, all bodies as before, where the
-        parts' motion fails or a part has left the space.
+        parts' motion fails or a part has left the space, ValueError for what ``enter`` refuses and has come since.
         """
         space = self._space
         assert space is not None
@@ -250,9 +270,10 @@ class Assembly:
                 if shape.space is not space:
                     raise RuntimeError(f"part {n} has left the space: expected it there until detach()")
             constraints = tuple(space.constraints)
-            if constraints != self._tied.constraints:
+            if constraints != self._tied.constraints or not self._tied.holds():
                 self._tied.release()
                 self._tied = Tied(self._parts, constraints, self._tied)
+            self._pair_anew(self._pairs())
             self._move(space, dt)
         self._tied.rest_of_frame(dt, rest, idle)
 

@@ -267,7 +267,8 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
         reference = joint_forces(sy, buf, state, scheme.vel)
         for p in range(len(pairs)):
             reference = max(reference, np.hypot(buf.force[p, 0], buf.force[p, 1]))
-        for i in range(buf.counts[0]):  # where the dashpot lets go, deformation still answers to the region's force
+        # where the dashpot lets go, deformation still answers to the region's force
+        for i in range(buf.counts[0]):
             reference = max(reference, buf.regions[i, 1])
         for b in range(count):
             body, w = boundary_at(bodies, b), work_at(bodies, b)

@@ -25,6 +25,11 @@ def _stay(body: pymunk.Body, *_: Any) -> None:
     """Position and velocity function of a body that the assembly moves."""
 
 
+def _functions(body: pymunk.Body) -> tuple[Any, Any]:
+    """Position and velocity function, None where they are pymunk's own."""
+    return body._position_func, body._velocity_func
+
+
 class Tied:
     """Parts (shapes and their flexible bodies), bodies that joints tie to them through bodies that forces move, and
     these joints. ``before``: the same with the constraints of the frame before, whose impulses are taken over.
@@ -58,7 +63,16 @@ class Tied:
                         if body.body_type == pymunk.Body.DYNAMIC:
                             moved.add(id(body))
         self._joints = joints
+        self._between = [
+            joint for joint in joints if max(places[id(joint.a)], places[id(joint.b)]) < len(parts)
+        ]
         self._led = [body for body in bodies if id(body) in moved]
+        for body in self._led:
+            if any(f not in (None, _stay) for f in _functions(body)):
+                raise ValueError(
+                    "parts, and bodies that joints tie to them, are moved by their assembly: expected no position_func"
+                    f" or velocity_func, got {body!r:.80} that has one"
+                )
         for body in self._led:
             body.position_func, body.velocity_func = _stay, _stay
         self.members = np.zeros(len(bodies), MEMBER)
@@ -87,10 +101,22 @@ class Tied:
         for name in OFFSETS:
             self.offsets[name] = at[name]
 
+    def holds(self) -> bool:
+        """Whether all bodies are still moved by the assembly, by nobody else."""
+        return all(_functions(body) == (_stay, _stay) for body in self._led)
+
+    def apart(self) -> set[frozenset[pymunk.Body]]:
+        """Parts, two and two, that a joint between them keeps from touching."""
+        return {frozenset((joint.a, joint.b)) for joint in self._between if not joint.collide_bodies}
+
     def release(self) -> None:
-        """The bodies are pymunk's again."""
+        """The bodies are pymunk's again; functions that the user has put there since stay."""
         for body in self._led:
-            body.position_func, body.velocity_func = pymunk.Body.update_position, pymunk.Body.update_velocity
+            position, velocity = _functions(body)
+            if position is _stay:
+                body.position_func = pymunk.Body.update_position
+            if velocity is _stay:
+                body.velocity_func = pymunk.Body.update_velocity
 
     def rest_of_frame(self, dt: float, rest: Callable[[], None], idle: int) -> None:
         """The space's own frame of dt, ``rest``: joints have what is left of their force in it, springs have acted.

@@ -344,6 +344,83 @@ def test_a_part_comes_to_rest_on_another(elasticity, young):
     assert assembly.forces()[0, 1][1] == pytest.approx(disc.mass * 9.81, rel=1e-2)
 
 
+def _sensor(space, one, two):
+    two.sensor = True
+
+
+def _group(space, one, two):
+    one.filter = two.filter = pymunk.ShapeFilter(group=1)
+
+
+def _mask(space, one, two):
+    two.filter = pymunk.ShapeFilter(categories=2, mask=pymunk.ShapeFilter.ALL_MASKS() ^ 1)
+    one.filter = pymunk.ShapeFilter(categories=1)
+
+
+def _joint(space, one, two):
+    joint = pymunk.DampedSpring(one.body, two.body, (0, 0), (0, 0), 1.0, 0.0, 0.0)
+    joint.collide_bodies = False
+    space.add(joint)
+
+
+@pytest.mark.parametrize("when", ["before", "later"])
+@pytest.mark.parametrize("part", [_sensor, _group, _mask, _joint], ids=lambda f: f.__name__)
+def test_parts_that_pymunk_keeps_apart_do_not_touch(part, when):
+    """Of three blocks in a row the first two do not meet; the third meets the second, as it would without them."""
+    space = pymunk.Space()
+    block, shapes_of = shapes.box(0.2, 0.2), []
+    for x, v in ((0.0, 2.0), (0.25, 0.0), (0.5, -1.0)):
+        body = block.body(density=100.0)
+        body.position, body.velocity = (x, 0), (v, 0)
+        shapes_of.append(block.add_to(body, elasticity=1.0))
+        space.add(body, shapes_of[-1])
+    if part is _sensor:
+        space.remove(shapes_of[2].body, shapes_of.pop())
+    if when == "before":
+        part(space, *shapes_of[:2])
+    assembly = Assembly(k=1e8)
+    for shape in shapes_of:
+        assembly.part(shape, RUBBER, mesh=0.05)
+    ra.attach(space, flexible=assembly)
+    if when == "later":
+        space.step(1e-3)  # 0.05 between them, 2 mm nearer
+        part(space, *shapes_of[:2])
+    for _ in range(80):
+        space.step(1e-3)
+    one, two, *_ = (shape.body for shape in shapes_of)
+    assert one.velocity == pytest.approx((2.0, 0.0), abs=1e-12)
+    assert two.position.x - one.position.x < 0.2  # one is in the other
+    # equal masses: the second goes on with the third's velocity, for what the step's first order keeps of it
+    assert two.velocity.x == pytest.approx(0.0 if part is _sensor else -1.0, abs=1e-2)
+
+
+def test_who_moves_a_part_and_what_is_tied_to_it():
+    """The assembly does; a function of the user's on one of these bodies is refused, when it comes, and kept."""
+
+    def still(body, gravity, damping, dt):
+        body.velocity = 0, 0
+
+    for who in ("part", "tied"):
+        space, assembly, (one, _, ball) = two_blocks("compliant")
+        space.add(pymunk.DampedSpring(one, ball, (0, 0), (0, 0), 1.0, 10.0, 0.0))
+        body = one if who == "part" else ball
+        body.velocity_func = still
+        with pytest.raises(ValueError, match="velocity_func"):
+            ra.attach(space, flexible=assembly)
+        assert body.velocity_func is still and ra.attached(space) is None
+        body.velocity_func = pymunk.Body.update_velocity
+        contact = ra.attach(space, flexible=assembly)
+        space.step(1e-3)
+        body.velocity_func, at = still, one.position
+        with pytest.raises(ValueError, match="velocity_func"):
+            space.step(1e-3)
+        assert one.position == at
+        contact.detach()
+        assert body.velocity_func is still
+        space.step(1e-3)
+        assert body.velocity.length == 0.0
+
+
 def test_stress_of_a_part():
     """Two blocks pressed together by forces: the pressure between them over the height is what the stress says."""
     space, assembly, (one, two, ball) = two_blocks("compliant", gap=-0.05)
