@@ -52,6 +52,9 @@ RESOLVED = 0.3  # step times the highest angular frequency of a contact: symplec
 TRAVEL = 0.25  # of the mesh size: how far a boundary moves in a step, before a contact is seen
 COARSER = 2.0  # how fast steps grow again where contacts have gone or become softer, a factor a frame
 SPRINGS_KEPT = 256  # contact regions whose friction a frame that is run again remembers
+MOST_STEPS = (
+    100_000  # of a frame: a second or more of it, where something moves faster than a game can have meant
+)
 TRIES = 8  # a frame whose steps turn out too long is run again with shorter ones, so many times at the most
 
 
@@ -284,8 +287,10 @@ class Assembly:
         self._read_shapes(sim)
         start, links = tied.members.copy(), tied.links.copy()
         kept = [a.copy() for a in self._kept()]
-        steps = max(1, math.ceil(dt / min(self._step, self._longest or math.inf, self._travel(start)) - 1e-9))
-        for _ in range(TRIES):
+        longest = min(self._step, self._longest or math.inf, self._travel(start, dt))
+        asked, tries, code, stiffest = max(1.0, dt / longest - 1e-9), 0, 0, 0.0
+        while tries < TRIES and asked <= MOST_STEPS:
+            steps, tries = math.ceil(asked), tries + 1
             links["x"] = links["y"] = 0.0
             tied.links[:] = links
             code, stiffest = advance(
@@ -299,19 +304,24 @@ class Assembly:
             if code == FULL:
                 sim._make_room(2 * len(sim.scratch.load.force), sim._buffers)
             else:
-                steps = max(2 * steps, math.ceil(math.sqrt(stiffest) * dt / RESOLVED))
-                self._step = dt / steps
+                asked = max(2.0 * steps, math.sqrt(stiffest) * dt / RESOLVED)
             tied.members[:] = start
             for array, old in zip(self._kept(), kept, strict=True):
                 array[:] = old
         else:
             tied.links[:] = links
             give_back(start, start, tied.offsets, False)
-            told = f"a frame of {dt:g} of the flexible parts (h = {dt / steps:g}, {sim._trouble(code)}"
-            raise RuntimeError(told)
+            told = f"a frame of {dt:g} of the flexible parts, tried {tries} times"
+            if code < 0:
+                raise RuntimeError(f"{told}, at last with h = {dt / steps:g}: {sim._trouble(code)}")
+            raise RuntimeError(
+                f"{told}, asks for {asked:.3g} steps, expected at most {MOST_STEPS}: velocities up to"
+                f" {np.hypot(start['vx'], start['vy']).max():.3g}, contacts' angular frequencies up to"
+                f" {math.sqrt(stiffest):.3g}"
+            )
         self._before, self.steps = dt / steps, steps
         fastest = RESOLVED / math.sqrt(stiffest) if stiffest > 0 else math.inf
-        self._step = min(fastest, COARSER * self._step)
+        self._step = min(fastest, COARSER * (dt / steps if tries > 1 else self._step))
         give_back(tied.members, start, tied.offsets, True)
 
     def _read_shapes(self, sim: Simulation) -> None:
@@ -330,14 +340,29 @@ class Assembly:
         loads = [a for w in sim.works for a in (w.node_load, w.node_flag, w.hub_load, w.loaded)]
         return [*sim.state, *loads, sim._buffers.held, sim._buffers.springs[1, :SPRINGS_KEPT]]
 
-    def _travel(self, members: Any) -> float:
-        """Time in which no part's boundary moves by more than TRAVEL of the mesh size."""
+    def _travel(self, members: Any, dt: float) -> float:
+        """Time in which no boundary moves by more than TRAVEL of the mesh size: of parts that may meet another in dt,
+        against it; of parts that joints hold, in the world. What flies alone flies as exactly in one step."""
         sim = self.simulation
         assert sim is not None
         size = self._size if math.isfinite(self._size) else 0.05 * float(sim.system.size.min())
         parts = members[: len(self._parts)]
-        speed = np.hypot(parts["vx"], parts["vy"]) + np.abs(parts["w"]) * sim.system.size
-        fastest = float(speed.max())
+        turn = np.exp(1j * parts["angle"])
+        arm = turn * (parts["off_x"] + 1j * parts["off_y"])
+        at = parts["x"] + 1j * parts["y"] + arm
+        v = parts["vx"] + 1j * parts["vy"] + 1j * parts["w"] * arm
+        a = parts["ax"] + 1j * parts["ay"]
+        spin = np.abs(parts["w"]) * sim.system.size
+        i, j = sim.pairs.T
+        speed = np.abs(v[i] - v[j])
+        reach = 2.0 * (speed + np.abs(a[i] - a[j]) * dt) * dt + size  # contacts and joints may make it faster
+        near = np.abs(at[i] - at[j]) < sim.system.size[i] + sim.system.size[j] + reach
+        links = self._tied.links
+        held = np.isin(np.arange(len(parts)), [links["a"], links["b"]])
+        fastest = max(
+            float((speed + np.maximum(spin[i], spin[j]))[near].max(initial=0.0)),
+            float((np.abs(v) + spin)[held].max(initial=0.0)),
+        )
         return TRAVEL * size / fastest if fastest > 0 else math.inf
 
     # --- copies ---

@@ -308,7 +308,9 @@ class Simulation:
                 out[: filled[0]], np.vstack(kept[0]), np.vstack(kept[1]), evaluations, shapes
             )
         if code < 0:
-            raise RuntimeError(f"step {done} (t = {self.time:.6g}, h = {h:g}, {self._trouble(code)}")
+            raise RuntimeError(
+                f"step {done} (t = {self.time:.6g}, h = {h:g}, halved {HALVINGS} times): {self._trouble(code)}"
+            )
         # a column at a time: a maximum over the long axis of a narrow array takes numpy fifty times as long
         spin = np.array([np.abs(w).max(initial=0.0) for w in self.record.v[:, :, 2].T])
         watch(self.bodies, self.system.size, self._buffers.most, spin)
@@ -316,13 +318,12 @@ class Simulation:
 
     def _trouble(self, code: int) -> str:
         """What stopped a run, where, and what may help."""
-        reason = {
+        told = {
             MANY: "more contact points than the work arrays hold",
             TORN: "a boundary crosses itself, or the bodies overlap deeper than a feature",
             SLICED: "one body passes through the other",
             NOT_FINITE: "the state is not finite: expected forces, stiffnesses and speeds whose products are numbers",
         }.get(code, "no convergence")
-        told = f"halved {HALVINGS} times): {reason}"
         if len(self.pairs):
             p = int(np.argmax(np.abs(self._buffers.force).sum(1)))
             i, j = (int(b) for b in self.pairs[p])
