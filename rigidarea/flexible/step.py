@@ -140,7 +140,9 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
         for j in range(hi - lo):
             moved[j] += row[j] * x
     for j in range(hi - lo):
-        _move_mode(state, scheme, lo + j, d[j] + moved[j] * w.mobility[j])
+        more = d[j] + moved[j] * w.mobility[j]
+        change = max(change, abs(more) * sy.amplitude[lo + j] / sy.size[b])
+        _move_mode(state, scheme, lo + j, more)
     c, s = np.cos(state.x[b, 2]), np.sin(state.x[b, 2])
     w.hub_load[0], w.hub_load[1] = c * mu[0] + s * mu[1], -s * mu[0] + c * mu[1]
     w.hub_load[2] = mu[2] + sy.torque[b]
