@@ -22,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from rigidarea.compile.jit import entry, kernel
+from rigidarea.flexible.dense import dot
 
 Array = NDArray[np.float64]
 
@@ -61,6 +62,18 @@ def inertia_forces(
         moment += gq[i] * ddq[i] + 2.0 * omega * (h[i] + free[i]) * dq[i]
         out[i] = gq[i] * alpha + ddq[i] - omega * omega * (h[i] + free[i]) + 2.0 * omega * gd[i] + tension[i]
     return moment + j * alpha
+
+
+@kernel
+def momentum_of_modes(h: Array, g: Array, stiff: Array, q: Array, dq: Array) -> tuple[float, float]:
+    """What modes add to the moment of inertia, 2 hᵀq + qᵀ(I − S) q, and their own moment of momentum, (G q)ᵀ q̇."""
+    inertia = momentum = 0.0
+    for i in range(len(q)):
+        inertia += q[i] * (2.0 * h[i] + q[i])
+        if len(stiff) > 0:
+            inertia -= q[i] * dot(stiff[0, i], q)
+        momentum += dot(g[i], q) * dq[i]
+    return inertia, momentum
 
 
 @kernel

@@ -18,7 +18,7 @@ from rigidarea.compile.raw_memory import array_at, caller, record
 from rigidarea.contact.space_record import OFFSETS
 from rigidarea.flexible.bodies import work_at
 from rigidarea.flexible.resist import keep_springs
-from rigidarea.flexible.step import step
+from rigidarea.flexible.step import spin_of_modes, step
 
 Ints = NDArray[np.int64]
 
@@ -234,6 +234,10 @@ def advance(  # type: ignore[no-untyped-def]
         for b in range(count):
             _place_frame(state, members, b, h)
             _rate(buf.rate[b], members[b])
+            buf.momentum[b] = 0.0
+            if members[b].inverse_moment > 0.0:
+                more, swing = spin_of_modes(bodies, sy, state, b)
+                buf.momentum[b] = (1.0 / members[b].inverse_moment + more) * members[b].w + swing
             w, mu, angle = work_at(bodies, b), state.mu[b], members[b].angle
             c, sn = np.cos(angle), np.sin(angle)
             w.hub_load[0], w.hub_load[1], w.hub_load[2] = (
@@ -254,11 +258,15 @@ def advance(  # type: ignore[no-untyped-def]
             if m < count:
                 fx, fy, moment = buf.load[m, 0], buf.load[m, 1], buf.load[m, 2]
                 moment += (buf.pose[m, 0] - a.x) * fy - (buf.pose[m, 1] - a.y) * fx
-                moment -= buf.hubs[m, 4] - sy.inertia[m] * state.acc[m, 2]  # of the modes' inertia
             a.vx += h * (a.ax + fx * a.inverse_mass)
             a.vy += h * (a.ay + fy * a.inverse_mass)
             a.turn = a.w
             a.w += h * (a.alpha + moment * a.inverse_moment)
+            # frame and modes turn together: what they exchange is in neither's sum
+            if m < count and sy.first[m + 1] > sy.first[m] and a.inverse_moment > 0.0:
+                more, swing = spin_of_modes(bodies, sy, state, m)
+                momentum = buf.momentum[m] + h * (a.alpha / a.inverse_moment + moment)
+                a.w = (momentum - swing) / (1.0 / a.inverse_moment + more)
         for b in range(count):  # what joints will have added, less what there is now
             _load_hub(state.mu[b], members[b], buf.load[b], buf.pose[b], h, -1.0)
         if len(links) > 0:

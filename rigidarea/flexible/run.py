@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from rigidarea.compile.jit import entry, kernel
-from rigidarea.flexible.bodies import boundary_at, coupling_at, geometric_at, work_at
+from rigidarea.flexible.bodies import boundary_at, work_at
 from rigidarea.flexible.boundary import make_ready
 from rigidarea.flexible.boundary_places import clear_nodes
-from rigidarea.flexible.dense import dot
 from rigidarea.flexible.hub import hub_angle
 from rigidarea.flexible.resist import keep_springs
 from rigidarea.flexible.scratch import FULL
-from rigidarea.flexible.step import step
+from rigidarea.flexible.step import spin_of_modes, step
 from rigidarea.flexible.tension import between
 
 NOT_FINITE = -11
@@ -105,15 +104,11 @@ def _record(bodies, sy, state, buf, row):  # type: ignore[no-untyped-def]
     at = HEAD
     for b in range(count):
         lo, hi = sy.first[b], sy.first[b + 1]
-        j, v, g, stiff = sy.inertia[b], state.v[b, 2], coupling_at(bodies, b), geometric_at(bodies, b)
-        q, tight = state.q[lo:hi], len(stiff) > 0 and work_at(bodies, b).tight[1]
-        for i in range(hi - lo):
-            speed = state.dq[lo + i]
-            if tight:
-                j -= q[i] * dot(stiff[0, i], q)
-            j += 2.0 * sy.stretch[lo + i] * q[i] + q[i] ** 2
-            kinetic += 0.5 * speed**2 + v * dot(g[i], q) * speed
-        kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2) + 0.5 * j * v * v
+        v, (more, swing) = state.v[b, 2], spin_of_modes(bodies, sy, state, b)
+        for i in range(lo, hi):
+            kinetic += 0.5 * state.dq[i] ** 2
+        kinetic += 0.5 * sy.mass[b] * (state.v[b, 0] ** 2 + state.v[b, 1] ** 2)
+        kinetic += v * swing + 0.5 * (sy.inertia[b] + more) * v * v
         for i in range(3):
             row[at + i] = state.x[b, i]
             row[at + 3 + i] = state.v[b, i]

@@ -22,7 +22,7 @@ from rigidarea.flexible.boundary_places import clear_loads, clear_nodes
 from rigidarea.flexible.contacts import all_apart, correct_forces, evaluate, poses
 from rigidarea.flexible.dense import eliminate
 from rigidarea.flexible.eliminate_loads import eliminate_loads, renew_loads
-from rigidarea.flexible.floating_frame import inertia_forces, turning_rows
+from rigidarea.flexible.floating_frame import inertia_forces, momentum_of_modes, turning_rows
 from rigidarea.flexible.foresee import foresee, note_places
 from rigidarea.flexible.hub import Hub, hub_of, hub_of_mode, keep_turn, second_order, static_displacement
 from rigidarea.flexible.mechanism_joints import correct_joints, joint_forces, joint_rows
@@ -150,6 +150,17 @@ def _correct(body: Boundary, w: Work, g: Array, sy, buf, s_load, state, scheme, 
 
 
 @kernel
+def spin_of_modes(bodies, sy, state, b):  # type: ignore[no-untyped-def]
+    """What the modes of body b add to its moment of inertia, and their own moment of momentum, in the present state."""
+    lo, hi, stiff = sy.first[b], sy.first[b + 1], geometric_at(bodies, b)
+    if not work_at(bodies, b).tight[1]:
+        stiff = stiff[:0]
+    return momentum_of_modes(
+        sy.stretch[lo:hi], coupling_at(bodies, b), stiff, state.q[lo:hi], state.dq[lo:hi]
+    )
+
+
+@kernel
 def _turn_hubs(bodies, sy, state, scheme):  # type: ignore[no-untyped-def]
     """Hubs' static rotations under the loads of the last correction."""
     for b in range(len(sy.mass)):
@@ -254,6 +265,9 @@ def step(bodies, sy, state, pairs, st, s, found, buf, t, h):  # type: ignore[no-
     for iteration in range(1, NEWTON_LIMIT + 1):
         poses(state.x, buf)
         for b in range(count):
+            if sy.fixed[b] == 1 and sy.inverse[b, 1] > 0.0 and sy.first[b + 1] > sy.first[b]:
+                more, swing = spin_of_modes(bodies, sy, state, b)
+                state.v[b, 2] = (buf.momentum[b] - swing) / (1.0 / sy.inverse[b, 1] + more)
             work_at(bodies, b).spin[0] = state.v[b, 2] ** 2
             if sy.fixed[b] == 0:
                 for i in range(3):

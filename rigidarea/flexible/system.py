@@ -120,6 +120,7 @@ class Buffers(NamedTuple):
     answer: Array  # (2, c) change of each load, along it and across
     # friction and damping, see ``resist``
     rate: Array  # (b, 3) velocities of the frames
+    momentum: Array  # (b,) moment of momentum of frame and modes of a part of a space, see ``inspace``
     clock: Array  # (2,) step length, change of a velocity by that of its position
     springs: Array  # (3, REGIONS, 4) pair, place (2), stretch: of this evaluation, the last step, the step before it
     held: Ints  # (3,) how many
@@ -144,7 +145,7 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros((2 * room, 2 * room)), np.zeros((most, 2 * room)), np.zeros((room, wide)),
         np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros((6 * n, 6 * n + 1)),
         np.zeros(unknowns),
-        np.zeros((2, room)), np.zeros((n, 3)), np.zeros(2),
+        np.zeros((2, room)), np.zeros((n, 3)), np.zeros(n), np.zeros(2),
         np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
         np.zeros((4, most)), np.zeros(5),
     )  # fmt: skip
