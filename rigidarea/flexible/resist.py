@@ -6,7 +6,7 @@ at rest (``kernel.impact.damping_ratio``). Where the chord grows with the depth 
 
 Friction is a spring of 2/7 of the normal stiffness that a region remembers, stretched by the slip and held below μ
 times the normal force (P. A. Cundall and O. D. L. Strack, Géotechnique 29, 1979, doi:10.1680/geot.1979.29.1.47): it
-holds for ever what it holds. The same as the rigid mode's.
+holds for ever what it holds, and while it holds a dashpot of the same ζ is beside it, or what it holds would vibrate.
 
 Both act on the bodies as wholes: deformation answers to the normal loads only.
 """
@@ -43,6 +43,14 @@ def _stretch_before(buf, p, x, y):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _dashpot(sy, p, ia, ib, turn_a, turn_b, stiff):  # type: ignore[no-untyped-def]
+    """2 ζ √(k m) of a pair's spring of stiffness k; its bodies' arms about it, and their effective mass m."""
+    mobility = sy.inverse[ia, 0] + sy.inverse[ib, 0]
+    mobility += turn_a * turn_a * sy.inverse[ia, 1] + turn_b * turn_b * sy.inverse[ib, 1]
+    return 2.0 * sy.ratio[p] * np.sqrt(stiff / mobility) if mobility > 0.0 else 0.0
+
+
+@kernel
 def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
     """Adds a region's damping and friction to loads and tangent, and its spring to this evaluation's."""
     nx, ny, x, y = r["nx"], r["ny"], r["x_chord"], r["y_chord"]
@@ -55,9 +63,7 @@ def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
     stiff = k * r["chord"]
     if sy.ratio[p] > 0.0:
         ta, tb = ax * ny - ay * nx, bx * ny - by * nx
-        mobility = sy.inverse[ia, 0] + sy.inverse[ib, 0]
-        mobility += ta * ta * sy.inverse[ia, 1] + tb * tb * sy.inverse[ib, 1]
-        c = 2.0 * sy.ratio[p] * np.sqrt(stiff / mobility) if mobility > 0.0 else 0.0
+        c = _dashpot(sy, p, ia, ib, ta, tb, stiff)
         force = c * (vx * nx + vy * ny)
         if force < -r["force"]:
             force, c = -r["force"], 0.0
@@ -67,12 +73,15 @@ def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
         ta, tb = ax * ty - ay * tx, bx * ty - by * tx
         limit = sy.friction[p] * r["force"]
         hold = TANGENT_STIFFNESS * stiff
-        stretch = _stretch_before(buf, p, x, y) + buf.clock[0] * (vx * tx + vy * ty)
-        tangent = hold * buf.clock[0] * buf.clock[1]
+        c = _dashpot(sy, p, ia, ib, ta, tb, hold)
+        slip = vx * tx + vy * ty
+        stretch = _stretch_before(buf, p, x, y) + buf.clock[0] * slip
         if abs(hold * stretch) > limit:
-            stretch = limit / hold if stretch > 0.0 else -limit / hold
-            tangent = 0.0
-        _push(buf, p, ia, ib, tx, ty, ta, tb, hold * stretch, tangent)
+            stretch, c = limit / hold if stretch > 0.0 else -limit / hold, 0.0
+        force, tangent = hold * stretch + c * slip, (hold * buf.clock[0] + c) * buf.clock[1]
+        if abs(force) >= limit:
+            force, tangent = min(max(force, -limit), limit), 0.0
+        _push(buf, p, ia, ib, tx, ty, ta, tb, force, tangent)
         kept = buf.springs[0, buf.held[0]]
         kept[0], kept[1], kept[2], kept[3] = p, x, y, stretch
         buf.held[0] += 1

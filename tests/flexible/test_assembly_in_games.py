@@ -170,6 +170,30 @@ def test_parts_that_pymunk_keeps_apart_do_not_touch(part, when):
     assert two.velocity.x == pytest.approx(0.0 if part is _sensor else -1.0, abs=1e-2)
 
 
+@pytest.mark.parametrize("level", ["rigid", "compliant"])
+def test_a_block_that_friction_holds_on_a_slope_is_at_rest(level):
+    """tan 0.3 = 0.31 < 0.6. The spring that holds it has a dashpot: nothing else takes a vibration along the slope."""
+    space = pymunk.Space()
+    space.gravity = 0, -9.81
+    slope, outline = pymunk.Body(body_type=pymunk.Body.KINEMATIC), shapes.box(0.2, 0.2)
+    block = outline.body(density=100.0)
+    slope.angle = block.angle = 0.3
+    block.position = pymunk.Vec2d(0, 0.2005).rotated(0.3)
+    keys = {} if level == "rigid" else {"mesh": 0.05}
+    assembly = Assembly(k=1e7)
+    for body, shape in (
+        (slope, shapes.box(2.0, 0.2).add_to(slope, friction=0.6)),
+        (block, outline.add_to(block, friction=1.0)),
+    ):
+        space.add(body, shape)
+        assembly.part(shape, Material(5e8, 0.3, 1000.0, 0.1), level=level, **keys)
+    ra.attach(space, flexible=assembly)
+    for _ in range(60):
+        space.step(1 / 60)
+    assert block.velocity.length < 1e-8  # of 10 m/s in a second of free fall; rounding alone is left
+    assert abs(block.angular_velocity) < 1e-8
+
+
 def test_who_moves_a_part_and_what_is_tied_to_it():
     """The assembly does; a function of the user's on one of these bodies is refused, when it comes, and kept."""
 
