@@ -87,7 +87,7 @@ class Assembly:
         shape: pymunk.Shape,
         material: Material,
         *,
-        mesh: float | None = None,
+        mesh: float | Sequence[float] | None = None,
         level: str = "compliant",
         hub: int | None = None,
         contact: Sequence[int] = (0,),
@@ -99,11 +99,11 @@ class Assembly:
 
         shape: of a body of the space, dynamic or kinematic (``Outline.add_to``, or one of pymunk's with an area); its
         outline is meshed. material: for elasticity and the inertia of modes; mass and moment of the body are pymunk's.
-        mesh: spacing of the boundary nodes (length). level: "rigid" (then neither mesh nor hub), "compliant" or
-        "modal" with ``modes`` and their ``damping`` ratio. hub: the ring (1 … the holes) that the body's joints hold;
-        None: they pull at all of the body at once. contact: the rings that touch other parts. refine: contact points a
-        mesh edge. Raises ValueError for settings out of range and a body that is a part already; RuntimeError once
-        attached.
+        mesh: spacing of the boundary nodes (length), one or one a ring. level: "rigid" (then neither mesh nor hub),
+        "compliant" or "modal" with ``modes`` and their ``damping`` ratio. hub: the ring (1 … the holes) that the
+        body's joints hold; None: they pull at all of the body at once. contact: the rings that touch other parts.
+        refine: contact points a mesh edge. Raises ValueError for settings out of range and a body that is a part
+        already; RuntimeError once attached.
         """
         if self._space is not None:
             raise RuntimeError("part() on an attached assembly: add parts before attach()")
@@ -119,7 +119,7 @@ class Assembly:
             damping=damping, cache=self._cache,
         )  # fmt: skip
         if level != "rigid" and mesh is not None:
-            self._size = min(self._size, mesh)
+            self._size = min(self._size, float(np.min(mesh)))
         self._parts.append((shape, made))
         return len(self._parts) - 1
 

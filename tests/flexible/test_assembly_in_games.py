@@ -1,5 +1,7 @@
 """What a game does to flexible parts: settings that change, speeds, falls, functions of its own, spins."""
 
+import math
+
 import pymunk
 import pytest
 
@@ -24,6 +26,22 @@ def two_blocks(gap: float, speed: float = 0.0, **keys):
         assembly.part(shape, RUBBER, mesh=0.05)
         bodies.append(body)
     return space, assembly, bodies
+
+
+def test_a_mesh_size_for_each_ring():
+    """As `Mechanism.body` takes it; the finest says how far a boundary goes in a step."""
+    steps = []
+    for mesh in (0.02, [0.04, 0.02]):
+        space, body = pymunk.Space(), pymunk.Body(1.0, 1.0)
+        body.angular_velocity = 10.0
+        shape = shapes.ring(0.05, 0.1).add_to(body)
+        space.add(body, shape, pymunk.PivotJoint(space.static_body, body, (0, 0)))
+        assembly = Assembly(k=1e7)
+        assembly.part(shape, RUBBER, mesh=mesh, hub=1)
+        ra.attach(space, flexible=assembly)
+        space.step(1 / 60)
+        steps.append(assembly.steps)
+    assert steps == [math.ceil(10.0 * 0.1 / 60 / (0.25 * 0.02))] * 2
 
 
 def test_steps_are_for_what_may_meet():
