@@ -92,11 +92,3 @@ def turning_rows(
         inertia += (2.0 * h[i] + free[i]) * q[i]
         moving += 2.0 * (h[i] + free[i]) * dq[i]
     return inertia * acc + moving * vel
-
-
-def kinetic_energy(
-    mass: float, j0: float, h: Array, g: Array, v: Array, omega: float, q: Array, dq: Array
-) -> float:
-    """½ q̇ᵀ M q̇ of one body, v (2,) the velocity of the frame's origin."""
-    j = j0 + 2 * h @ q + q @ q
-    return float(0.5 * mass * (v @ v) + 0.5 * j * omega**2 + omega * (g @ q) @ dq + 0.5 * dq @ dq)
