@@ -52,9 +52,7 @@ RESOLVED = 0.3  # step times the highest angular frequency of a contact: symplec
 TRAVEL = 0.25  # of the mesh size: how far a boundary moves in a step, before a contact is seen
 COARSER = 2.0  # how fast steps grow again where contacts have gone or become softer, a factor a frame
 SPRINGS_KEPT = 256  # contact regions whose friction a frame that is run again remembers
-MOST_STEPS = (
-    100_000  # of a frame: a second or more of it, where something moves faster than a game can have meant
-)
+MOST_STEPS = 100_000  # of a frame: a second or more of it, for what moves faster than a game can have meant
 TRIES = 8  # a frame whose steps turn out too long is run again with shorter ones, so many times at the most
 
 
