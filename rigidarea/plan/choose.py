@@ -133,8 +133,8 @@ class Search:
         return tried
 
     def _cheapest(self, native: bool) -> Tried:
-        """The cheapest setting within the tolerance; where none is, the one with the least error that was measured (the
-        finest is there to measure by)."""
+        """The cheapest setting within the tolerance, the softest of those; where none is, the one with the least error
+        that was measured (the finest is there to measure by)."""
         probe, given, tolerance = self.probe, self.given, self.probe.tolerance
         for group in self._groups(native):
             if min(self._attempt(setting).error for setting in group) <= tolerance:
@@ -146,7 +146,8 @@ class Search:
             return max(self.tried, key=lambda each: each.cost_s)
         if not within:
             return min(self.tried, key=lambda each: each.error)
-        chosen = min(within, key=lambda each: (each.cost_s, each.error))
+        # no stiffer than need be, at one cost: fewer sweeps, and what comes in later, are solved the better
+        chosen = min(within, key=lambda each: (each.cost_s, -each.setting.penetration, each.error))
         setting = chosen.setting
         if "steps" not in given and setting.steps > max(2, self.least.steps if self.least else 0):
             between = self._attempt(setting._replace(steps=3 * setting.steps // 4))
