@@ -271,6 +271,8 @@ def visit(row: Any, a: Any, b: Any) -> float:
     Friction that grips is eliminated; where that is more than its bound it slides, as much as the ends then bear: the
     local problem of non-smooth contact dynamics, solved exactly (M. Jean, "The non-smooth contact dynamics method",
     1999, doi:10.1016/S0045-7825(98)00383-1). Normal force and friction by turns diverge where a body turns easily.
+    Where what slides draws the two together, the more the more they bear, nothing need solve that (P. Painlevé, C. R.
+    Acad. Sci. 121 (1895)): there is none then.
     """
     ux = a.vx - b.vx
     uy = a.vy - b.vy
@@ -295,9 +297,11 @@ def visit(row: Any, a: Any, b: Any) -> float:
             side = math.copysign(row.friction, row.lt + dt)
             given = math.copysign(row.most, row.lt + dt) - row.lt
             m11 = row.alpha + gamma * row.w11
-            if m11 + c1 * side > 0.0:
-                d1 = max(-row.l1, (r1 - c1 * (side * row.l1 + given)) / (m11 + c1 * side))
-            dt = side * (row.l1 + d1) + given
+            slides = side * row.l1 + given
+            if m11 + c1 * side <= 0.0:
+                side, slides = 0.0, -row.lt
+            d1 = max(-row.l1, (r1 - c1 * slides) / (m11 + c1 * side))
+            dt = slides + side * d1
     else:
         turn = a.w - b.w
         left1 = row.alpha * (row.f1 - row.l1)
@@ -317,17 +321,18 @@ def visit(row: Any, a: Any, b: Any) -> float:
         both = row.l1 + row.l2
         if abs(row.lt + dt) > row.friction * (both + d1 + d2) + row.most:
             side = math.copysign(row.friction, row.lt + dt)
-            given = math.copysign(row.most, row.lt + dt) - row.lt
+            slides = side * both + math.copysign(row.most, row.lt + dt) - row.lt
             q1 = c1 * side
             q2 = c2 * side
             own = (m11 + q1) * (m22 + q2)
-            if m11 + q1 > 0.0 and m22 + q2 > 0.0 and own - (m12 + q1) * (m12 + q2) > -ONE_END * own:
-                slides = side * both + given
-                d1, d2 = _press(
-                    row.l1, row.l2, r1 - c1 * slides, r2 - c2 * slides,
-                    m11 + q1, m12 + q1, m12 + q2, m22 + q2,
-                )  # fmt: skip
-            dt = side * (both + d1 + d2) + given
+            if min(m11 + q1, m22 + q2) <= 0.0 or own - (m12 + q1) * (m12 + q2) <= -ONE_END * own:
+                side = q1 = q2 = 0.0
+                slides = -row.lt
+            d1, d2 = _press(
+                row.l1, row.l2, r1 - c1 * slides, r2 - c2 * slides,
+                m11 + q1, m12 + q1, m12 + q2, m22 + q2,
+            )  # fmt: skip
+            dt = slides + side * (d1 + d2)
         row.l2 += d2
     row.l1 += d1
     row.lt += dt
