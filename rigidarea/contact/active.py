@@ -13,7 +13,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
-from .constants import DIVERGES, LEFT, MOVED, SETTLED
+from .constants import LEFT, MOVED, SETTLED
 from .islands import root_of, unite
 from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
@@ -34,7 +34,6 @@ ISLAND = record(
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
-        ("least", "f8"),  # least of that in a sweep until now; -1: friction has been held
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
         ("ahead", "f8"),
@@ -100,7 +99,6 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
             tables.islands[count].rows = 0
             tables.islands[count].active = 0
             tables.islands[count].known = 0
-            tables.islands[count].least = math.inf
             count += 1
         island = tables.islands[mobility[root].island]
         island.rows += 1 if tables.rows[r].ends > 0 else 2
@@ -204,37 +202,15 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
     that has moved much: then a blow may go on through it (`blows`).
     """
     dropped = False
-    diverges = False
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
-        island.least = min(island.least, island.moved)
-        if island.moved > max(island.small, DIVERGES * island.least):
-            island.least = -1.0
-            diverges = True
         enough = SETTLED if swept < least else most
         alone = island.rows == 1 and island.moved <= island.small
         if alone or (swept > 1 and island.moved <= enough * island.small):
             island.active = 0
             dropped = True
-    if diverges:
-        _hold_friction(tables)
     if dropped:
         list_active(tables)
-
-
-@kernel
-def _hold_friction(tables: Tables) -> None:
-    """Friction has the bounds of now, whatever its contacts bear, where sweeps lead away from a solution.
-
-    That a contact which bears more may also grip more is no symmetric law: where what grips turns bodies easily, each
-    sweep can be farther off than the one before. With bounds that are given the sweeps minimize a convex function, and
-    converge (Tresca's friction; P. D. Panagiotopoulos, Ing.-Arch. 44 (1975), doi:10.1007/BF00534623).
-    """
-    for k in range(tables.counters[QUEUE]):
-        row = tables.rows[tables.queue[k].row]
-        if tables.islands[tables.queue[k].island].least < 0.0 and row.ends > 0:
-            row.most += row.friction * (row.l1 + row.l2)
-            row.friction = 0.0
 
 
 @kernel

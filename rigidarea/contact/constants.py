@@ -80,16 +80,14 @@ RELAX_SWEEPS = 5
 #: substep, and a part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
 MOVED = 0.003
+#: It has, where a sweep has changed nothing by more than this part of what is small: the next substep goes on from there.
+SETTLED = 5e-3
 #: Energy that contacts give is no reason to solve again where it is less than this part of what they do: a solve ends
 #: when a sweep changes so little (SETTLED), which gives or takes; taken back alone, elastic bodies would lose by it.
 UNSOLVED_WORK = 1e-3
 #: And this part of the bodies' own, where what is pressed in opens without giving speed (`relax`), as far as it is
 #: solved: to a tenth (LEFT). All that is pressed in is far more where thin bodies are deep in each other.
 LOOSE = 0.1
-#: It leads away from one, where a sweep changes so many times as much as one before.
-DIVERGES = 4.0
-#: It has, where a sweep has changed nothing by more than this part of that: the next substep goes on from there.
-SETTLED = 5e-3
 #: A speed smaller than this part of what pushes gives in a substep is rounding's, and none: a program that asks whether
 #: what lies on a platform moves up is not answered by the last digit.
 ROUNDING = 1e-12
