@@ -80,7 +80,7 @@ RELAX_SWEEPS = 5
 #: substep, and a part of the bodies' speed: a collapse is solved as far as it is seen, a pile so far that it rests.
 LEFT = 0.1
 MOVED = 0.003
-#: It has, where a sweep has changed nothing by more than this part of what is small: the next substep goes on from there.
+#: It has, where a sweep has changed nothing by more than this part of what is small: the next goes on from there.
 SETTLED = 5e-3
 #: Energy that contacts give is no reason to solve again where it is less than this part of what they do: a solve ends
 #: when a sweep changes so little (SETTLED), which gives or takes; taken back alone, elastic bodies would lose by it.
