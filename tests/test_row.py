@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 # --- one row of the solve, against closed forms ---
@@ -94,6 +94,38 @@ def test_a_visit_solves_its_row(kernel: Any, a: Any, b: Any, c: Any, h: float, a
     rounding = 1e-12 * (1 + h * damper * 50)
     assert row["l1"] == pytest.approx(max(asked, 0.0), rel=1e-9, abs=rounding)
     assert asked <= row["l1"] + 1e-9 * abs(asked) + rounding
+
+
+@given(
+    arm=st.floats(-1, 1), lean=st.sampled_from([-1.0, 1.0]), slip=st.floats(-50, 50), speed=st.floats(-9, 9),
+    friction=st.floats(0.1, 1), easily=st.floats(0, 6),
+)  # fmt: skip
+@example(arm=-0.73, lean=-1.0, slip=-24.0, speed=0.0, friction=0.5, easily=3.9)
+@example(arm=0.74, lean=-1.0, slip=44.0, speed=-2.0, friction=0.8, easily=2.5)
+def test_whatever_friction_does_a_visit_solves_its_normal(
+    kernel: Any, arm: float, lean: float, slip: float, speed: float, friction: float, easily: float
+) -> None:
+    """The same with friction, of a body that turns easily: also where what slides would draw the two together.
+
+    (Its normal force was then what it is where friction grips, and left any speed.)
+    """
+    a = body(kernel, x=arm, y=lean, vx=slip, vy=speed, inverse_mass=1.0, inverse_moment=10.0**easily)
+    b = body(kernel)
+    row = row_of(kernel, a, b, 1e-2, elasticity=0.0, friction=friction, straight=0.5).row
+    row["l1"] = row["l2"] = row["lt"] = 0.0
+    assert row["ends"] == 2
+    most = abs(closing(row, a, b)) + abs(row["t1"]) + abs(row["t2"])
+    kernel.row.visit(row, a, b)
+    ends = np.array([row["l1"], row["l2"]])
+    speeds = closing(row, a, b) - a["w"] * np.array([row["e1"], row["e2"]])
+    bed = row["own"] * np.eye(2) + row["other"] * (1.0 - np.eye(2))
+    missing = row["alpha"] * bed @ ([row["f1"], row["f2"]] - ends)
+    left = missing + row["gamma"] * (speeds - [row["t1"], row["t2"]])
+    # speeds after are differences of those before and of what the impulses change
+    most += (row["w11"] + row["w22"]) * ends.max() + (abs(row["slip1"]) + abs(row["slip2"])) * abs(row["lt"])
+    rounding = 1e-9 * (row["alpha"] * abs(bed).sum() * (row["f1"] + row["f2"]) + row["gamma"] * most)
+    assert (left <= rounding).all()
+    assert (abs(left[ends > 0.0]) <= rounding).all()
 
 
 @pytest.mark.parametrize("speed", [-3.0, 0.0, 5.0])

@@ -37,8 +37,8 @@ def test_a_heap_of_small_moments(
     """Bodies with a share of their true moment (a box of 40 px with `Body(1, 1)`: 1/267) fall in a heap.
 
     They cannot rise by more than they fell, nor leave the room: kinetic energy and height together stay what they
-    were. A fifth more: steps that turn a body by radians lift its corners through others. (1e6 to 1e60 times as much
-    before; and 94 times, in one of 288 such heaps, while all that is pressed in counted as a spring's.)
+    were. (1e6 to 1e60 times as much before; 94 times, in one of 288 such heaps, while all that is pressed in counted as
+    a spring's, and what slides and draws in was solved as if it gripped.)
     """
     rng = random.Random(seed)
     space = pymunk.Space()
@@ -56,7 +56,7 @@ def test_a_heap_of_small_moments(
     start = _energy(space)
     for _ in range(240):
         space.step(DT)
-        assert _energy(space) < 1.2 * start
+        assert _energy(space) < 1.001 * start
     assert all(-5 < b.position.y < 800 for b in space.bodies)
 
 
