@@ -19,7 +19,10 @@ from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
     [
-        ("again", "i1"),  # 1: it is solved a second time (`given_energy`)
+        (
+            "again",
+            "i1",
+        ),  # bits, why it is solved a second time: contacts, joints give energy (`given_energy`)
         ("active", "i1"),  # 1: it is not solved yet
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
@@ -31,6 +34,9 @@ ISLAND = record(
         ("x", "f8"),  # momentum
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
+        ("moment", "f8"),
+        ("mending", "f8"),  # speeds at which its joints mend errors, summed (length/time)
+        ("turning", "f8"),  # and rotary ones (1/time)
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)

@@ -6,6 +6,10 @@ solve that has not converged. Without restitution and friction a solve gives non
 convex function that begins at 0 (J. J. Moreau, doi:10.1007/978-3-7091-2624-0_1). Of the two any mean obeys joints and
 friction's cone as both do, and its work is a square of the part: the largest part is taken that gives nothing. What
 joints do counts as well, through which a contact may give what it does not itself; not what motors and springs do.
+
+Joints give energy as they mend errors of place, without bound where two contradict each other on one body: its island
+may have as much of it as if every body went at all their speeds together, ½ M T^2 + ½ I R^2 (M, I: its mass and moment;
+T, R: the sums of its joints' mending speeds). What gives more is mixed with a solve that mends nothing.
 """
 
 from __future__ import annotations
@@ -17,8 +21,11 @@ from ..compile.jit import kernel
 from .active import island_of, list_active
 from .birth import drives
 from .constants import LOOSE, UNSOLVED_WORK
-from .joint import MOTOR, ROTARY_SPRING, SPRING
+from .joint import MOTOR, ROTARY_SPRING, SPRING, mending_speeds
 from .tables import ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
+
+#: Why an island is solved again (`Tables.islands.again`).
+CONTACTS_GIVE, JOINTS_GIVE = 1, 2
 
 
 @kernel(forceinline=True)
@@ -49,9 +56,15 @@ def _kind(tables: Tables, row: Any) -> int:
     return int(tables.joints[row.region].kind) if row.ends == 0 else -1
 
 
+@kernel(forceinline=True)
+def _holds(kind: int) -> bool:
+    """Whether a row is a joint's that mends errors of place."""
+    return kind >= 0 and kind != SPRING and kind != ROTARY_SPRING and kind != MOTOR
+
+
 @kernel
 def _note_held(tables: Tables) -> None:
-    """What springs may give back, `held` of each island.
+    """What springs may give back, `held` of each island, and twice what joints may as they mend, `mending`.
 
     What a step is too long for opens without giving speed (`relax`). That is not solved exactly: a LOOSE part of the
     bodies' energy may come of it.
@@ -60,10 +73,19 @@ def _note_held(tables: Tables) -> None:
         tables.islands[k].held = 0.0
         tables.islands[k].energy = 0.0
         tables.islands[k].product = 0.0
+        tables.islands[k].moment = 0.0
+        tables.islands[k].mending = 0.0
+        tables.islands[k].turning = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
-        if row.ends > 0:
-            island = tables.islands[island_of(tables, row)]
+        island = tables.islands[island_of(tables, row)]
+        if _holds(_kind(tables, row)):
+            t1, tt = mending_speeds(row)
+            if row.nx != 0.0 or row.ny != 0.0:
+                island.mending += math.sqrt(t1 * t1 + tt * tt)
+            else:
+                island.turning += abs(t1)
+        elif row.ends > 0:
             island.held += 0.5 * (1.0 - row.theta) * row.held
             island.product += 0.5 * row.theta * row.held
     for k in range(tables.counters[LIVE]):
@@ -76,16 +98,19 @@ def _note_held(tables: Tables) -> None:
             energy += (body.came_vx * body.came_vx + body.came_vy * body.came_vy) / body.inverse_mass
         if body.inverse_moment > 0.0:
             energy += body.came_w * body.came_w / body.inverse_moment
+            tables.islands[number].moment += 1.0 / body.inverse_moment
         tables.islands[number].energy += 0.5 * energy
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
         island.held += min(island.product, LOOSE * island.energy)
         island.product = 0.0
+        island.mending *= island.mass * island.mending
+        island.mending += island.moment * island.turning * island.turning
 
 
 @kernel
 def contacts_give_energy(tables: Tables, law: Law) -> bool:
-    """Whether contacts have given an island more energy than they had: those are active then, to be solved again.
+    """Whether an island has been given more energy than it may have: those are active then, to be solved again.
 
     `ahead` of each island is what they have given. Joints may take it, or give it in their place: not what they give as
     they mend an error of place, unless contacts have.
@@ -130,15 +155,21 @@ def contacts_give_energy(tables: Tables, law: Law) -> bool:
         island = tables.islands[k]
         given = island.ahead + island.product
         gives = max(given + island.part, min(island.ahead, given)) > island.curvature
-        island.active = gives and island.ahead != 0.0  # not where joints are alone
-        island.again = island.active
+        island.again = CONTACTS_GIVE if gives and island.ahead != 0.0 else 0
+        if min(given, -0.5 * island.part) > island.curvature + 0.5 * island.mending:
+            island.again += JOINTS_GIVE
+            island.held += 0.5 * island.mending
+        island.active = island.again > 0
         again |= island.active
     return again
 
 
 @kernel
 def begin_again(tables: Tables) -> None:
-    """From the velocities before the sweeps, without impulses, restitution, friction; what there was is taken down."""
+    """From the velocities before the sweeps, without impulses; what there was is taken down.
+
+    Where contacts give energy, without restitution and friction; where joints do, without what they mend.
+    """
     list_active(tables)
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
@@ -158,11 +189,17 @@ def begin_again(tables: Tables) -> None:
         row.l1 = 0.0
         row.l2 = 0.0
         row.lt = 0.0
+        again = tables.islands[tables.queue[k].island].again
         if row.ends > 0:
-            row.friction = 0.0
-            row.most = 0.0
-            row.t1 = max(0.0, row.t1)
-            row.t2 = max(0.0, row.t2)
+            if again != JOINTS_GIVE:
+                row.friction = 0.0
+                row.most = 0.0
+                row.t1 = max(0.0, row.t1)
+                row.t2 = max(0.0, row.t2)
+        elif again != CONTACTS_GIVE and _holds(_kind(tables, row)):
+            t1, tt = mending_speeds(row)
+            row.t1 -= t1
+            row.tt -= tt
 
 
 @kernel(forceinline=True)

@@ -171,6 +171,14 @@ def _bias_vector(row: Any, joint: Any, x: float, y: float, h: float) -> None:
 
 
 @kernel(forceinline=True)
+def mending_speeds(row: Any) -> tuple[float, float]:
+    """Of the speeds that a joint asks for along n and t, those that mend an error of place: a limit ahead has none."""
+    mends = (row.low < 0.0 and row.t1 > 0.0) or (row.high > 0.0 and row.t1 < 0.0)
+    mends_t = (row.low_t < 0.0 and row.tt > 0.0) or (row.high_t > 0.0 and row.tt < 0.0)
+    return row.t1 if mends else 0.0, row.tt if mends_t else 0.0
+
+
+@kernel(forceinline=True)
 def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
     """By which part of its effective mass a joint gives way: JOINT_GIVE, and more where it has an error to mend.
 
@@ -181,8 +189,7 @@ def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
     bears a load far above its own would give way to it the more the farther it has given way. (A limit that is not
     reached yet asks for nothing; a rotary joint turns by half a radian.)
     """
-    t1 = max(row.t1 if row.low < 0.0 else 0.0, -row.t1 if row.high > 0.0 else 0.0)
-    tt = max(row.tt if row.low_t < 0.0 else 0.0, -row.tt if row.high_t > 0.0 else 0.0)
+    t1, tt = mending_speeds(row)
     part = h * math.sqrt(t1 * t1 + tt * tt)
     if row.nx != 0.0 or row.ny != 0.0:
         least = min(a.extent if moves(a) else math.inf, b.extent if moves(b) else math.inf)

@@ -1,4 +1,4 @@
-"""Contacts give no energy: not of what turns easily, nor of bodies that are hinged to one another and bounce."""
+"""Contacts give no energy, of small moments or hinged; joints that contradict each other no more than they ask."""
 
 from __future__ import annotations
 
@@ -145,6 +145,32 @@ def test_a_hinged_pair_has_what_it_had(elasticity: float, friction: float) -> No
             space.step(DT)
             assert _energy(space) < 1.02 * start, f"seed {seed}"
     assert seen > 70
+
+
+def test_rods_that_contradict_each_other_give_what_they_ask() -> None:
+    """Two to four rods of one body, up to 300 px wrong, two hundred times: half M T^2 at the most after a substep.
+
+    T is the sum of the speeds at which they mend their errors. (696 times that before, as the body was turned by what
+    no turn can mend; pymunk: 3.7 times.)
+    """
+    for seed in range(200):
+        draw = random.Random(seed)
+        space = pymunk.Space()
+        size, mass = draw.uniform(10, 40), 10 ** draw.uniform(-1, 1)
+        body = pymunk.Body(mass, mass * size * size / draw.uniform(6, 12))
+        body.position, body.angle = (draw.uniform(-50, 50), draw.uniform(-50, 50)), draw.uniform(0, 6)
+        space.add(body)
+        asked = 0.0
+        for _ in range(draw.choice((2, 3, 4))):
+            at = draw.uniform(-300, 300), draw.uniform(-300, 300)
+            to = draw.uniform(-size, size) / 2, draw.uniform(-size, size) / 2
+            rod = pymunk.PinJoint(space.static_body, body, at, to)
+            apart = rod.distance
+            rod.distance = max(0.0, apart - draw.uniform(-300, 300))
+            space.add(rod)
+            asked += abs(apart - rod.distance) * (1 - rod.error_bias**DT) / DT
+        rigidarea.attach(space).step(DT, steps=1)
+        assert _energy(space) <= 1.001 * 0.5 * mass * asked**2, f"seed {seed}"
 
 
 def _elastic(space: pymunk.Space, draw: random.Random, kind: str, angle: float, floor: bool) -> None:

@@ -43,16 +43,16 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 3,000 at most 24: measured 19. By pymunk's own response one in seven or more, the other way round: 453.
+    """Of 3,000 at most 15: measured 10. By pymunk's own response one in seven or more, the other way round: 443.
 
-    (75 while joints that nearly contradict each other were all held. What is left: paddles and platforms that wedge
-    bodies in corners.)
+    (75 while joints that nearly contradict each other were all held, 20 while those that do gave what it took. What is
+    left: paddles and platforms that wedge bodies in corners.)
     """
     speeds = [(fastest(seed, FRAMES, True), fastest(seed, FRAMES, False)) for seed in range(3000)]
     ours = sum(flies_off(here, there) for here, there in speeds)
     theirs = sum(flies_off(there, here) for here, there in speeds)
     print(f"of {len(speeds)} scenes a body flies off in {ours}, by pymunk's own response in {theirs}")
-    assert ours <= 24
+    assert ours <= 15
     assert theirs >= len(speeds) / 7
 
 
