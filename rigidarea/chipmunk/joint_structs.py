@@ -45,7 +45,8 @@ def _make_joint(name: str, one: pymunk.Body, two: pymunk.Body) -> tuple[Any, tup
     }
     joint = getattr(pymunk, name)(one, two, *given[name])
     if name == "PinJoint":
-        return joint, (ax, ay, bx, by, joint.distance)
+        # and what it had in the last step: where its ends were, and the direction of its impulse
+        return joint, (ax, ay, bx, by, joint.distance, *[0.0] * 6)
     if name == "RatchetJoint":
         return joint, (joint.angle, 0, -0.5)
     own = given[name]

@@ -12,13 +12,26 @@ break at a force breaks at it.
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
 
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, caller
-from ..contact.joint import JOINT, KINDS, RATCHET, ROTARY_SPRING, SPRING, spring_reach
+from ..contact.constants import NO_LENGTH
+from ..contact.joint import (
+    DIRECTION,
+    JOINT,
+    KINDS,
+    PARAMETERS,
+    PIN,
+    PIVOT,
+    RATCHET,
+    ROTARY_SPRING,
+    SPRING,
+    spring_reach,
+)
 from ..contact.space_record import EXTREME, row_of_body
 from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
 from .record import state_of, words
@@ -77,6 +90,17 @@ def _kind_of(s: Any, joint: Any) -> int:
     return -1
 
 
+@kernel(forceinline=True)
+def _solved_as(joint: Any) -> int:
+    """The kind as which a joint is solved: a pin of no length holds two points together, as a pivot does.
+
+    Its direction would be that of what it has parted by, across which nothing would hold.
+    """
+    p = joint.p
+    reach = abs(p[0]) + abs(p[1]) + abs(p[2]) + abs(p[3])
+    return PIVOT if joint.stored == PIN and p[4] <= NO_LENGTH * reach else int(joint.stored)
+
+
 @kernel
 def partners_known(s: Any, constraints: np.ndarray) -> bool:
     """Whether all bodies that joints hold have rows: some are in no space (the hand that drags), or have no shapes."""
@@ -110,7 +134,8 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
             tables.counters[REJOINED] = 1
         joint.a = i
         joint.b = j
-        joint.kind = _kind_of(s, joint)
+        joint.stored = _kind_of(s, joint)
+        joint.kind = joint.stored
         before[0] = s.seize_at
         if array_at(address + s.constraint_collide, (1,), np.uint8)[0] == 0 and joint.a >= 0 and joint.b >= 0:
             if apart < tables.counters[APART]:
@@ -158,7 +183,7 @@ def read_joint(s: Any, joint: Any) -> None:
     joint.max_force = limits[0]
     joint.error_bias = limits[1]
     joint.max_bias = limits[2]
-    kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.kind]
+    kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.stored]
     given = array_at(joint.address + kind[3], (kind[4],), np.float64)
     for i in range(kind[4]):
         joint.p[i] = given[i]
@@ -169,6 +194,12 @@ def read_joint(s: Any, joint: Any) -> None:
     joint.step = s.before
     joint.x = joint.jx
     joint.y = joint.jy
+    joint.kind = _solved_as(joint)
+    if joint.kind != joint.stored:
+        joint.jx = joint.x * joint.p[DIRECTION]
+        joint.jy = joint.x * joint.p[DIRECTION + 1]
+        joint.x = joint.jx
+        joint.y = joint.jy
 
 
 @kernel
@@ -217,11 +248,16 @@ def give_back(s: Any, joint: Any) -> None:
         words(joint.address, 1)[0] = joint.own_class
         joint.taken = 0
         if joint.kind >= 0:
-            kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.kind]
+            kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.stored]
             impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
             impulse[0] = joint.x
             if kind[2] > 1:
                 impulse[1] = joint.y
+            elif joint.kind != joint.stored:
+                impulse[0] = math.hypot(joint.x, joint.y)
+                made_of = array_at(joint.address + kind[3], (PARAMETERS,), np.float64)
+                made_of[DIRECTION] = joint.x / impulse[0] if impulse[0] > 0.0 else 0.0
+                made_of[DIRECTION + 1] = joint.y / impulse[0] if impulse[0] > 0.0 else 0.0
             if joint.kind == RATCHET:
                 array_at(joint.address + kind[3], (1,), np.float64)[0] = joint.p[0]
     before = words(joint.address + s.constraint_pre_solve, 1)

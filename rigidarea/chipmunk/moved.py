@@ -1,8 +1,8 @@
 """All that the next frame of an attached space starts from, into one block of memory and back: machine code.
 
 Our tables, as far as they are in use; of Chipmunk what a frame reads: of bodies mass, place, motion, forces and for how
-long they have idled, of joints the impulse, of a ratchet also the angle. Chipmunk's count of steps goes on: what was
-noted of it is moved on with it.
+long they have idled, of joints the impulse, of a ratchet also the angle, of a pin the direction. Chipmunk's count of
+steps goes on: what was noted of it is moved on with it.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ import numpy as np
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, record
 from ..contact.dtypes import BODY, SHAPE
-from ..contact.joint import KINDS, RATCHET
+from ..contact.joint import DIRECTION, KINDS, PIN, RATCHET
 from ..contact.space_record import BACK, OUT, SIZE, load_tables, move, move_tables
 from ..contact.tables import (
     AWAKE,
@@ -55,7 +55,7 @@ HEAD = record(
 )
 #: What is not as it was (`compare`); DOZED: others sleep than then, which alone can be put right.
 SAME, BODIES_CHANGED, SHAPES_CHANGED, JOINTS_CHANGED, DOZED = range(5)
-#: Of a joint: its address, its impulse, a ratchet's angle (bytes).
+#: Of a joint: its address, its impulse, a ratchet's angle, a pin's direction (bytes).
 _JOINT = 32
 _HEAD = HEAD.itemsize
 _TABLES = _HEAD + 8 * COUNTERS
@@ -82,22 +82,15 @@ def _move_joints(s: Any, space: int, back: int, block: int, at: int) -> int:
         if word == s.hidden:
             continue
         address = np.int64(word)
-        kept = floats(block + at, 4)
         if back == OUT:
             words(block + at, 1)[0] = word
         for k in range(KINDS):
             if kinds[k, 0] == np.int64(words(address, 1)[0]):
-                impulse = floats(address + kinds[k, 1], kinds[k, 2])
-                angle = floats(address + kinds[k, 3], 1)
-                for i in range(kinds[k, 2]):
-                    if back == BACK:
-                        impulse[i] = kept[1 + i]
-                    else:
-                        kept[1 + i] = impulse[i]
-                if k == RATCHET and back == BACK:
-                    angle[0] = kept[3]
-                elif k == RATCHET:
-                    kept[3] = angle[0]
+                move(back, block, at + 8, address + kinds[k, 1], 8 * kinds[k, 2])
+                if k == RATCHET:
+                    move(back, block, at + 24, address + kinds[k, 3], 8)
+                elif k == PIN:
+                    move(back, block, at + 16, address + kinds[k, 3] + 8 * DIRECTION, 16)
         at += _JOINT
     return int(at)
 

@@ -11,6 +11,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
+from ..contact.joint import DIRECTION
 from .joint_structs import kinds_of_joints
 from .structs import LayoutError, address_of, layout
 
@@ -197,17 +198,21 @@ def joint_numbers(joint: pymunk.Constraint) -> tuple[np.ndarray, np.ndarray]:
     return np.empty(0), np.empty(0)
 
 
-def _state_of(joint: pymunk.Constraint) -> tuple[np.ndarray, float]:
-    """What a joint did in the last frame; a ratchet's angle."""
+def _stepped(joint: pymunk.Constraint) -> tuple[np.ndarray, np.ndarray]:
+    """Of a joint's numbers what a step changes, in place: its impulse; a ratchet's angle, a pin's direction."""
     made_of, did = joint_numbers(joint)
-    return did.copy(), float(made_of[0]) if isinstance(joint, pymunk.RatchetJoint) else 0.0
-
-
-def _put_state(joint: pymunk.Constraint, state: tuple[np.ndarray, float]) -> None:
-    made_of, did = joint_numbers(joint)
-    did[:], angle = state
     if isinstance(joint, pymunk.RatchetJoint):
-        made_of[0] = angle
+        return did, made_of[:1]
+    return did, made_of[DIRECTION:] if isinstance(joint, pymunk.PinJoint) else made_of[:0]
+
+
+def _state_of(joint: pymunk.Constraint) -> list[np.ndarray]:
+    return [part.copy() for part in _stepped(joint)]
+
+
+def _put_state(joint: pymunk.Constraint, state: list[np.ndarray]) -> None:
+    for part, then in zip(_stepped(joint), state):
+        part[:] = then
 
 
 def _unthread(space: pymunk.Space) -> None:

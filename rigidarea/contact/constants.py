@@ -70,6 +70,8 @@ DEEPER = 20.0
 #: A joint without an error gives way by this part of its effective mass (`joint`): what hangs in one sinks by this part
 #: of the way that it falls in a substep, over the part of an error that goes.
 JOINT_GIVE = 1e-5
+#: Of its anchors' distances, the part that is no length of a pin: it is made of positions that are rounded.
+NO_LENGTH = 1e-9
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
 #: Most steps of a search with joints: it ends sooner where it has converged, or an end lets go.

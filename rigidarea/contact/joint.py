@@ -7,16 +7,15 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 |---|---|---|---|
 | pivot | (1, 0) | free | free |
 | groove | the groove's normal | free | one sign, at the groove's ends |
-| pin | A's anchor to B's | free | |
+| pin (of no length: pivot) | A's anchor to B's | free | |
 | slide | the same | one sign, at either end of its range | |
 | damped spring | the same | F0 + C (v' - vt) | |
 | rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
 
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
-max_bias. Joints that cannot all be held share what is asked of them (`_give`). A limit that is not reached yet is
-a speculative row: it may close by what is left of it, over h. A spring's damping is exact for the pair alone,
-exp(-c h W) of its speed, as Chipmunk's; its stiffness is taken midway where the step hardly follows it, and at the
-step's end where it cannot (`_load_spring`).
+max_bias. Joints that cannot all be held share what is asked of them (`_give`). A limit ahead is a speculative row: it
+may close by what is left of it, over h. A spring's damping is exact for the pair alone, exp(-c h W) of its speed, as
+Chipmunk's; its stiffness is taken midway where the step hardly follows it, at the step's end where it cannot.
 """
 
 from __future__ import annotations
@@ -32,8 +31,8 @@ from .constants import FOLLOWED, JOINT_GIVE
 PIN, SLIDE, PIVOT, GROOVE, SPRING, ROTARY_SPRING, LIMIT, RATCHET, GEAR, MOTOR = range(10)
 #: Kinds of joints.
 KINDS = 10
-#: Parameters of a joint: what its struct has after the part that all constraints share, in its order.
-PARAMETERS = 8
+#: Parameters of a joint: what its struct has after the part that all constraints share; a pin's direction among them.
+PARAMETERS, DIRECTION = 11, 9
 
 #: A joint of the space while a frame has it.
 JOINT = record(
@@ -41,7 +40,8 @@ JOINT = record(
         ("address", "u8"),  # of Chipmunk's constraint
         ("own_class", "u8"),  # its class, a struct of Chipmunk's of four functions
         ("pre_solve", "u8"),  # the user's callback; 0: none
-        ("kind", "i4"),  # PIN to MOTOR; -1: unknown
+        ("kind", "i4"),  # as which it is solved, PIN to MOTOR; -1: unknown
+        ("stored", "i4"),  # as which Chipmunk keeps it
         ("taken", "i4"),  # 1: since that, until the report, we run it
         ("a", "i4"),  # rows of its bodies; -1: not ours
         ("b", "i4"),
