@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +21,9 @@ BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
     "#D55E00",
     "#CC79A7",
 )
+
+#: A legend that lies over what is drawn.
+FRAMED: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 
 
 class Clock:
@@ -60,9 +63,16 @@ class Case:
         """A mapping, or, put there at once, rows."""
 
     def keep(self, **parts: Any) -> None:
-        """Adds results, or replaces those of the same name (rows that have grown), and writes the file."""
+        """Adds results, or replaces those of the same name, and writes the file."""
         self.results |= parts
         self._write(False)
+
+    def grow(self, into: dict[str, Any], name: str, rows: Iterable[Any]) -> None:
+        """Puts rows into results, or a part of them, one after the other as they come, and writes the file."""
+        into[name] = []
+        for row in rows:
+            into[name].append(row)
+            self._write(False)
 
     def finish(self) -> dict[str, Any]:
         """The JSON object, complete."""

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases.case_report import BLACK, BLUE, FRAMED, ORANGE, PURPLE, RED, figure, save
+from rigidarea.flexible.boundary import Work
 from rigidarea.flexible.integrate import Record, Simulation
 
 Array = NDArray[np.float64]
@@ -27,48 +28,48 @@ def perimeter(sim: Simulation, i: int) -> Array:
     return placed(b.points[np.append(ring, ring[0])], sim.state.x[i])
 
 
+def equal(ax: Any) -> None:
+    """Axes in millimetres, undistorted."""
+    ax.set(aspect="equal", xlabel="x (mm)", ylabel="y (mm)")
+
+
 def bore(ax: Any, centre: tuple[float, float], radius: float, colour: str) -> None:
     """A circle, in metres."""
     t = np.linspace(0, 2 * np.pi, 200)
-    ax.plot(
-        1e3 * (centre[0] + radius * np.cos(t)), 1e3 * (centre[1] + radius * np.sin(t)), color=colour, lw=1.2
-    )
+    x, y = centre[0] + radius * np.cos(t), centre[1] + radius * np.sin(t)
+    ax.plot(1e3 * x, 1e3 * y, color=colour, lw=1.2)
+
+
+#: Arrows as long as a scale (force a millimetre) says.
+TO_SCALE: dict[str, Any] = {"width": 0.004, "angles": "xy", "scale_units": "xy"}
+
+
+def loads(w: Work) -> tuple[Array, Array]:
+    """The points of a body that contacts load (n, 2), mm, and the forces on them (n, 2)."""
+    on = w.touched[: w.touched[-1]]
+    return 1e3 * w.position[on], w.point_load[on]
+
+
+def arrows(ax: Any, w: Work, **keys: Any) -> Any:
+    """Those forces drawn at their points."""
+    at, forces = loads(w)
+    return ax.quiver(*at.T, *forces.T, **keys)
 
 
 def nodal_forces(ax: Any, sim: Simulation, names: tuple[str, str], middle: Array, half: float) -> None:
     """Both perimeters with their points, and the forces on them, ``half`` mm around ``middle`` (2,), mm."""
-    loads = []
-    for i in range(2):
-        w = sim.works[i]
-        on = w.touched[: w.touched[-1]]
-        loads.append((1e3 * w.position[on], w.point_load[on]))
-    largest = max(float(np.hypot(*f.T).max()) for _, f in loads)
-    for i, colour in ((0, case_report.RED), (1, case_report.BLUE)):
-        p = perimeter(sim, i)
-        ax.plot(*p.T, ".-", ms=5, lw=1, color=colour)
-        (at, f), name = loads[i], names[i]
+    largest = max(float(np.hypot(*loads(w)[1].T).max()) for w in sim.works)
+    for i, (w, name, colour) in enumerate(zip(sim.works, names, (RED, BLUE), strict=True)):
+        ax.plot(*perimeter(sim, i).T, ".-", ms=5, lw=1, color=colour)
+        at, f = loads(w)
         near = np.abs(at - middle).max(1) < half
-        arrows = ax.quiver(
-            *at.T,
-            *f.T,
-            color=colour,
-            width=0.004,
-            angles="xy",
-            scale_units="xy",
-            scale=largest / (0.3 * half),
-            zorder=3,
-            label=f"on the {name}: Σ = {np.hypot(*f[near].sum(0)):.3g} N",
-        )
+        label = f"on the {name}: Σ = {np.hypot(*f[near].sum(0)):.3g} N"
+        drawn = arrows(ax, w, color=colour, **TO_SCALE, scale=largest / (0.3 * half), zorder=3, label=label)
     step = float(f"{0.5 * largest:.1g}")
-    ax.quiverkey(arrows, 0.88, 0.06, step, f"{step:g} N", labelpos="N", coordinates="axes", color="#000000")
-    ax.set(
-        xlim=(middle[0] - half, middle[0] + half),
-        ylim=(middle[1] - half, middle[1] + half),
-        aspect="equal",
-        xlabel="x (mm)",
-        ylabel="y (mm)",
-    )
-    ax.legend(loc="upper left", frameon=True, framealpha=0.9, edgecolor="none")
+    ax.quiverkey(drawn, 0.88, 0.06, step, f"{step:g} N", labelpos="N", coordinates="axes", color="#000000")
+    ax.set(xlim=(middle[0] - half, middle[0] + half), ylim=(middle[1] - half, middle[1] + half))
+    equal(ax)
+    ax.legend(loc="upper left", **FRAMED)
 
 
 def step_cost(
@@ -86,50 +87,50 @@ def step_cost(
     event: the shortest contact event, in words and seconds. error: key of the rows and label, drawn between
     ``limits``. paper: its cheapest step.
     """
-    fig, axes = case_report.figure(10, 6.6, 2, 1, sharex=True, height_ratios=(3, 2))
+    fig, axes = figure(10, 6.6, 2, 1, sharex=True, height_ratios=(3, 2))
     top, bottom = axes
     ok = [r for r in rows if "failed" not in r]
     h = [r["step_s"] for r in ok]
-    top.loglog(h, [r["run_cpu_s"] for r in ok], "o-", color=case_report.BLUE, label="processor time")
+    top.loglog(h, [r["run_cpu_s"] for r in ok], "o-", color=BLUE, label="processor time")
     halved = [r for r in ok if r["steps_halved"]]
     failed = [r for r in rows if "failed" in r]
     for some, mark, colour, label in (
-        (halved, "s", case_report.PURPLE, "some steps halved"),
-        (failed, "X", case_report.RED, "given up: no convergence"),
+        (halved, "s", PURPLE, "some steps halved"),
+        (failed, "X", RED, "given up: no convergence"),
     ):
         if some:
             x, y = [r["step_s"] for r in some], [r["run_cpu_s"] for r in some]
             top.loglog(x, y, mark, ms=11, fillstyle="none", color=colour, label=label)
     twin = top.twinx()
-    twin.plot(h, [r["evaluations_a_step"] for r in ok], "^--", color=case_report.ORANGE)
+    twin.plot(h, [r["evaluations_a_step"] for r in ok], "^--", color=ORANGE)
     twin.set_ylim(0, None)
-    twin.set_ylabel("contact evaluations a step\n(Newton iterations, all attempts)", color=case_report.ORANGE)
+    twin.set_ylabel("contact evaluations a step\n(Newton iterations, all attempts)", color=ORANGE)
     twin.grid(False)
     top.set_ylabel(f"processor time of {duration:g} s (s)")
-    bottom.plot(h, [r[error[0]] for r in ok], "o-", color=case_report.BLUE)
+    bottom.plot(h, [r[error[0]] for r in ok], "o-", color=BLUE)
     bottom.set(xlabel="time step (s)", ylabel=error[1], ylim=limits)
     right = max(r["step_s"] for r in rows) * 1.4
     coarse = f"fewer than ten steps for {event[0]}"
     for ax in axes:
-        ax.axvspan(0.1 * event[1], right, color=case_report.ORANGE, alpha=0.12, lw=0, label=coarse)
+        ax.axvspan(0.1 * event[1], right, color=ORANGE, alpha=0.12, lw=0, label=coarse)
         if paper is not None:
-            ax.axvline(paper, color=case_report.BLACK, ls=":", label=f"the paper's optimum, {paper:g} s")
+            ax.axvline(paper, color=BLACK, ls=":", label=f"the paper's optimum, {paper:g} s")
     top.set_xlim(min(h) / 1.4, right)
     fig.legend(*top.get_legend_handles_labels(), loc="outside upper center", ncol=3, fontsize=9)
-    case_report.save(fig, out, name)
+    save(fig, out, name)
 
 
 def iteration_history(out: Path, name: str, records: dict[float, Record], until: float) -> None:
     """The paper's Fig. 20 and 28: Newton iterations over time, a panel a step."""
-    fig, axes = case_report.figure(10, 1 + 2 * len(records), len(records), 1, sharex=True, sharey=True)
+    fig, axes = figure(10, 1 + 2 * len(records), len(records), 1, sharex=True, sharey=True)
     top = max(r.iterations[r.t <= until].max() for r in records.values())
     for ax, (h, r) in zip(axes, records.items(), strict=True):
         keep = r.t <= until
-        ax.plot(r.t[keep], r.iterations[keep], ".", ms=3, color=case_report.BLUE)
+        ax.plot(r.t[keep], r.iterations[keep], ".", ms=3, color=BLUE)
         mean = r.iterations[keep].mean()
-        ax.axhline(mean, color=case_report.ORANGE, label=f"mean {mean:.2f}")
+        ax.axhline(mean, color=ORANGE, label=f"mean {mean:.2f}")
         ax.set(ylabel="Newton\niterations", title=f"h = {1e6 * h:g} µs", ylim=(0, top + 1))
-        ax.legend(loc="upper right", frameon=True, framealpha=0.9, edgecolor="none")
+        ax.legend(loc="upper right", **FRAMED)
         ax.yaxis.get_major_locator().set_params(integer=True)
     axes[-1].set_xlabel("time (s)")
-    case_report.save(fig, out, name)
+    save(fig, out, name)

@@ -36,7 +36,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases.case_report import Clock
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
@@ -232,7 +232,7 @@ def mesh_sweep(
     mode: str, contact: str, duration: float, addendum: float, refine: int, cache: Path | None
 ) -> Iterator[dict[str, Any]]:
     """One row a mesh of Table 6."""
-    clock = case_report.Clock
+    clock = Clock
     for m in MESHES:
         setup = clock()
         sim = simulation(mode, m, contact, addendum=addendum, refine=refine, cache=cache)

@@ -7,80 +7,61 @@ from typing import Any
 
 import numpy as np
 
-from rigidarea.cases import case_report
+from rigidarea.cases import geneva_case as gv
+from rigidarea.cases.case_report import Case, say
 from rigidarea.cases.mechanism import main_run, step_sweep
 from rigidarea.flexible.integrate import Simulation
 
-from .geneva_case import (
-    DAMPER,
-    DUE,
-    MESH,
-    PAPER,
-    PLAY_S,
-    REFINE,
-    RHO,
-    SPEED,
-    STEP,
-    STEPS,
-    K,
-    first_touch,
-    measure,
-    simulation,
-    through_hook,
-)
+DURATION = 10.0  # s
 
 
 def run(
     mode: str = "compliant",
-    mesh_mm: float = MESH,
+    mesh_mm: float = gv.MESH,
     contact: str = "area",
     out: Path | None = None,
     cache: Path | None = None,
-    duration: float = 10.0,
-    sweeps: bool = True,
 ) -> dict[str, Any]:
     """Six slots over 10 s; then 4, 5 and 8 slots, stiffer contacts, and the sweep of steps (1 s each)."""
 
     def make(slots: int = 6, **keys: Any) -> tuple[Simulation, float]:
-        return simulation(mode, mesh_mm, contact, slots, cache=cache, **keys)
+        return gv.simulation(mode, mesh_mm, contact, slots, cache=cache, **keys)
 
-    start = first_touch(6) - SPEED * DUE
+    start = gv.first_touch(6) - gv.SPEED * gv.DUE
     settings = {
         "mode": mode,
         "mesh_mm": mesh_mm,
         "contact": contact,
-        "k": K,
-        "damper": DAMPER,
-        "step_s": STEP,
-        "rho": RHO,
+        "k": gv.K,
+        "damper": gv.DAMPER,
+        "step_s": gv.STEP,
+        "rho": gv.RHO,
         "start_angle_deg": float(np.degrees(start)),
-        "refine": REFINE,
+        "refine": gv.REFINE,
     }
-    case = case_report.Case("geneva", settings, PAPER, duration, out)
+    case = Case("geneva", settings, gv.PAPER, DURATION, out)
     make()
     case.clock.setup()
-    hook = through_hook if mode == "rigid" and contact == "area" else None
-    r, seconds = main_run(lambda: make()[0], hook, duration, STEP)
-    case.keep(**measure(r, start, 6), **seconds)
+    hook = gv.through_hook if mode == "rigid" and contact == "area" else None
+    r, seconds = main_run(lambda: make()[0], hook, DURATION, gv.STEP)
+    case.keep(**gv.measure(r, start, 6), **seconds)
+
+    def measured(duration: float, slots: int = 6, **keys: Any) -> dict[str, Any]:
+        sim, angle = make(slots, **keys)
+        return gv.measure(sim.run(duration, gv.STEP), angle, slots)
+
+    say("geneva: other numbers of slots")
+    case.grow(case.results, "slot_numbers", (measured(4.4, n) for n in (4, 5, 6, 8)))
+    say("geneva: stiffness, steps")
+    case.grow(case.results, "stiffness", ({"k": k, **measured(1.0, k=k)} for k in (gv.K / 4, gv.K, 4 * gv.K)))
     records = {}
-    if sweeps:
-        case_report.say("geneva: other numbers of slots")
-        rows: list[dict[str, Any]] = []
-        for n in (4, 5, 6, 8):
-            s, a = make(n)
-            rows.append(measure(s.run(4.4, STEP), a, n))
-            case.keep(slot_numbers=rows)
-        case_report.say("geneva: stiffness, steps")
-        stiffness: list[dict[str, Any]] = []
-        for k in (K / 4, K, 4 * K):
-            s, a = make(k=k)
-            stiffness.append({"k": k, **measure(s.run(1.0, STEP), a, 6)})
-            case.keep(stiffness=stiffness)
-        steps: list[dict[str, Any]] = []
-        for row, record in step_sweep(lambda: make()[0], lambda r: measure(r, start, 6), STEPS, 1.0, PLAY_S):
-            steps.append(row)
-            records[row["step_s"]] = record
-            case.keep(steps=steps)
+    steps: list[dict[str, Any]] = []
+    for row, record in step_sweep(
+        lambda: make()[0], lambda r: gv.measure(r, start, 6), gv.STEPS, 1.0, gv.PLAY_S
+    ):
+        steps.append(row)
+        records[row["step_s"]] = record
+        case.keep(steps=steps)
     if out is not None:
         from rigidarea.cases import geneva_figures
 

@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases.case_report import BLACK, BLUE, GREEN, ORANGE, RED, SKY, Case, figure, save, say
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, build, workspace
 from rigidarea.flexible.boundary_regions import arcs
@@ -209,7 +209,7 @@ def run(
         "stiffness_predicted_pa_per_m": STIFF,
         "divisions": list(divisions),
     }
-    case = case_report.Case("hertz", settings, PAPER, 0.0, out)
+    case = Case("hertz", settings, PAPER, 0.0, out)
     readings: dict[str, Any] = {}
     curves: dict[Any, Any] = {}
     for name, radius in (("equations", 0.5 * RADIUS), ("printed", RADIUS)):
@@ -218,7 +218,7 @@ def run(
     at = readings["equations"]["meshes"][COUNTS.index(5000)]
     case.keep(**{key: at[key] for key in at if key != "element_m"}, readings=readings)
     case.clock.setup()
-    case_report.say("hertz: predicted, full FE statics")
+    say("hertz: predicted, full FE statics")
     studies = []
     for d in divisions:
         studies.append(predicted(d, cache=cache))
@@ -241,14 +241,10 @@ def _numbers(study: dict[str, Any]) -> dict[str, Any]:
 
 
 def _figures(
-    out: Path,
-    readings: dict[str, Any],
-    curves: dict[Any, Any],
-    studies: list[dict[str, Any]],
-    order: float,
+    out: Path, readings: dict[str, Any], curves: dict[Any, Any], studies: list[dict[str, Any]], order: float
 ) -> None:
     """Fig. 4, both readings and the prediction; Fig. 5, and the prediction's convergence."""
-    fig, axes = case_report.figure(10, 4.6, 1, 2)
+    fig, axes = figure(10, 4.6, 1, 2)
     x = np.linspace(-1, 1, 400)
     titles = {
         "equations": "R* = R/2, as Eq. 27 says: p_max",
@@ -256,56 +252,34 @@ def _figures(
     }
     for ax, name in zip(axes, titles, strict=True):
         a, peak = readings[name]["half_width_theory_m"], readings[name]["p_max_theory_pa"]
-        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=case_report.SKY, lw=4, label=f"Hertz: {peak:.3f} Pa")
-        for n, marker, colour, every in (
-            (500, "o", case_report.RED, 1),
-            (1000, "s", case_report.GREEN, 1),
-            (5000, ".", case_report.BLACK, 3),
-        ):
+        ax.plot(a * x, peak * np.sqrt(1 - x**2), color=SKY, lw=4, label=f"Hertz: {peak:.3f} Pa")
+        for n, marker, colour, every in ((500, "o", RED, 1), (1000, "s", GREEN, 1), (5000, ".", BLACK, 3)):
             c = curves[name, n]
-            ax.plot(
-                c["x"],
-                c["pressure"],
-                marker,
-                ms=5,
-                color=colour,
-                markevery=every,
-                fillstyle="none" if marker != "." else "full",
-                label=f"Alg. 3, {n} nodes: {c['pressure'].max():.3f} Pa",
-            )
+            look = {"color": colour, "markevery": every, "fillstyle": "none" if marker != "." else "full"}
+            label = f"Alg. 3, {n} nodes: {c['pressure'].max():.3f} Pa"
+            ax.plot(c["x"], c["pressure"], marker, ms=5, **look, label=label)
         ax.set(xlabel="x (m)", ylabel="contact pressure (Pa)")
         ax.set_title(titles[name], fontsize=10)
     best = studies[-1]
-    axes[0].plot(
-        best["x"],
-        best["pressure"],
-        "-",
-        color=case_report.ORANGE,
-        lw=1,
-        label=f"predicted, FE statics: {best['p_max_pa']:.3f} Pa",
-    )
+    label = f"predicted, FE statics: {best['p_max_pa']:.3f} Pa"
+    axes[0].plot(best["x"], best["pressure"], "-", color=ORANGE, lw=1, label=label)
     for ax in axes:
         ax.legend(loc="lower center", fontsize=9)
-    case_report.save(fig, out, "hertz_fig4")
-    fig, (left, right) = case_report.figure(11, 5.2, 1, 2, width_ratios=(3, 2))
-    for name, colour in (("equations", case_report.BLUE), ("printed", case_report.RED)):
+    save(fig, out, "hertz_fig4")
+    fig, (left, right) = figure(11, 5.2, 1, 2, width_ratios=(3, 2))
+    for name, colour in (("equations", BLUE), ("printed", RED)):
         study = readings[name]
         h = [r["element_m"] for r in study["meshes"]]
         for kind, style, text in (("_literal", "o--", "Alg. 3 literally"), ("", "s-", "balanced")):
-            left.loglog(
-                h,
-                [r["p_max_error_percent" + kind] for r in study["meshes"]],
-                style,
-                color=colour,
-                fillstyle="none" if kind else "full",
-                label=f"{text}, a = {study['half_width_theory_m']:.3f} m, order {study['order' + kind]:.2f}",
-            )
-    left.axhline(0.37, color=case_report.BLACK, ls=":", label="the paper, 5000 nodes: 0.37 %")
+            errors = [r["p_max_error_percent" + kind] for r in study["meshes"]]
+            label = f"{text}, a = {study['half_width_theory_m']:.3f} m, order {study['order' + kind]:.2f}"
+            left.loglog(h, errors, style, color=colour, fillstyle="none" if kind else "full", label=label)
+    left.axhline(0.37, color=BLACK, ls=":", label="the paper, 5000 nodes: 0.37 %")
     left.set(xlabel="element size (m)", ylabel="error of the maximum pressure (%)")
     left.set_title("calibrated; orders towards each one's own limit (circles are no parabolas)", fontsize=10)
     size = half_width(0.5 * RADIUS) / np.array([s["division"] for s in studies])
     error = np.array([s["pressure_error_percent"] for s in studies])
-    right.loglog(size, error, "o-", color=case_report.BLUE, label=f"order {order:.2f}")
+    right.loglog(size, error, "o-", color=BLUE, label=f"order {order:.2f}")
     right.set(xlabel="element size (m)", ylabel="RMS error of the pressure profile (%)")
     right.set_title("predicted, FE statics", fontsize=10)
     right.set_xticks(size, [f"{x:.3f}" for x in size])
@@ -313,4 +287,4 @@ def _figures(
     right.minorticks_off()
     right.legend()
     fig.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncol=2, fontsize=9)
-    case_report.save(fig, out, "hertz_fig5")
+    save(fig, out, "hertz_fig5")

@@ -12,6 +12,7 @@ of the upper block must be uniform.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +20,8 @@ import numpy as np
 import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases import figures
+from rigidarea.cases.case_report import BLACK, BLUE, RED, Case, figure, save
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Work, build, workspace
 from rigidarea.flexible.boundary_regions import arcs
@@ -113,17 +115,14 @@ def press(gap: float, mesh: str) -> tuple[dict[str, Any], tuple[Work, Work]]:
         u = np.array([-r["ny"], r["nx"]])
         local = np.array([u @ middle, -(u[1] * middle[0] - u[0] * middle[1])])
         alpha = nodal.literal_alpha(normal, weight, poly[k][1:-1], local, np.array([0.0, up * r["force"]]))
-        inner = (depth > 0) & (
-            np.abs(normal[:, 1]) > 0.99
-        )  # the face: corner and side nodes have other normals
+        # the face: corner and side nodes have other normals
+        inner = (depth > 0) & (np.abs(normal[:, 1]) > 0.99)
         literal.append(float((alpha * depth[inner]).mean()))
     row["master_slave_ratio_literal"] = literal[1] / literal[0]
     row["pressure_literal_pa_m"] = literal  # slave, master
     row["stress_spread_relative"] = stress_spread(slave, wa.point_load, r["force"])
-    wa.position[:], wb.position[:] = (
-        slave + pose_a[:2],
-        master,
-    )  # the figures draw all points, not the near ones
+    # the figures draw all points, not the near ones
+    wa.position[:], wb.position[:] = slave + pose_a[:2], master
     return row, (wa, wb)
 
 
@@ -151,78 +150,44 @@ def stress_spread(ring: Array, loads: Array, force: float) -> float:
 def run(out: Path | None = None) -> dict[str, Any]:
     """All gaps and meshes; figures 11 to 13 redrawn."""
     settings = {"slave_m": SLAVE, "master_m": MASTER, "k": K, "q": 1.0, "gaps_m": GAPS}
-    case = case_report.Case("patch", settings, PAPER, 0.0, out)
+    case = Case("patch", settings, PAPER, 0.0, out)
     case.clock.setup()
-    rows, states = [], []
-    for gap in GAPS:
-        for mesh in MESHES:
-            row, state = press(gap, mesh)
-            rows.append(row)
-            states.append(state)
+    rows, states = zip(*(press(gap, mesh) for gap in GAPS for mesh in MESHES), strict=True)
     if out is not None:
         _figures(out, rows, states)
-    case.results = rows
+    case.results = list(rows)
     return case.finish()
 
 
-def _figures(out: Path, rows: list[dict[str, Any]], states: list[Any]) -> None:
+def _figures(out: Path, rows: Sequence[dict[str, Any]], states: Sequence[Any]) -> None:
     """Fig. 11 and 13 on one sheet, and Fig. 12 for all meshes."""
-    fig, axes = case_report.figure(12, 7, 2, 3, sharex=True)
+    fig, axes = figure(12, 7, 2, 3, sharex=True)
     for ax, row, (wa, wb) in zip(axes.ravel(), rows, states, strict=True):
         largest = max(float(np.abs(w.point_load).max()) for w in (wa, wb))
-        for w, colour, name in ((wa, case_report.RED, "slave"), (wb, case_report.BLUE, "master")):
-            p = w.touched[: w.touched[-1]]
+        for w, colour, name in ((wa, RED, "slave"), (wb, BLUE, "master")):
             shape = np.vstack([w.position, w.position[:1]])
-            ax.plot(1e3 * shape[:, 0], 1e3 * shape[:, 1], ".-", ms=4, lw=0.8, color=colour)
-            arrows = ax.quiver(
-                1e3 * w.position[p, 0],
-                1e3 * w.position[p, 1],
-                w.point_load[p, 0],
-                w.point_load[p, 1],
-                color=colour,
-                width=0.004,
-                angles="xy",
-                scale_units="xy",
-                scale=largest / 4,
-                label=f"on the {name}",
-            )
+            ax.plot(*(1e3 * shape).T, ".-", ms=4, lw=0.8, color=colour)
+            scale = {**figures.TO_SCALE, "scale": largest / 4}
+            arrows = figures.arrows(ax, w, color=colour, **scale, label=f"on the {name}")
         key = float(f"{0.5 * largest:.1g}")
-        ax.quiverkey(arrows, 0.5, 0.9, key, f"{key:g} N", labelpos="E", angle=90, color=case_report.BLACK)
-        ax.set(
-            title=f"gap {row['gap_mm']:.0f} mm, {row['mesh']} mesh",
-            ylim=(-9, 9),
-            xlim=(-26, 26),
-        )
+        ax.quiverkey(arrows, 0.5, 0.9, key, f"{key:g} N", labelpos="E", angle=90, color=BLACK)
+        ax.set(title=f"gap {row['gap_mm']:.0f} mm, {row['mesh']} mesh", ylim=(-9, 9), xlim=(-26, 26))
     for ax in axes[-1]:
         ax.set_xlabel("x (mm)")
     for ax in axes[:, 0]:
         ax.set_ylabel("y (mm)")
     fig.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside lower center", ncol=2)
-    case_report.save(fig, out, "patch_fig11_13")
-    fig, ax = case_report.figure(9, 5)
+    save(fig, out, "patch_fig11_13")
+    fig, ax = figure(9, 5)
     for (wa, wb), row, marker in zip(states[:3], rows[:3], "os^", strict=True):
-        for w, colour, name in ((wa, case_report.RED, "slave"), (wb, case_report.BLUE, "master")):
+        for w, colour, name in ((wa, RED, "slave"), (wb, BLUE, "master")):
             i = np.flatnonzero(w.pressure > 0)
-            ax.plot(
-                1e3 * w.position[i, 0],
-                1e-3 * w.pressure[i],
-                marker,
-                color=colour,
-                fillstyle="none",
-                label=f"{name}, {row['mesh']}",
-            )
-    for value, colour, name in zip(
-        rows[0]["pressure_literal_pa_m"],
-        (case_report.RED, case_report.BLUE),
-        ("slave", "master"),
-        strict=True,
-    ):
+            x, p = 1e3 * w.position[i, 0], 1e-3 * w.pressure[i]
+            ax.plot(x, p, marker, color=colour, fillstyle="none", label=f"{name}, {row['mesh']}")
+    literal = zip(rows[0]["pressure_literal_pa_m"], (RED, BLUE), ("slave", "master"), strict=True)
+    for value, colour, name in literal:
         ax.axhline(1e-3 * value, color=colour, ls="--", lw=1, label=f"the paper's Alg. 3, {name}, uniform")
-    ax.set(
-        xlabel="x (mm)",
-        ylabel="pressure (kN/m)",
-        title="gap 2 mm: one pressure on both bodies and all meshes",
-        ylim=(80, 120),
-    )
+    ax.set(xlabel="x (mm)", ylabel="pressure (kN/m)", ylim=(80, 120))
+    ax.set_title("gap 2 mm: one pressure on both bodies and all meshes")
     fig.legend(*ax.get_legend_handles_labels(), loc="outside lower center", ncol=4, fontsize=9)
-    case_report.save(fig, out, "patch_fig12")
+    save(fig, out, "patch_fig12")

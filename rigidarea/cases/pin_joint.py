@@ -21,7 +21,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases import figures
+from rigidarea.cases.case_report import BLUE, ORANGE, RED, Case, figure, save, say
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
@@ -37,11 +38,7 @@ PAPER: dict[str, Any] = {
     "ratio": {"0.7": 0.535, "1.0": 0.488, "1.3": 0.543},
     "first_contact_s": 0.05,
 }
-STRETCHES = (
-    5520,
-    140,
-    24340,
-)  # steps of a compared run: to the first contact, through it, and the rest of 0.3 s
+STRETCHES = (5520, 140, 24340)  # steps of a compared run: to the first contact, through it, the rest of 0.3 s
 REPEATS = 9  # of each run
 POINTS_TOLERANCE = 1e-8  # m: points that are as near the exact answers as arcs are
 PARTS = {"run_s": "run_ratio", "contact_phase_s": "contact_phase_ratio", "eval_us": "eval_ratio"}
@@ -273,7 +270,7 @@ def run(
         "young_pa": STEEL.young,
         "rim_radius_mm": 1e3 * RIM,
     }
-    case = case_report.Case("pin-joint", settings, PAPER, duration, out)
+    case = Case("pin-joint", settings, PAPER, duration, out)
     reference = exact()
     if mode == "rigid" and contact == "area":
         case.clock.setup()
@@ -285,7 +282,7 @@ def run(
         t, y, force = r.t, r.x[:, 0, 1], -r.force[:, 1]
         level = y + 0.5 * (r.v[:, 0, :2] ** 2).sum(1) / GRAVITY
     measured = measure(t, y, force, level)
-    case_report.say("pin-joint: area and STS at 0.7, 1.0, 1.3 mm")
+    say("pin-joint: area and STS at 0.7, 1.0, 1.3 mm")
     rows = [compare(m, "compliant" if mode == "rigid" else mode, cache) for m in (0.7, 1.0, 1.3)]
     middle = rows[1]
     results = {
@@ -304,59 +301,45 @@ def run(
 
 def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | None) -> None:
     level = "compliant" if mode == "rigid" else mode
-    fig, axes = case_report.figure(11, 9, 3, 2, sharex=True, sharey=True)
+    fig, axes = figure(11, 9, 3, 2, sharex=True, sharey=True)
     for pair, row in zip(axes, rows, strict=True):
         for ax, contact in zip(pair, ("sts", "area"), strict=True):
             r = row["curves"][contact]
             deepest = int(np.argmin(r.x[:6000, 0, 1]))
             sim = simulation(row["mesh_mm"], level, contact, cache=cache)
             sim.run((deepest + 1) * STEP, STEP)
-            for i, colour, name in ((0, case_report.RED, "pin"), (1, case_report.BLUE, "support")):
+            for i, colour, name in ((0, RED, "pin"), (1, BLUE, "support")):
                 w = sim.works[i]
-                p = w.touched[: w.touched[-1]]
                 near = np.flatnonzero(w.position_stamp >= sim._buffers.counts[1] - 1)
                 near = near[np.argsort(w.position[near, 0])]
                 near = near[(np.abs(w.position[near, 0]) < 0.009) & (w.position[near, 1] < -0.025)]
-                ax.plot(
-                    1e3 * w.position[near, 0], 1e3 * w.position[near, 1], ".-", ms=3, lw=0.8, color=colour
-                )
-                ax.quiver(
-                    1e3 * w.position[p, 0],
-                    1e3 * w.position[p, 1],
-                    w.point_load[p, 0],
-                    w.point_load[p, 1],
-                    color=colour,
-                    scale=90,
-                    width=0.003,
-                    label=f"{name}: Σ = {np.hypot(*w.point_load[p].sum(0)):.2f} N",
-                )
-            ax.set(
-                title=f"{'STS' if contact == 'sts' else 'area'}, {row['mesh_mm']} mm",
-                xlim=(-8, 8),
-                ylim=(-38, -32),
-            )
+                ax.plot(*(1e3 * w.position[near]).T, ".-", ms=3, lw=0.8, color=colour)
+                label = f"{name}: Σ = {np.hypot(*figures.loads(w)[1].sum(0)):.2f} N"
+                figures.arrows(ax, w, color=colour, scale=90, width=0.003, label=label)
+            ax.set(xlim=(-8, 8), ylim=(-38, -32))
+            ax.set_title(f"{'STS' if contact == 'sts' else 'area'}, {row['mesh_mm']} mm")
             ax.legend(loc="upper center", ncol=2, fontsize=8)
     for ax in axes[-1]:
         ax.set_xlabel("x (mm)")
     for ax in axes[:, 0]:
         ax.set_ylabel("y (mm)")
     fig.suptitle("Nodal forces at the deepest penetration (arrows to one scale)")
-    case_report.save(fig, out, "pin_joint_fig7_8")
+    save(fig, out, "pin_joint_fig7_8")
     area, sts = (rows[1]["curves"][c] for c in ("area", "sts"))
-    fig, ax = case_report.figure()
+    fig, ax = figure()
     first = slice(5500, 5700)
-    ax.plot(1e3 * area.t[first], -area.force[first, 1], color=case_report.BLUE, lw=2, label="area")
-    ax.plot(1e3 * sts.t[first], -sts.force[first, 1], "--", color=case_report.ORANGE, label="STS")
+    ax.plot(1e3 * area.t[first], -area.force[first, 1], color=BLUE, lw=2, label="area")
+    ax.plot(1e3 * sts.t[first], -sts.force[first, 1], "--", color=ORANGE, label="STS")
     ax.set(xlabel="time (ms)", ylabel="contact force (N)", title=f"{level}, 1.0 mm")
     ax.legend()
-    case_report.save(fig, out, "pin_joint_fig9")
-    fig, ax = case_report.figure()
-    ax.plot(area.t, 1e3 * area.x[:, 0, 1], color=case_report.BLUE, lw=2, label="area")
-    ax.plot(sts.t, 1e3 * sts.x[:, 0, 1], "--", color=case_report.ORANGE, label="STS")
+    save(fig, out, "pin_joint_fig9")
+    fig, ax = figure()
+    ax.plot(area.t, 1e3 * area.x[:, 0, 1], color=BLUE, lw=2, label="area")
+    ax.plot(sts.t, 1e3 * sts.x[:, 0, 1], "--", color=ORANGE, label="STS")
     ax.set(xlabel="time (s)", ylabel="height of the pin (mm)")
     ax.legend()
-    case_report.save(fig, out, "pin_joint_fig10")
-    fig, axes = case_report.figure(11, 4.2, 1, 3)
+    save(fig, out, "pin_joint_fig10")
+    fig, axes = figure(11, 4.2, 1, 3)
     x = np.arange(3)
     kinds = (
         ("run_s", "run_ratio", "whole run of 0.3 s (s)"),
@@ -364,20 +347,14 @@ def _figures(out: Path, rows: list[dict[str, Any]], mode: str, cache: Path | Non
         ("eval_us", "eval_ratio", "one contact evaluation (µs)"),
     )
     for ax, (key, ratio, label) in zip(axes, kinds, strict=True):
-        for k, (name, colour) in enumerate((("sts", case_report.ORANGE), ("area", case_report.BLUE))):
-            ax.bar(
-                x + 0.35 * (k - 0.5), [row[f"{name}_{key}"] for row in rows], 0.33, color=colour, label=name
-            )
+        for k, (name, colour) in enumerate((("sts", ORANGE), ("area", BLUE))):
+            heights = [row[f"{name}_{key}"] for row in rows]
+            ax.bar(x + 0.35 * (k - 0.5), heights, 0.33, color=colour, label=name)
         for i, row in enumerate(rows):
             top = max(row[f"area_{key}"], row[f"sts_{key}"])
-            ax.text(
-                i,
-                1.02 * top,
-                f"{row[ratio]:.2f}\n(paper {PAPER['ratio'][str(row['mesh_mm'])]:.2f})",
-                ha="center",
-                fontsize=8,
-            )
+            told = f"{row[ratio]:.2f}\n(paper {PAPER['ratio'][str(row['mesh_mm'])]:.2f})"
+            ax.text(i, 1.02 * top, told, ha="center", fontsize=8)
         ax.set(xticks=x, xticklabels=[f"{r['mesh_mm']} mm" for r in rows], ylabel=label, xlabel="mesh")
         ax.margins(y=0.2)
     axes[1].legend(loc="upper right", bbox_to_anchor=(1.0, 0.9))
-    case_report.save(fig, out, "pin_joint_table2")
+    save(fig, out, "pin_joint_table2")

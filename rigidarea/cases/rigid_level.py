@@ -51,9 +51,8 @@ def turn(
     x, v = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))
     force, regions = np.zeros((n, 2)), np.zeros((n, most, 5))
     for i in range(n):
-        crank.angular_velocity = speed(
-            (i + 0.5) * h
-        )  # the middle of the step: the angle is then exact for a ramp
+        # the middle of the step: the angle is then exact for a ramp
+        crank.angular_velocity = speed((i + 0.5) * h)
         driven.torque = -damper * driven.angular_velocity
         space.step(h)
         x[i] = (*crank.position, crank.angle), (*driven.position, driven.angle)
@@ -64,22 +63,8 @@ def turn(
             force[i] += sign * r["force"] * r["direction"]
     contact.detach()
     kinetic = 0.5 * driven.moment * v[:, 1, 2] ** 2
-    one, none = np.ones(n), np.zeros(n)
+    one, none, empty = np.ones(n), np.zeros(n), np.zeros(0)
     return Record(
-        h * np.arange(1.0, n + 1.0),
-        x,
-        v,
-        x[:, :, 2],
-        v[:, :, 2],
-        force[:, None],
-        regions,
-        np.where(regions[:, :, 0] > 0, 0, -1),
-        one,
-        none,
-        none,
-        kinetic,
-        np.zeros(0),
-        np.zeros(0),
-        np.zeros((n, 0, 3)),
-        n,
-    )
+        h * np.arange(1.0, n + 1.0), x, v, x[:, :, 2], v[:, :, 2], force[:, None], regions,
+        np.where(regions[:, :, 0] > 0, 0, -1), one, none, none, kinetic, empty, empty, np.zeros((n, 0, 3)), n,
+    )  # fmt: skip

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases import case_report
+from rigidarea.cases.case_report import BLUE, RED, figure, save
 from rigidarea.flexible.recover import State, recover
 from rigidarea.flexible.stress_pictures import draw_deformed, draw_pressure, draw_stress
 
@@ -58,14 +58,7 @@ def pin_joint(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Sc
     sim = case.simulation(mesh_mm, mode, contact, refine=4, cache=cache)
     fall = float(np.sqrt(2 * (case.JOURNAL - case.PIN) / case.GRAVITY))
     return _record(
-        "pin_joint",
-        sim,
-        0.9995 * fall,
-        case.STEP,
-        1.4e-3,
-        3,
-        ("pin", "journal"),
-        (0.0, -35.0, 14.0, 9.0),
+        "pin_joint", sim, 0.9995 * fall, case.STEP, 1.4e-3, 3, ("pin", "journal"), (0.0, -35.0, 14.0, 9.0)
     )
 
 
@@ -83,14 +76,7 @@ def gearbox(mode: str, mesh_mm: float, contact: str, cache: Path | None) -> Scen
 
     sim = case.simulation(mode, mesh_mm, contact, cache=cache)
     return _record(
-        "gearbox",
-        sim,
-        0.25,
-        case.STEP,
-        2 * case.MESHING,
-        1,
-        ("pinion", "wheel"),
-        (23.0, 0.0, 12.0, 9.0),
+        "gearbox", sim, 0.25, case.STEP, 2 * case.MESHING, 1, ("pinion", "wheel"), (23.0, 0.0, 12.0, 9.0)
     )
 
 
@@ -143,12 +129,12 @@ def _peak(scene: Scene) -> tuple[int, float]:
 def still(scene: Scene, out: Path) -> None:
     """Stress, contact pressure along the face and the deformed shape at the instant of the largest force."""
     n, top = _peak(scene)
-    fig, (left, middle, right) = case_report.figure(15, 5.2, 1, 3)
+    fig, (left, middle, right) = figure(15, 5.2, 1, 3)
     unit, pressure = scene.units
     mappable = draw_stress(left, scene.states[n], length=scene.length, stress=scene.stress, top=top)
     fig.colorbar(mappable, ax=left, label=f"von Mises stress ({pressure})", extend="max", shrink=0.8)
     left.set_title(f"stress, {scene.times[n]}", fontsize=10)
-    for i, (colour, style) in enumerate(((case_report.BLUE, "o-"), (case_report.RED, "s--"))):
+    for i, (colour, style) in enumerate(((BLUE, "o-"), (RED, "s--"))):
         state = scene.states[n][i]
         draw_pressure(
             middle, state.shape, scene.loads[n][i], scene.bodies[i], colour, style, length=scene.length,
@@ -157,13 +143,11 @@ def still(scene: Scene, out: Path) -> None:
     middle.set(xlabel=f"way along the face ({unit})", ylabel=f"contact pressure ({pressure})")
     middle.legend()
     magnification = _magnification(scene, n)
-    draw_deformed(
-        right, scene.states[n], magnification, (case_report.BLUE, case_report.RED), length=scene.length
-    )
+    draw_deformed(right, scene.states[n], magnification, (BLUE, RED), length=scene.length)
     right.set_title(f"deformed, displacements × {magnification:g}; grey: as it was", fontsize=10)
     for ax in (left, right):
         _frame(ax, scene)
-    case_report.save(fig, out, f"{scene.name}_stress")
+    save(fig, out, f"{scene.name}_stress")
 
 
 def _magnification(scene: Scene, n: int) -> float:
@@ -188,7 +172,7 @@ def frames(scene: Scene) -> Iterator[NDArray[np.uint8]]:
     _, top = _peak(scene)
     _, _, wide, high = scene.window
     for time, states in zip(scene.times, scene.states, strict=True):
-        fig, ax = case_report.figure(8.0, 8.0 * high / wide * 0.8 + 0.8)
+        fig, ax = figure(8.0, 8.0 * high / wide * 0.8 + 0.8)
         mappable = draw_stress(ax, states, length=scene.length, stress=scene.stress, top=top)
         fig.colorbar(mappable, ax=ax, label=f"von Mises stress ({scene.units[1]})", extend="max", shrink=0.8)
         ax.set_title(time, fontsize=10)
