@@ -127,49 +127,79 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
         ax.plot(*zip(*found), ls="", marker=marker(name), ms=3, color=colour(name), alpha=0.35, mew=0.6)
         line = front.front(found)
         ax.plot(*zip(*line), color=colour(name), marker=marker(name), ms=4.5, lw=1.6, drawstyle="steps-post")
-    top = [row["error"] for row in rows if row["scene"] == scene["scene"] and row["error"]]
-    most = 8 * min(max(top, default=1.0), 10.0)  # room for the words at the top
-    for row in rows:
-        if row["scene"] == scene["scene"] and row.get("default"):
+    here = [row for row in rows if row["scene"] == scene["scene"]]
+    top = max((row["error"] for row in here if row["error"]), default=1.0)
+    most = 8 * min(top, 10.0)  # room for the words at the top
+    for row in here:
+        if row.get("default"):
             # at the edge: failed, or further off than the panel shows
-            error = (
-                min(max(row["error"] or 0.0, floor / 3), most / 6) if row["error"] is not None else most / 6
-            )
-            mine = get_peer(row["peer"]).ours
-            ax.plot(
-                row["cost_s_per_s"],
-                error,
-                marker=marker(row["peer"]),
-                ms=10 if mine else 5,
-                color=colour(row["peer"]),
-                ls="",
-                zorder=4,
-            )
-            ax.plot(
-                row["cost_s_per_s"],
-                error,
-                marker="o",
-                ms=15 if mine else 9,
-                mfc="none",
-                mec="#111111",
-                ls="",
-                zorder=5,
-            )
+            error = most / 6 if row["error"] is None else min(max(row["error"], floor / 3), most / 6)
+            at, peer, mine = (row["cost_s_per_s"], error), row["peer"], get_peer(row["peer"]).ours
+            ax.plot(*at, marker=marker(peer), ms=10 if mine else 5, color=colour(peer), ls="", zorder=4)
+            ax.plot(*at, marker="o", ms=15 if mine else 9, mfc="none", mec="#111111", ls="", zorder=5)
     ax.set(xscale="log", yscale="log")
     ax.set_ylim(floor / 4, most)
     ax.axhspan(floor / 4, floor, color="#f3f3f3", zorder=0)
     ax.set_title(scene["title"], loc="left")
-    ax.text(
-        0.98,
-        0.97,
-        scene["error_name"],
-        transform=ax.transAxes,
-        ha="right",
-        va="top",
-        fontsize=7.5,
-        color="#444444",
-        bbox={"fc": "white", "ec": "none", "pad": 1, "alpha": 0.75},
-    )
+    words: dict[str, Any] = {
+        "fontsize": 7.5,
+        "color": "#444444",
+        "ha": "right",
+        "va": "top",
+        "transform": ax.transAxes,
+    }
+    paper = {"fc": "white", "ec": "none", "pad": 1, "alpha": 0.75}
+    ax.text(0.98, 0.97, scene["error_name"], **words, bbox=paper)
+
+
+def _ratio_axes(report: Row, summary: Sequence[Row], key: str, labels: Sequence[str], **size: Any) -> Any:
+    """Two axes for ratios, ours over theirs, a line a scene, where the mean of `key` is largest first.
+
+    Returns the figure, the axes, and a function that says at which height a row of the summary is drawn.
+    """
+    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
+    names = list(dict.fromkeys(row["scene"] for row in summary))
+    names.sort(key=lambda name: -_mean_log(summary, name, key))
+    peers = list(dict.fromkeys(row["peer"] for row in summary))
+    tall = size.pop("above") + 0.26 * len(names)
+    figure, axes = pyplot().subplots(1, 2, figsize=(10, tall), sharey=True, layout="constrained", **size)
+    low, high = RANGE
+    for ax, label in zip(axes, labels, strict=True):
+        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=label)
+        ax.axvspan(low / 1.5, 1, color="#eaf3fa", zorder=0)
+        ax.axvline(1, color="#666666", lw=1)
+        ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
+        ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
+    axes[0].set_yticks(range(len(names)), [titles[name] for name in names])
+    axes[0].set_ylim(-0.7, len(names) - 0.3)
+
+    def height(row: Row) -> float:
+        share = peers.index(row["peer"]) / max(len(peers) - 1, 1)
+        return names.index(row["scene"]) + 0.34 * (0.5 - share)
+
+    return figure, axes, height
+
+
+def _mark(ax: Axes, ratio: float, y: float, peer: str, **look: Any) -> None:
+    """A mark at a ratio; where it is beyond RANGE, one at its end and an arrow."""
+    low, high = RANGE
+    shown = min(max(ratio, low), high)
+    ax.plot(shown, y, marker=marker(peer), color=colour(peer), ms=5.5, ls="", **look)
+    if shown != ratio:
+        edge, arrow = (high * 1.25, 5) if ratio > high else (low / 1.25, 4)
+        ax.plot(edge, y, marker=arrow, color=colour(peer))
+
+
+def _marks_legend(figure: Figure, summary: Sequence[Row], *kinds: tuple[str, dict[str, Any]]) -> None:
+    """A legend of each peer's mark, in each of the kinds (label with {}, look), and of what is beyond RANGE."""
+    line, peers = pyplot().Line2D, dict.fromkeys(row["peer"] for row in summary)
+    handles = [
+        line([], [], ls="", color=colour(peer), marker=marker(peer), label=label.format(peer), **look)
+        for label, look in kinds
+        for peer in peers
+    ]
+    handles.append(line([], [], ls="", color="#666666", marker=5, label="beyond the edge"))
+    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
 
 
 def chart_summary(report: Row, out: Path) -> list[Path]:
@@ -177,52 +207,26 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
 
     A thin bar spans the cost ratios at all errors from the smallest that both reach up to a tenth.
     """
-    plt = pyplot()
     summary = report["summary"]
     if not summary:
         return []
-    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
-    names = list(dict.fromkeys(row["scene"] for row in summary))
-    names.sort(key=lambda name: -_mean_log(summary, name))
-    peers = list(dict.fromkeys(row["peer"] for row in summary))
-    figure, axes = plt.subplots(
-        1, 2, figsize=(10, 1.7 + 0.26 * len(names)), sharey=True, layout="constrained", width_ratios=(1.2, 1)
-    )
-    labels = {
-        "cost_ratio_at_matched_error": "cost ratio at matched error (bar: at coarser errors)",
-        "error_ratio_at_matched_cost": "error ratio at matched cost",
-    }
-    for ax, (which, label) in zip(axes, labels.items(), strict=True):
-        low, high = RANGE
-        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=f"{label}\nrigidarea / peer")
-        ax.axvspan(low / 1.5, 1, color="#eaf3fa", zorder=0)
-        ax.axvline(1, color="#666666", lw=1)
+    keys = ("cost_ratio_at_matched_error", "error_ratio_at_matched_cost")
+    labels = [
+        f"{label}\nrigidarea / peer"
+        for label in ("cost ratio at matched error (bar: at coarser errors)", "error ratio at matched cost")
+    ]
+    figure, axes, height = _ratio_axes(report, summary, keys[0], labels, above=1.7, width_ratios=(1.2, 1))
+    low, high = RANGE
+    for ax, key in zip(axes, keys, strict=True):
         for row in summary:
-            value, peer = row[which], row["peer"]
-            if value is None or math.isnan(value):
+            if row[key] is None or math.isnan(row[key]):
                 continue
-            y = names.index(row["scene"]) + 0.34 * (0.5 - peers.index(row["peer"]) / max(len(peers) - 1, 1))
-            if which.startswith("cost"):
+            y, peer = height(row), row["peer"]
+            if key.startswith("cost"):
                 span = [min(max(row[key], low), high) for key in ("cost_ratio_low", "cost_ratio_high")]
                 ax.plot(span, (y, y), color=colour(peer), lw=1.4, alpha=0.45, solid_capstyle="butt")
-            shown = min(max(value, low), high)
-            ax.plot(shown, y, marker=marker(peer), color=colour(peer), ms=5.5, ls="")
-            if shown != value:  # beyond the edge of the picture
-                ax.plot(
-                    high * 1.25 if value > high else low / 1.25,
-                    y,
-                    marker=5 if value > high else 4,
-                    color=colour(peer),
-                )
-        ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
-        ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
-    axes[0].set_yticks(range(len(names)), [titles[name] for name in names])
-    axes[0].set_ylim(-0.7, len(names) - 0.3)
-    handles = [
-        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), label=f"against {p}") for p in peers
-    ]
-    handles.append(_beyond(plt))
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+            _mark(ax, row[key], y, peer)
+    _marks_legend(figure, summary, ("against {}", {}))
     return save(figure, out, "chart-summary")
 
 
@@ -232,61 +236,30 @@ def chart_defaults(report: Row, out: Path) -> list[Path]:
     Left: its cost over that with which the peer does as well. Right: cost (filled) and error (hollow) of our default
     over those of the peer's. What fails is at the right edge.
     """
-    plt = pyplot()
     summary = [row for row in report["summary"] if "default_error" in row]
     if not summary:
         return []
-    titles = {scene["scene"]: scene["title"] for scene in report["scenes"]}
-    names = list(dict.fromkeys(row["scene"] for row in summary))
-    names.sort(key=lambda name: -_mean_log(summary, name, "default_cost_ratio"))
-    peers = list(dict.fromkeys(row["peer"] for row in summary))
-    figure, axes = plt.subplots(
-        1, 2, figsize=(10, 1.9 + 0.26 * len(names)), sharey=True, layout="constrained", width_ratios=(1, 1.2)
-    )
     labels = ("cost ratio at our default's error\nour default / peer's front", "our default / peer's default")
-    low, high = RANGE
-    for ax, label, keys in zip(
-        axes, labels, (("default_cost_ratio",), ("defaults_cost_ratio", "defaults_error_ratio")), strict=True
-    ):
-        ax.set(xscale="log", xlim=(low / 1.5, high * 1.5), xlabel=label)
-        ax.axvspan(low / 1.5, 1, color="#eaf3fa", zorder=0)
-        ax.axvline(1, color="#666666", lw=1)
+    key = "default_cost_ratio"
+    figure, axes, height = _ratio_axes(report, summary, key, labels, above=1.9, width_ratios=(1, 1.2))
+    hollow = {"mfc": "white"}
+    looks: tuple[dict[str, Any], ...] = (
+        {key: {}},
+        {"defaults_cost_ratio": {}, "defaults_error_ratio": hollow},
+    )
+    for ax, kinds in zip(axes, looks, strict=True):
         for row in summary:
-            y = names.index(row["scene"]) + 0.34 * (0.5 - peers.index(row["peer"]) / max(len(peers) - 1, 1))
-            for key in keys:
-                value = row.get(key)
+            for kind, look in kinds.items():
+                value = row.get(kind)
                 if value is None:  # infinite, or no number: in JSON both are null
                     value = math.inf if row["default_error"] in (None, math.inf) else math.nan
-                if math.isnan(value):
-                    continue
-                shown = min(max(value, low), high)
-                own = {"mfc": "white"} if key == "defaults_error_ratio" else {}
-                ax.plot(shown, y, marker=marker(row["peer"]), color=colour(row["peer"]), ms=5.5, ls="", **own)
-                if shown != value:
-                    edge, arrow = (high * 1.25, 5) if value > high else (low / 1.25, 4)
-                    ax.plot(edge, y, marker=arrow, color=colour(row["peer"]))
-        ax.text(0.01, 1.005, "rigidarea better", transform=ax.transAxes, fontsize=8, color="#0072B2")
-        ax.text(0.99, 1.005, "peer better", transform=ax.transAxes, fontsize=8, color="#666666", ha="right")
-    axes[0].set_yticks(range(len(names)), [titles[name] for name in names])
-    axes[0].set_ylim(-0.7, len(names) - 0.3)
-    handles = [
-        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), label=f"against {p}: cost")
-        for p in peers
-    ] + [
-        plt.Line2D([], [], ls="", color=colour(p), marker=marker(p), mfc="white", label=f"{p}: error")
-        for p in peers
-    ]
-    handles.append(_beyond(plt))
-    figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
+                if not math.isnan(value):
+                    _mark(ax, value, height(row), row["peer"], **look)
+    _marks_legend(figure, summary, ("against {}: cost", {}), ("{}: error", hollow))
     return save(figure, out, "chart-defaults")
 
 
-def _beyond(plt: Any) -> Any:
-    """The legend's line for what is not within RANGE."""
-    return plt.Line2D([], [], ls="", color="#666666", marker=5, label="beyond the edge")
-
-
-def _mean_log(summary: Sequence[Row], scene: str, key: str = "cost_ratio_at_matched_error") -> float:
+def _mean_log(summary: Sequence[Row], scene: str, key: str) -> float:
     values = [row[key] for row in summary if row["scene"] == scene]
     logs = [math.log10(v) if v and math.isfinite(v) else 9.0 for v in values]
     return sum(logs) / len(logs)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from pathlib import Path
@@ -78,15 +79,8 @@ def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
     names = list(dict.fromkeys(row["peer"] for row in rows))
     columns = 3 if len(names) > 4 else len(names)
     lines = -(-len(names) // columns)
-    figure, axes = plt.subplots(
-        lines,
-        columns,
-        figsize=(10, 1.0 + 2.9 * lines),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-        layout="constrained",
-    )
+    shared = {"sharex": True, "sharey": True, "squeeze": False, "layout": "constrained"}
+    figure, axes = plt.subplots(lines, columns, figsize=(10, 1.0 + 2.9 * lines), **shared)
     colours = _colours(rows)
     for ax, name in zip(axes.flat, names, strict=False):
         _cells(ax, chart, rows, name, colours)
@@ -134,21 +128,13 @@ def _cells(
     for row in rows:
         if row["peer"] == name:
             grid[ys.index(row["y"]), xs.index(row["x"])] = verdicts.index(row["verdict"])
-    ax.pcolormesh(
-        np.arange(len(xs) + 1) - 0.5,
-        np.arange(len(ys) + 1) - 0.5,
-        grid,
-        cmap=ListedColormap(list(colours.values())),
-        vmin=-0.5,
-        vmax=len(colours) - 0.5,
-        ec="w",
-        lw=0.4,
-    )
+    edges = (np.arange(len(values) + 1) - 0.5 for values in (xs, ys))
+    shades = ListedColormap(list(colours.values()))
+    ax.pcolormesh(*edges, grid, cmap=shades, vmin=-0.5, vmax=len(colours) - 0.5, ec="w", lw=0.4)
     if not chart.theory_of or name in chart.theory_of:
         for (label, tx, ty), style in zip(chart.theory(), ("-", "--", ":"), strict=False):
-            ax.plot(
-                places(chart.x, xs, tx), places(chart.y, ys, ty), color="k", lw=1.5, ls=style, label=label
-            )
+            at = places(chart.x, xs, tx), places(chart.y, ys, ty)
+            ax.plot(*at, color="k", lw=1.5, ls=style, label=label)
     ax.set_xlim(-0.5, len(xs) - 0.5)
     ax.set_ylim(-0.5, len(ys) - 0.5)
     ax.grid(False)
@@ -167,9 +153,7 @@ def page(report: Row, out: Path) -> list[Path]:
     strips = figure.subfigures(len(charts), 1, squeeze=False)[:, 0]
     for strip, chart in zip(strips, charts, strict=True):
         rows = [row for row in report["results"] if row["map"] == chart.name]
-        axes = strip.subplots(1, len(ENGINES) + 1, width_ratios=(*[1.0] * len(ENGINES), 1.12), squeeze=False)[
-            0
-        ]
+        axes = strip.subplots(1, len(ENGINES) + 1, width_ratios=(*[1.0] * len(ENGINES), 1.12))
         strip.subplots_adjust(left=0.085, right=0.98, bottom=0.25, top=0.77, wspace=0.12)
         corners = any(row["peer"] == CORNERS for row in rows)
         names = [CORNERS if name == "literal" and corners else name for name in ENGINES]
@@ -200,11 +184,10 @@ def overview(report: Row, out: Path) -> list[Path]:
     names = [name for name in ENGINES if any(r["peer"] == name for r in rows)]
     charts = [described for described in report["maps"] if any(r["map"] == described["map"] for r in rows)]
     share = np.full((len(charts), len(names)), np.nan)
-    for i, described in enumerate(charts):
-        for j, name in enumerate(names):
-            here = [r["verdict"] == PASS for r in rows if r["map"] == described["map"] and r["peer"] == name]
-            if here:
-                share[i, j] = float(np.mean(here))
+    for (i, described), (j, name) in itertools.product(enumerate(charts), enumerate(names)):
+        here = [r["verdict"] == PASS for r in rows if r["map"] == described["map"] and r["peer"] == name]
+        if here:
+            share[i, j] = float(np.mean(here))
     figure, ax = plt.subplots(figsize=(10, 1.2 + 0.42 * len(charts)), layout="constrained")
     image = ax.imshow(share, cmap="cividis", vmin=0, vmax=1, aspect="auto")
     for i, j in np.ndindex(*share.shape):

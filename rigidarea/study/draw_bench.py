@@ -29,16 +29,8 @@ def frame_times(report: Row, out: Path) -> list[Path]:
             label = f"{peer}, {steps} step{'s' * (steps > 1)} a frame" if steps else peer
             style = "-" if peer in seen else "--"
             seen.append(peer)
-            ax.plot(
-                x,
-                y,
-                style if steps else "-",
-                color=colour(peer),
-                marker=marker(peer),
-                ms=5,
-                lw=1.6,
-                label=label,
-            )
+            look = {"color": colour(peer), "marker": marker(peer), "ms": 5, "lw": 1.6}
+            ax.plot(x, y, style if steps else "-", label=label, **look)
             ax.vlines(x, y, [row["frame_ms_p99"] for row in group], color=colour(peer), lw=1)
         ax.axhline(1e3 / 60, color="#666666", lw=1, ls=":")
         ax.text(0.02, 1e3 / 60 * 1.1, "60 frames a second", transform=ax.get_yaxis_transform(), fontsize=7.5)
@@ -64,15 +56,9 @@ def everyday_times(report: Row, out: Path) -> list[Path]:
     for key, peer, label, look in kinds:
         found = [(row[key] / row["native_1_ms"], y) for y, row in enumerate(rows) if row[key]]
         ax.plot(*zip(*found), ls="", marker=marker(peer), color=colour(peer), label=label, **look)
+    beside = {"transform": ax.get_yaxis_transform(), "va": "center", "fontsize": 8}
     for y, row in enumerate(rows):
-        ax.text(
-            1.01,
-            y,
-            f"{row['native_1_ms']:.3g} ms",
-            transform=ax.get_yaxis_transform(),
-            va="center",
-            fontsize=8,
-        )
+        ax.text(1.01, y, f"{row['native_1_ms']:.3g} ms", **beside)
     names = [f"{row['title']}{'' if row['judged'] else ' *'}" for row in rows]
     ax.set_yticks(range(len(rows)), names)
     ax.set(xscale="log", xlabel="frame time over that of pymunk's one step, which stands on the right")
@@ -124,9 +110,8 @@ def growth(report: Row, out: Path) -> list[Path]:
         ax.set_visible(False)
     for ax in axes[:, 0]:
         ax.set_ylabel("µs a frame, bar: worst tenth")
-    figure.supxlabel(
-        "how many: pieces of level or terrain (radius 0: lines without thickness), bodies", fontsize=9
-    )
+    what = "how many: pieces of level or terrain (radius 0: lines without thickness), bodies"
+    figure.supxlabel(what, fontsize=9)
     figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
     return save(figure, out, "bench-growth")
 
@@ -138,15 +123,10 @@ def phases(report: Row, out: Path) -> list[Path]:
     names = [key for key in rows[0] if key.endswith("_us") and key != "frame_us"]
     figure, ax = plt.subplots(figsize=(10, 1.4 + 0.55 * len(rows)), layout="constrained")
     left = [0.0] * len(rows)
-    shades = [
-        colour("pymunk"),
-        *plt.get_cmap("viridis")([i / (len(names) - 2) for i in range(len(names) - 1)]),
-    ]
-    for name, shade in zip(names, shades):
-        values = [max(0.0, row[name]) for row in rows]
-        ax.barh(
-            range(len(rows)), values, left=left, color=shade, label=name.removesuffix("_us").replace("_", " ")
-        )
+    own = plt.get_cmap("viridis")([i / (len(names) - 2) for i in range(len(names) - 1)])
+    for name, shade in zip(names, [colour("pymunk"), *own]):
+        values, label = [max(0.0, row[name]) for row in rows], name.removesuffix("_us").replace("_", " ")
+        ax.barh(range(len(rows)), values, left=left, color=shade, label=label)
         left = [a + b for a, b in zip(left, values)]
     ax.set_yticks(range(len(rows)), [row["scene"] for row in rows])
     ax.set_xlabel("processor time of a frame (µs)")

@@ -68,17 +68,13 @@ def _cost(ax: Any, traces: Row, rows: dict[tuple[str, str], Row]) -> None:
         x, y = [row["cost_s_per_s"] for row in here], [row["error"] for row in here]
         ax.plot(x, y, "-", color="#999999", lw=0.8, zorder=1)
         for row in here:
-            ax.plot(
-                row["cost_s_per_s"], row["error"], mark, ms=7, color=STYLES[row["level"]][0],
-                mec="black", mew=0.5,
-            )  # fmt: skip
+            tint = STYLES[row["level"]][0]
+            ax.plot(row["cost_s_per_s"], row["error"], mark, ms=7, color=tint, mec="black", mew=0.5)
         ax.plot([], [], mark, color="#999999", ms=7, label=described["title"])
     for level, (tint, _, _) in STYLES.items():
         ax.plot([], [], "s", color=tint, ms=7, label=level)
-    ax.set(
-        xscale="log", yscale="log", title="error against cost", xlabel="cost (s a simulated second)",
-        ylabel="error against the exact or a finer answer",
-    )  # fmt: skip
+    ax.set(xscale="log", yscale="log", title="error against cost")
+    ax.set(xlabel="cost (s a simulated second)", ylabel="error against the exact or a finer answer")
 
 
 def convergence(studies: Sequence[Row], out: Path) -> list[Path]:
@@ -101,9 +97,8 @@ def convergence(studies: Sequence[Row], out: Path) -> list[Path]:
             ax.loglog(x, error, MARKERS[i] + "-", ms=5, lw=1.2, color=COLOURS[i], label=label)
             if row["expected"] is not None:
                 ax.loglog(x, error[-1] * (x / x[-1]) ** row["expected"], ":", lw=1.0, color=COLOURS[i])
-        ax.set(
-            title=name, xlabel=knobs[0] if len(knobs) == 1 else "step / largest step", ylabel="relative error"
-        )
+        knob = knobs[0] if len(knobs) == 1 else "step / largest step"
+        ax.set(title=name, xlabel=knob, ylabel="relative error")
         ticks = sorted({float(t) for line in ax.lines for t in line.get_xdata()})
         ax.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
         ax.set_xticks([], minor=True)
