@@ -32,12 +32,7 @@ COMMANDS = {
     "compat": "pymunk's own examples and tests with area contact attached (in a checkout)",
 }
 #: Where they are (`compat`'s in the harness): each module has `add_arguments(parser)` and `run(arguments)`.
-MODULES = {
-    "demo": "draw.demo",
-    "case": "cases",
-    "plan": "study.plan_command",
-    "run": "programs.run_program",
-}
+MODULES = {"demo": "draw.demo", "case": "cases", "plan": "study.plan_command", "run": "programs.run_program"}
 #: The extra that brings a module which commands need (README, "Set up").
 EXTRAS = {
     **dict.fromkeys(("pygame", "imageio", "imageio_ffmpeg"), "demos"),

@@ -48,9 +48,8 @@ def _crossings(a: Points, b: Points, edges: _Edges) -> tuple[Points, Points]:
     with np.errstate(divide="ignore", invalid="ignore"):
         t = (off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0]) / cross
         u = (off[:, 0] * way[1] - off[:, 1] * way[0]) / cross
-    for i in np.flatnonzero(
-        (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)
-    ):  # NaN and infinity, parallel, are neither
+    inside = (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)  # NaN and infinity, parallel, are neither
+    for i in np.flatnonzero(inside):
         found.append((float(t[i]), np.array((along[i, 1], -along[i, 0])) / math.hypot(*along[i])))
     for i in np.flatnonzero(~straight):
         x, y, r = edges.arcs[i]

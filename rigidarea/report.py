@@ -16,17 +16,7 @@ from importlib import metadata
 from pathlib import Path
 from typing import Any
 
-PACKAGES = (
-    "rigidarea",
-    "pymunk",
-    "numpy",
-    "numba",
-    "shapely",
-    "scipy",
-    "matplotlib",
-    "pygame-ce",
-    "pyb2d3",
-)
+PACKAGES = ("rigidarea", "pymunk", "numpy", "numba", "shapely", "scipy", "matplotlib", "pygame-ce", "pyb2d3")
 """Packages that bear on a number or on a picture."""
 
 

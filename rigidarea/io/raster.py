@@ -66,9 +66,7 @@ def _solid(kind: str, size: tuple[int, int], data: bytes) -> NDArray[np.float64]
                 inner += 1.0
     except MemoryError:
         raise
-    except (
-        Exception
-    ) as error:  # a damaged file may lead to any: OSError, SyntaxError, struct.error, TypeError ...
+    except Exception as error:  # a damaged file may lead to any: OSError, SyntaxError, struct.error ...
         raise ValueError(f"{type(error).__name__}: {error}"[:200]) from None
     return padded
 
@@ -126,9 +124,8 @@ def _outlines(
     dropped = 0.5 * scale if tolerance is None else tolerance
     above = padded > threshold
     crossed = np.count_nonzero(above[1:] != above[:-1]) + np.count_nonzero(above[:, 1:] != above[:, :-1])
-    check(
-        int(crossed), limits.points, "points"
-    )  # contours have one where two pixels' centres lie on both sides
+    # contours have one where two pixels' centres lie on both sides
+    check(int(crossed), limits.points, "points")
     contours: Any = contour_generator(z=padded, fill_type=FillType.OuterOffset)
     points, offsets = contours.filled(threshold, max(float(padded.max()), threshold) + 1.0)
     check(sum(map(len, offsets)) - len(offsets), limits.rings, "solids and holes")

@@ -15,13 +15,7 @@ JOINTS: dict[str, tuple[type[pymunk.Constraint], dict[str, str]]] = {
     "groove": (pymunk.GrooveJoint, {"groove_a": POINT, "groove_b": POINT, "anchor_b": POINT}),
     "spring": (
         pymunk.DampedSpring,
-        {
-            "anchor_a": POINT,
-            "anchor_b": POINT,
-            "rest_length": LENGTH,
-            "stiffness": LENGTH,
-            "damping": LENGTH,
-        },
+        {"anchor_a": POINT, "anchor_b": POINT, "rest_length": LENGTH, "stiffness": LENGTH, "damping": LENGTH},
     ),
     "rotary_spring": (
         pymunk.DampedRotarySpring,

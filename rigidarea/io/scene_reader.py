@@ -18,11 +18,7 @@ from .values import Values
 
 FORMAT = 1
 
-TYPES = {
-    "dynamic": pymunk.Body.DYNAMIC,
-    "kinematic": pymunk.Body.KINEMATIC,
-    "static": pymunk.Body.STATIC,
-}
+TYPES = {"dynamic": pymunk.Body.DYNAMIC, "kinematic": pymunk.Body.KINEMATIC, "static": pymunk.Body.STATIC}
 
 SHAPES = ("outline", "circle", "box", "poly", "segment")
 
@@ -258,9 +254,8 @@ class Reader(Values):
             check(self.arcs, self.limits.arcs, "points of outlines with arcs")
             ends = [np.roll(ring, -1, axis=0) for ring in rings]
             p, q = np.concatenate(rings)[:, :2], np.concatenate(ends)[:, :2]
-            half = (
-                np.hypot(*(q - p).T)[:, None] / 2
-            )  # an arc reaches no further beyond its chord's box than that
+            # an arc reaches no further beyond its chord's box than that
+            half = np.hypot(*(q - p).T)[:, None] / 2
             boxes = shapely.box(*(np.minimum(p, q) - half).T, *(np.maximum(p, q) + half).T)
             overlapping_boxes(boxes, 25 * self.limits.arcs, "edges", keep=False)
         else:

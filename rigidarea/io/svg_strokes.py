@@ -30,9 +30,8 @@ def stroked(rings: Sequence[Ring], pen: Stroke, tolerance: float | None) -> list
     """What a pen covers on its way along rings, (n, 2) each."""
     check(sum(map(len, rings)), STROKED, "points of a stroke")
     ways = ((r, np.append(True, (r[1:] != r[:-1]).any(axis=1))) for r in rings)
-    rings = [
-        ring[new] for ring, new in ways if np.count_nonzero(new) > 1
-    ]  # a pen that does not move draws nothing
+    # a pen that does not move draws nothing
+    rings = [ring[new] for ring, new in ways if np.count_nonzero(new) > 1]
     if not rings:
         return []
     ends = [(ring[:-1], ring[1:]) for ring in rings]

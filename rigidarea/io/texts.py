@@ -49,10 +49,7 @@ def parse_json(content: str, what: str, depth: int, limits: Limits) -> Any:
         return json.loads(content, parse_constant=refuse)
     except _NotFinite:
         raise
-    except (
-        ValueError,
-        RecursionError,
-    ) as error:  # JSONDecodeError, a number of too many digits; a deep stack's end
+    except (ValueError, RecursionError) as error:  # JSONDecodeError, too many digits; a deep stack's end
         raise ValueError(f"{what}: expected JSON: {error}") from None
 
 

@@ -294,9 +294,8 @@ def _check(
         allowed = ("steps", "level") if target in materials else ("steps",)
     else:
         raise ValueError(f"expected None, a shape, or a body to override, got {target!r}")
-    if (
-        target is not None and target.space is not space and value is not None
-    ):  # one that left: words taken back
+    # of one that left words may be taken back
+    if target is not None and target.space is not space and value is not None:
         raise ValueError(f"expected a shape or a body of the plan's space to override, got {target!r:.80}")
     if name not in allowed:
         raise ValueError(f"expected one of {', '.join(allowed)} to override here, got {name!r}")

@@ -150,9 +150,8 @@ class Probe:
         self.sampled = any(outline._resample is not None for outline in outlines)
         self.stands_in = bool(outlines)
         self.moving = sum(body.body_type == pymunk.Body.DYNAMIC for body in space.bodies)
-        self.share = (
-            float(self.free.sum()) / self.moving if self.moving else 1.0
-        )  # of what moves that is copied
+        # of what moves that is copied
+        self.share = float(self.free.sum()) / self.moving if self.moving else 1.0
         self.spent = costs.PART_BODY_S * self.moving if self.share < 1.0 else 0.0
         self.pairs = float(self.moving)  # of the space that touch, on the average
         self.groups = np.arange(len(self.bodies))  # of the first run: see `Seen`

@@ -61,9 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
             from .filming import Filming
 
             movie = stack.enter_context(Filming(host, arguments.film))
-        out = (
-            sys.stderr if arguments.json == "-" else sys.stdout
-        )  # what the program prints must not mix with JSON
+        # what the program prints must not mix with JSON
+        out = sys.stderr if arguments.json == "-" else sys.stdout
         stack.enter_context(contextlib.redirect_stdout(out))
         try:
             host.run(script, arguments.arguments)

@@ -90,10 +90,9 @@ def rounded_polygon(points: ArrayLike, radius: float, *, tolerance: float | None
     if spare[-1] <= noise and cut[0] > 0 and arcs[-1] == (0.0, 0.0, 0.0):
         ring.pop()
         arcs.pop()
-    check_simple(
-        [np.array(ring)], [np.array(arcs)], ["points"]
-    )  # arcs may cut into each other in a narrow neck
-    return _sampled(Outline.from_curve([np.array(ring)], arcs=[np.array(arcs)]), tolerance)
+    rings, bows = [np.array(ring)], [np.array(arcs)]
+    check_simple(rings, bows, ["points"])  # arcs may cut into each other in a narrow neck
+    return _sampled(Outline.from_curve(rings, arcs=bows), tolerance)
 
 
 def _sampled(outline: Outline, tolerance: float | None) -> Outline:

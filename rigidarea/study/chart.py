@@ -37,13 +37,8 @@ NOISE = 1.4
 """Ratio of two times measured once that says which is longer."""
 TOLD = (
     *("scene", "peer", "matched_error", "cost_ratio_at_matched_error", "cost_ratio_mean", "cost_ratio_worst"),
-    *(
-        "default_error",
-        "default_cost_ratio",
-        "peer_default_error",
-        "defaults_cost_ratio",
-        "defaults_error_ratio",
-    ),
+    *("default_error", "default_cost_ratio", "peer_default_error", "defaults_cost_ratio"),
+    "defaults_error_ratio",
 )
 """Keys of a summary row that the command prints as a table; the files have all."""
 REPEATS, QUICK_REPEATS = 5, 2
@@ -192,11 +187,7 @@ def compare_defaults(ours: front.Point, usual: front.Point | None, theirs: Seque
     `peer_default_error`, `peer_default_cost_s_per_s`; `defaults_cost_ratio` and `defaults_error_ratio`, ours over
     theirs (errors below RESOLUTION count as equal to it).
     """
-    found = {
-        "default_error": ours.error,
-        "default_cost_s_per_s": ours.cost,
-        "default_cost_ratio": math.inf,
-    }
+    found = {"default_error": ours.error, "default_cost_s_per_s": ours.cost, "default_cost_ratio": math.inf}
     if math.isfinite(ours.error):
         found["default_cost_ratio"] = front.compare([ours], theirs, RESOLUTION).cost_ratio_at_matched_error
     if usual is not None:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,8 @@ BENCHES = {
     "step": "one area step beside one native step; where a frame's time goes",
     "worlds": "many copies of a space at once, beside pymunk's own loop over as many",
 }
-DRAWN = ("everyday", "frames", "growth", "kernels", "step")
-"""Those that end in a picture."""
+SHOWN = {"everyday": "everyday.png", "growth": "growth.png", "step": "phases.png"}
+"""Those that pages show, and as what."""
 UNTOLD = ("tags", "error_name")
 """Columns left to the files: too wide for a table."""
 
@@ -35,11 +36,17 @@ UNTOLD = ("tags", "error_name")
 def _sweep(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
     add("--quick", action="store_true", help="few settings, at most two minutes")
-    add("--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)")
+    _peer(parser)
     add("--workers", type=at_least_zero, metavar="N", help="local processes; 0: none (default: one a core)")
     add("--scheduler", metavar="ADDRESS", help="a Dask scheduler, such as tcp://host:8786")
     add("--fresh", action="store_true", help="forget what an earlier run left in DIR")
     _docs(parser)
+
+
+def _peer(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
+    )
 
 
 def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
@@ -54,10 +61,6 @@ def _swept(arguments: argparse.Namespace) -> dict[str, Any]:
     }
 
 
-def _sentence(text: str) -> str:
-    return f"{text[0].upper()}{text[1:]}."
-
-
 def _docs(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--docs",
@@ -67,28 +70,31 @@ def _docs(parser: argparse.ArgumentParser) -> None:
     )
 
 
+def _command(
+    subparsers: Any, name: str, text: str, described: str, run: Callable[[argparse.Namespace], int]
+) -> argparse.ArgumentParser:
+    """A command, with the arguments that all have."""
+    described = f"{text[0].upper()}{text[1:]}. {described}"
+    command: argparse.ArgumentParser = subparsers.add_parser(name, help=text, description=described)
+    output_arguments(command, Path("out") / name)
+    command.set_defaults(run=run)
+    return command
+
+
 def add_commands(subparsers: Any) -> None:
     """Add the studies' commands to `argparse` sub-parsers; each sets `run(arguments) -> int`."""
     text = "speed and memory, beside shapely, pymunk's solver and Box2D"
     described = "; ".join(f"{name}: {what}" for name, what in BENCHES.items())
-    bench = subparsers.add_parser("bench", help=text, description=f"{_sentence(text)} {described}.")
-    bench.add_argument("what", choices=tuple(BENCHES), metavar="WHAT", help=f"one of {', '.join(BENCHES)}")
-    bench.add_argument("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
-    output_arguments(bench, Path("out") / "bench")
-    bench.add_argument("--quick", action="store_true", help="up to 1,000 bodies")
-    bench.add_argument(
-        "--bodies", type=at_least_one, action="append", metavar="N", help="this many (repeatable)"
-    )
-    bench.add_argument(
-        "--peer", action="append", default=[], metavar="NAME", help="only this engine (repeatable)"
-    )
-    bench.add_argument(
-        "--seeds", type=at_least_one, metavar="N", help="everyday: of each scene (default 5; large ones 1)"
-    )
-    bench.add_argument(
-        "--seconds", type=float, metavar="S", help="everyday: simulated time (default 7; towers 2)"
-    )
-    bench.add_argument(
+    bench = _command(subparsers, "bench", text, f"{described}.", _bench)
+    add = bench.add_argument
+    add("what", choices=tuple(BENCHES), metavar="WHAT", help=f"one of {', '.join(BENCHES)}")
+    add("scene", nargs="*", metavar="SCENE", help="scenes or pairs (default: all)")
+    add("--quick", action="store_true", help="up to 1,000 bodies")
+    add("--bodies", type=at_least_one, action="append", metavar="N", help="this many (repeatable)")
+    _peer(bench)
+    add("--seeds", type=at_least_one, metavar="N", help="everyday: of each scene (default 5; large ones 1)")
+    add("--seconds", type=float, metavar="S", help="everyday: simulated time (default 7; towers 2)")
+    add(
         "--set",
         action="append",
         default=[],
@@ -96,41 +102,23 @@ def add_commands(subparsers: Any) -> None:
         help="everyday: rigidarea at this setting (steps, iterations, penetration ...; repeatable), not its defaults",
     )
     _docs(bench)
-    bench.set_defaults(run=_bench)
     text = "accuracy against speed, beside pymunk's solver and Box2D"
-    chart = subparsers.add_parser(
-        "chart",
-        help=text,
-        description=f"{_sentence(text)} Each engine at many settings on each scene: its error, and what it costs.",
-    )
-    output_arguments(chart, Path("out") / "chart")
+    described = "Each engine at many settings on each scene: its error, and what it costs."
+    chart = _command(subparsers, "chart", text, described, _chart)
     _sweep(chart)
-    chart.add_argument("--scene", action="append", default=[], metavar="NAME", help="only this (repeatable)")
-    chart.add_argument(
-        "--repeats", type=at_least_one, metavar="N", help="rounds of timing (default 5, quick 2)"
-    )
-    chart.set_defaults(run=_chart)
-
+    add = chart.add_argument
+    add("--scene", action="append", default=[], metavar="NAME", help="only this (repeatable)")
+    add("--repeats", type=at_least_one, metavar="N", help="rounds of timing (default 5, quick 2)")
     text = "where methods fail: maps over two knobs"
-    atlas = subparsers.add_parser(
-        "atlas",
-        help=text,
-        description=f"{_sentence(text)} Every point of a map is a scene run to its end: held, or how it failed.",
-    )
-    output_arguments(atlas, Path("out") / "atlas")
+    described = "Every point of a map is a scene run to its end: held, or how it failed."
+    atlas = _command(subparsers, "atlas", text, described, _atlas)
     _sweep(atlas)
     atlas.add_argument("--map", action="append", default=[], metavar="NAME", help="only this (repeatable)")
-    atlas.set_defaults(run=_atlas)
     text = "rigid, compliant and modal on the same scenes"
-    compare = subparsers.add_parser(
-        "compare",
-        help=text,
-        description=f"{_sentence(text)} What each level of model finds, and what it costs.",
-    )
+    described = "What each level of model finds, and what it costs."
+    compare = _command(subparsers, "compare", text, described, _compare)
     compare.add_argument("scene", nargs="*", metavar="SCENE", help="scenes (default: all)")
-    output_arguments(compare, Path("out") / "compare")
     _docs(compare)
-    compare.set_defaults(run=_compare)
 
 
 def _write(arguments: argparse.Namespace, name: str, report: dict[str, Any]) -> None:
@@ -185,71 +173,48 @@ def _atlas(arguments: argparse.Namespace) -> int:
 
 
 def _bench(arguments: argparse.Namespace) -> int:
-    from . import (
-        bench,
-        draw,
-        draw_bench,
-        everyday,
-        growth,
-        island_bench,
-        jointed,
-        many_worlds,
-        start_time,
-    )
+    from . import bench, draw, draw_bench, everyday, growth, island_bench, jointed, many_worlds, start_time
 
-    if arguments.what in DRAWN:
+    what, scenes, peers, quick = arguments.what, arguments.scene, arguments.peer, arguments.quick
+    draws = {
+        "everyday": draw_bench.everyday_times,
+        "frames": draw_bench.frame_times,
+        "growth": draw_bench.growth,
+        "kernels": draw.kernel_times,
+        "step": draw_bench.phases,
+    }
+    if what in draws:
         needed("matplotlib")
-    if arguments.what == "everyday":
-        report = everyday.everyday(
-            arguments.scene,
-            arguments.seeds or (1 if arguments.quick else None),
-            arguments.peer,
-            dict(_setting(text) for text in arguments.set),
-            arguments.seconds,
-        )
-        _write(arguments, "bench-everyday", report)
-        pictures = draw_bench.everyday_times(report, arguments.out)
-        if arguments.docs:
-            shown = {"everyday.png": pictures[0]} if pictures else {}
-            _keep(arguments.docs, "everyday", report, shown)
+    sizes, seeds = arguments.bodies or (), arguments.seeds or (1 if quick else None)
+    measure: dict[str, Callable[[], dict[str, Any]]] = {
+        "everyday": lambda: everyday.everyday(
+            scenes, seeds, peers, dict(map(_setting, arguments.set)), arguments.seconds
+        ),
+        "frames": lambda: bench.frames(scenes, sizes or (bench.QUICK_SIZES if quick else bench.SIZES), peers),
+        "growth": lambda: growth.growth(scenes, sizes, peers),
+        "islands": island_bench.islands,
+        "joints": lambda: jointed.joints(scenes),
+        "kernels": lambda: bench.kernels(scenes),
+        "memory": lambda: bench.memory(scenes, (sizes or [1000])[0], peers),
+        "sleep": lambda: everyday.sleep(peer_names=peers),
+        "start": start_time.start,
+        "step": start_time.step,
+        "worlds": lambda: many_worlds.worlds(128 if quick else 1024),
+    }
+    report = measure[what]()
+    _write(arguments, f"bench-{what}", report)
+    pictures = draws[what](report, arguments.out) if what in draws else []
+    if arguments.docs and what in SHOWN:
+        _keep(arguments.docs, what, report, {SHOWN[what]: pictures[0]} if pictures else {})
+    if what == "everyday":
         _tell(arguments, report, [{k: row[k] for k in everyday.TOLD} for row in report["results"]])
-        if arguments.json != "-":
-            print("\n".join(f"{name}: {value}" for name, value in report["summary"].items()))
-        return 0
-    if arguments.what == "sleep":
-        report = everyday.sleep(peer_names=arguments.peer)
-    elif arguments.what == "frames":
-        sizes = arguments.bodies or (bench.QUICK_SIZES if arguments.quick else bench.SIZES)
-        report = bench.frames(arguments.scene, sizes, arguments.peer)
-        draw_bench.frame_times(report, arguments.out)
-    elif arguments.what == "kernels":
-        report = bench.kernels(arguments.scene)
-        draw.kernel_times(report, arguments.out)
-    elif arguments.what == "islands":
-        report = island_bench.islands()
-    elif arguments.what == "joints":
-        report = jointed.joints(arguments.scene)
-    elif arguments.what == "growth":
-        report = growth.growth(arguments.scene, arguments.bodies or (), arguments.peer)
-        pictures = draw_bench.growth(report, arguments.out)
-        if arguments.docs:
-            _keep(arguments.docs, "growth", report, {"growth.png": pictures[0]} if pictures else {})
-    elif arguments.what == "step":
-        report = start_time.step()
-        pictures = draw_bench.phases(report, arguments.out)
-        if arguments.docs:
-            _keep(arguments.docs, "step", report, {"phases.png": pictures[0]})
-    elif arguments.what == "start":
-        report = start_time.start()
-    elif arguments.what == "worlds":
-        report = many_worlds.worlds(128 if arguments.quick else 1024)
+        more = [f"{name}: {value}" for name, value in report["summary"].items()]
     else:
-        report = bench.memory(arguments.scene, (arguments.bodies or [1000])[0], arguments.peer)
-    _write(arguments, f"bench-{arguments.what}", report)
-    _tell(arguments, report, report["results"])
-    more = report.get("phases") or report.get("exponents")
+        _tell(arguments, report, report["results"])
+        parts = report.get("phases") or report.get("exponents")
+        more = lines(parts) if parts else []
     if more and arguments.json != "-":
-        print("\n".join(lines(more)))
+        print("\n".join(more))
     return 0
 
 

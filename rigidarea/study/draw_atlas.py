@@ -23,11 +23,7 @@ FAIL_COLOURS = ("#D55E00", "#E69F00", "#CC79A7", "#F0E442", "#009E73", "#000000"
 ENGINES = ("rigidarea", "explicit", "pymunk", "box2d", "literal")
 """Columns of the overview and of the page."""
 CORNERS = "literal, corners"
-TITLES = {
-    "explicit": "rigidarea, explicit",
-    "literal": "paper, mesh nodes",
-    CORNERS: "paper, corner nodes",
-}
+TITLES = {"explicit": "rigidarea, explicit", "literal": "paper, mesh nodes", CORNERS: "paper, corner nodes"}
 """What the page calls the engines."""
 PAGE = ("step_size", "buckling", "corner", "mass_ratio", "overlap_depth", "tunnel")
 """Maps of the page."""

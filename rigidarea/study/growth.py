@@ -17,15 +17,7 @@ import pymunk
 import rigidarea
 
 from ..report import Progress, envelope
-from .growing_scenes import (
-    BLOCK,
-    BURST,
-    FRAME,
-    GRAVITY,
-    GROWING,
-    SIDE,
-    Growing,
-)
+from .growing_scenes import BLOCK, BURST, FRAME, GRAVITY, GROWING, SIDE, Growing
 from .peers import get_peer
 from .peers.pymunk_peer import make_space, plain_shapes
 from .records import Row

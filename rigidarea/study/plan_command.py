@@ -63,9 +63,8 @@ def run(arguments: argparse.Namespace) -> int:
     if len(arguments.what) != 1:
         raise ValueError(f"expected one scene or program (or --validate), got {len(arguments.what)}")
     what = arguments.what[0]
-    out = (
-        sys.stderr if arguments.json == "-" else sys.stdout
-    )  # what the program prints must not mix with JSON
+    # what the program prints must not mix with JSON
+    out = sys.stderr if arguments.json == "-" else sys.stdout
     with contextlib.redirect_stdout(out):
         made = of_script(what, arguments) if what.endswith(".py") else of_scene(what, arguments)
     settings = {"what": what, "tolerance": made.tolerance, "seconds": made.seconds}

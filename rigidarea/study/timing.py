@@ -66,11 +66,7 @@ def timed(run: Run, frames: int) -> float:
     return time.thread_time() - started
 
 
-def median_times(
-    jobs: Sequence[Callable[[], float]],
-    repeats: int,
-    patience_s: float = 1.0,
-) -> list[float]:
+def median_times(jobs: Sequence[Callable[[], float]], repeats: int, patience_s: float = 1.0) -> list[float]:
     """The median over `repeats` rounds of what each job returns (s), every round running all jobs once.
 
     A drift of the machine then hits all alike. A job that took longer than `patience_s` is not repeated: its

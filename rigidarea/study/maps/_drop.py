@@ -11,10 +11,5 @@ def dropped(name: str, tilt: float, drop: float, elasticity: float, frame: float
     reach = math.sqrt(0.5) * math.cos(math.radians(45) - angle)
     body = Body("box", (box(1.0, 1.0),), (0.0, reach + drop), angle, moment=box_moment(1.0, 1.0, 1.0))
     return set_up(
-        name=name,
-        bodies=(floor(), body),
-        friction=0.5,
-        elasticity=elasticity,
-        duration=2.0,
-        frame=frame,
+        name=name, bodies=(floor(), body), friction=0.5, elasticity=elasticity, duration=2.0, frame=frame
     )

@@ -18,12 +18,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body("b", (box(1.0, 1.0),), (diagonal, x), tilt + math.radians(y), moment=MOMENT),
     )
     scene = set_up(
-        name="corner_corner",
-        bodies=bodies,
-        gravity=(0.0, 0.0),
-        elasticity=1.0,
-        duration=0.6,
-        pressure=V**2,
+        name="corner_corner", bodies=bodies, gravity=(0.0, 0.0), elasticity=1.0, duration=0.6, pressure=V**2
     )
     settings = {"stiffness": 1e4} if variant.area else {}
     last = run_scene(variant, scene, **settings).states[-1]

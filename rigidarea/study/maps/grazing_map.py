@@ -39,12 +39,7 @@ def atlas_map() -> Map:
     return Map(
         name="grazing",
         title="grazing: an elastic disc on a corner",
-        x=Axis(
-            "cut of the path / radius",
-            (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3),
-            (0.01, 0.1, 0.3),
-            log=True,
-        ),
+        x=Axis("cut of the path / radius", (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3), (0.01, 0.1, 0.3), log=True),
         y=Axis("speed (m/s)", (0.3, 1, 3, 10, 30), (1, 10), log=True),
         measure="error of velocity / speed",
         limit=LIMIT,

@@ -37,12 +37,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     height = 2 * below if round(y) != 3 else 3 * below
     slab = Body("slab", (box(20.0, SLAB),), (0.0, -SLAB / 2), kind="static")
     body = Body("body", (shape,), (0.0, below - x * height), moment=0.2)
-    scene = set_up(
-        name="overlap_depth",
-        bodies=(slab, body),
-        friction=0.3,
-        duration=4.0,
-    )
+    scene = set_up(name="overlap_depth", bodies=(slab, body), friction=0.3, duration=4.0)
     settings = {"stiffness": 1e3} if variant.given else {}
     path = run_scene(variant, scene, **settings)["body"]
     if not np.all(np.isfinite(path)):

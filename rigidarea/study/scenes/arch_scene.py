@@ -43,10 +43,8 @@ def stands(thickness: float, count: int = COUNT, friction: float = MU) -> bool:
     weight = np.zeros(3 * count)
     for i, stone in enumerate(stones):
         centre = np.array(stone.centroid)
-        for joint, sense in (
-            (i, 1.0),
-            (i + 1, -1.0),
-        ):  # the force on the stone beyond the joint, as seen from the right
+        # the force on the stone beyond the joint, as seen from the right
+        for joint, sense in ((i, 1.0), (i + 1, -1.0)):
             outwards = corners[joint, 1] - corners[joint, 0]
             along = outwards / np.hypot(*outwards)
             across = np.array((-along[1], along[0]))

@@ -35,9 +35,8 @@ def bowl_rings(radius: float) -> Curve:
 
     def rings(tolerance: float) -> Rings:
         wall, depth = 1.25 * radius, 1.25 * radius
-        inner = arc(
-            radius, 0.0, -math.pi, tolerance
-        )  # clockwise seen from the solid below: right rim to left rim
+        # clockwise seen from the solid below: right rim to left rim
+        inner = arc(radius, 0.0, -math.pi, tolerance)
         outer = np.array([(-wall, 0.0), (-wall, -depth), (wall, -depth), (wall, 0.0)])
         return np.vstack((outer, inner)), ()
 
