@@ -115,6 +115,14 @@ def load(name: str) -> Scene:
     return scene
 
 
+def new_space(slop: float, g: float = 0.0) -> pymunk.Space:
+    """An empty space, gravity `g` downwards. slop: Chipmunk's (length), whose default is meant for pixels."""
+    space = pymunk.Space()
+    space.collision_slop = slop
+    space.gravity = 0, -g
+    return space
+
+
 def static_body(space: pymunk.Space, outline: Outline, **attributes: Unpack[ShapeAttributes]) -> pymunk.Shape:
     """Add an outline to the space's static body; returns its shape. attributes: as in `Outline.add_to`."""
     shape = outline.add_to(space.static_body, **attributes)
@@ -182,6 +190,14 @@ class Mark(NamedTuple):
     fy: float
     body_a: pymunk.Body
     body_b: pymunk.Body
+
+
+def _mark(region: Any) -> Mark:
+    """A region of area contact as it is drawn."""
+    (x, y), (nx, ny) = region["centroid"], region["direction"]
+    normal, friction = region["force"], region["friction"]
+    fx, fy = normal * nx - friction * ny, normal * ny + friction * nx
+    return Mark(x, y, fx, fy, region["body_a"], region["body_b"])
 
 
 class Run:
@@ -269,42 +285,24 @@ class Run:
     def marks(self) -> list[Mark]:
         """The contacts of the last step."""
         if self.contact is not None:
-            return [
-                Mark(
-                    row["centroid"][0],
-                    row["centroid"][1],
-                    row["force"] * row["direction"][0] - row["friction"] * row["direction"][1],
-                    row["force"] * row["direction"][1] + row["friction"] * row["direction"][0],
-                    row["body_a"],
-                    row["body_b"],
-                )
-                for row in self.contact.regions
-            ]
+            return [_mark(row) for row in self.contact.regions]
         step = self.scene.frame / self.scene.chipmunk_steps
         marks: list[Mark] = []
+        order = {body: i for i, body in enumerate(self.space.bodies)}
 
-        def add(arbiter: pymunk.Arbiter) -> None:
+        def add(arbiter: pymunk.Arbiter, body: pymunk.Body) -> None:
+            a, b = arbiter.bodies
             points = arbiter.contact_point_set.points
-            if not points:
+            # each_arbiter shows every contact to both of its bodies: it is taken from the one that comes first
+            if not points or order.get(b if a is body else a, math.inf) <= order[body]:
                 return
             x = sum(p.point_a.x + p.point_b.x for p in points) / (2 * len(points))
             y = sum(p.point_a.y + p.point_b.y for p in points) / (2 * len(points))
-            fx, fy = arbiter.total_impulse / step
-            a, b = arbiter.bodies
-            marks.append(Mark(x, y, fx, fy, a, b))
+            marks.append(Mark(x, y, *(arbiter.total_impulse / step), a, b))
 
-        # each_arbiter shows every contact to both of its bodies: take it from the one with the smaller id
-        order = {body: i for i, body in enumerate(self.space.bodies)}
-        for body, i in order.items():
-            if body.body_type != pymunk.Body.DYNAMIC:
-                continue
-            before = len(marks)
-            body.each_arbiter(add)
-            marks[before:] = [
-                m
-                for m in marks[before:]
-                if order.get(m.body_b if m.body_a is body else m.body_a, math.inf) > i
-            ]
+        for body in order:
+            if body.body_type == pymunk.Body.DYNAMIC:
+                body.each_arbiter(add, body)
         return marks
 
     def row(self) -> dict[str, Any]:

@@ -122,13 +122,8 @@ class PushTask:
         hand, box = states[:, 0], states[:, 1]
         angle = box[:, 2:3]
         parts = [hand[:, :2] / ROOM, (box - hand)[:, :2] / ROOM, (goals - box[:, :2]) / ROOM]
-        parts += [
-            np.sin(angle),
-            np.cos(angle),
-            hand[:, 3:5] / ROOM,
-            box[:, 3:5] / ROOM,
-            box[:, 5:] / math.tau,
-        ]
+        parts += [np.sin(angle), np.cos(angle), hand[:, 3:5] / ROOM]
+        parts += [box[:, 3:5] / ROOM, box[:, 5:] / math.tau]
         return np.concatenate(parts, axis=1).astype(np.float32)
 
     def far(self, states: NDArray[np.float64], goals: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -272,13 +267,8 @@ class PushToGoal(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         given = np.asarray(action, np.float64)
         self._envs._over[:] = False  # a single one goes on until it is reset
         observed, reward, ended, cut, info = self._envs.step(given[None])
-        return (
-            observed[0],
-            float(reward[0]),
-            bool(ended[0]),
-            bool(cut[0]),
-            {"is_success": bool(info["is_success"][0])},
-        )
+        told = {"is_success": bool(info["is_success"][0])}
+        return observed[0], float(reward[0]), bool(ended[0]), bool(cut[0]), told
 
     def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
         """The picture of now, (400, 400, 3) uint8, if the render mode is rgb_array."""

@@ -4,10 +4,9 @@ import math
 import random
 
 import numpy as np
-import pymunk
 
 from .. import Outline
-from ..gallery import Headline, Scene, add_body, static_body
+from ..gallery import Headline, Scene, add_body, new_space, static_body
 from ..geometry.arcs import arc_points
 from ..shapes import ring, rounded_polygon
 
@@ -74,9 +73,7 @@ def pieces() -> list[Outline]:
 
 def build() -> Scene:
     """40 pieces in a loose column above the bowl, turned at random (seeded)."""
-    space = pymunk.Space()
-    space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(0.005, G)
     static_body(space, bowl(), friction=FRICTION, elasticity=ELASTICITY)
     chance = random.Random(7)
     kinds = pieces()

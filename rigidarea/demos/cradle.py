@@ -4,7 +4,7 @@ import math
 
 import pymunk
 
-from ..gallery import Headline, Scene
+from ..gallery import Headline, Scene, new_space
 from ..shapes import circle
 
 BALLS, RADIUS, GAP = 5, 0.05, 0.002
@@ -18,9 +18,7 @@ STIFFNESS = 2e9
 
 def build() -> Scene:
     """Five pendulums; the balls hang at height 0, the leftmost lifted."""
-    space = pymunk.Space()
-    space.collision_slop = 1e-4  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(1e-4, G)
     ball = circle(RADIUS)
     pitch = 2 * RADIUS + GAP
     balls = []

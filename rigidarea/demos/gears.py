@@ -4,7 +4,7 @@ import math
 
 import pymunk
 
-from ..gallery import Headline, Lens, Scene
+from ..gallery import Headline, Lens, Scene, new_space
 from ..shapes import involute_gear
 
 MODULE, TEETH = 0.002, (23, 57)
@@ -24,8 +24,7 @@ FRAMES_A_TOOTH = 6
 
 def build() -> Scene:
     """The pinion keeps its speed; the wheel starts at the exact ratio, working flanks touching."""
-    space = pymunk.Space()
-    space.collision_slop = 1e-6  # for Chipmunk: its default is meant for pixels
+    space = new_space(1e-6)
     small, large = (
         involute_gear(MODULE, teeth, backlash=BACKLASH / 2, bore=bore, tolerance=2e-7)
         for teeth, bore in zip(TEETH, (0.008, 0.020))

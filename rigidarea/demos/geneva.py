@@ -5,7 +5,7 @@ import math
 
 import pymunk
 
-from ..gallery import Headline, Lens, Scene
+from ..gallery import Headline, Lens, Scene, new_space
 from ..shapes import geneva
 
 SLOTS, CENTRES, PIN, CLEARANCE = 6, 0.05, 0.008, 1e-5
@@ -26,8 +26,7 @@ TURNS = 3
 def build() -> Scene:
     """Driver with pin and locking disc, kinematic; the wheel on a pivot with a brake."""
     parts = geneva(SLOTS, CENTRES, PIN, CLEARANCE, bore=0.005)
-    space = pymunk.Space()
-    space.collision_slop = 1e-6  # for Chipmunk: its default is meant for pixels
+    space = new_space(1e-6)
     start = -parts.entry_angle - LEAD
     driver = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
     driver.angle = start

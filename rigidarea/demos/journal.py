@@ -2,9 +2,7 @@
 
 import math
 
-import pymunk
-
-from ..gallery import Headline, Lens, Scene
+from ..gallery import Headline, Lens, Scene, new_space
 from ..shapes import circle, ring
 
 PIN, HOLE, SUPPORT = 0.020, 0.035, 0.045
@@ -20,9 +18,7 @@ PERIOD_MS = 111.906
 
 def build() -> Scene:
     """The pin starts at rest in the journal's centre; y = 0 is where it touches."""
-    space = pymunk.Space()
-    space.collision_slop = 1e-5  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(1e-5, G)
     drop = HOLE - PIN
     tolerance = 2e-7  # a thousandth of the deepest penetration, 0.24 mm
     shape = ring(HOLE, SUPPORT, tolerance=tolerance).translated(0, drop).add_to(space.static_body)

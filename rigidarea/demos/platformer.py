@@ -4,7 +4,7 @@ import math
 
 import pymunk
 
-from ..gallery import Headline, Scene
+from ..gallery import Headline, Scene, new_space
 
 PLAYER, PLATFORM = 1, 2
 """Collision types."""
@@ -21,9 +21,7 @@ EVERY = 1.3
 
 def build() -> Scene:
     """A player who jumps up through five platforms, then drops through them again; crates, a belt, a lift."""
-    space = pymunk.Space()
-    space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(0.005, G)
 
     def solid(
         body: pymunk.Body, width: float, height: float, friction: float, radius: float = 0.0

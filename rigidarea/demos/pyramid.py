@@ -2,7 +2,7 @@
 
 import pymunk
 
-from ..gallery import Headline, Scene
+from ..gallery import Headline, Scene, new_space
 
 ROWS = 40
 SIZE = 1.0
@@ -15,9 +15,7 @@ G = 9.81
 
 def build() -> Scene:
     """The pyramid, set down without gaps, and a floor that is one segment."""
-    space = pymunk.Space()
-    space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(0.005, G)
     floor = pymunk.Segment(space.static_body, (-40, 0), (40, 0), 0)
     floor.friction = FRICTION
     space.add(floor)

@@ -5,7 +5,7 @@ import random
 
 import pymunk
 
-from ..gallery import Headline, Lens, Scene
+from ..gallery import Headline, Lens, Scene, new_space
 from ..shapes import box, involute_gear
 
 MODULE, TEETH = 0.05, (16, 32)
@@ -28,9 +28,7 @@ def build() -> Scene:
     """The pinion is turned by a motor, the wheel held back by a brake; boxes come down on both (seeded)."""
     from ..flexible import Assembly, Material
 
-    space = pymunk.Space()
-    space.collision_slop = 1e-3  # for Chipmunk: its default is meant for pixels
-    space.gravity = 0, -G
+    space = new_space(1e-3, G)
     ground = space.static_body
     for a, b in (((-3, -1.4), (3, -1.4)), ((-2.4, -1.4), (-3, 3)), ((2.4, -1.4), (3, 3))):
         wall = pymunk.Segment(ground, a, b, 0.02)

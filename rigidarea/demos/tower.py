@@ -4,7 +4,7 @@ import random
 
 import pymunk
 
-from ..gallery import Headline, Lens, Scene
+from ..gallery import Headline, Lens, Scene, new_space
 
 BOXES = 40
 SIZE = 1.0
@@ -20,9 +20,7 @@ under their own weight (docs/theory.md, 8: a beam on elastic interfaces)."""
 
 def build() -> Scene:
     """The tower, its boxes set down by hand: each up to SCATTER off (seeded)."""
-    space = pymunk.Space()
-    space.collision_slop = 0.005  # for Chipmunk: its default is meant for pixels
-    space.gravity = (0, -G)
+    space = new_space(0.005, G)
     floor = pymunk.Segment(space.static_body, (-60, 0), (60, 0), 0)
     floor.friction = FRICTION
     space.add(floor)

@@ -49,12 +49,7 @@ def run(arguments: argparse.Namespace) -> int:
         rows.append(
             render(ready, arguments.out, frames=frames, film=not arguments.no_film, say=progress.step)
         )
-    settings = {
-        "name": arguments.name,
-        "engine": arguments.engine,
-        "frames": arguments.frames,
-        "out": arguments.out,
-    }
+    settings = {name: getattr(arguments, name) for name in ("name", "engine", "frames", "out")}
     write_json(envelope("demo", settings, rows), arguments.json)
     if arguments.json != "-":
         print(table(rows))
@@ -104,20 +99,8 @@ def render(
 
 def table(rows: list[dict[str, Any]]) -> str:
     """The rows as text."""
-    head = (
-        "scene",
-        "bodies",
-        "steps",
-        "median ms",
-        "p99 ms",
-        "worst ms",
-        "x real time",
-        "energy drift",
-        "",
-        "",
-        "exact",
-    )
-    lines: list[Sequence[str]] = [head]
+    head = "scene,bodies,steps,median ms,p99 ms,worst ms,x real time,energy drift,,,exact"
+    lines: list[Sequence[str]] = [head.split(",")]
     for row in rows:
         drift, exact = row["energy_drift_relative"], row["headline_exact"]
         lines.append(

@@ -11,9 +11,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
 
-DEFLECTION = (
-    0.05  # over the body's size: rotations within it of about as many radians; strains err by their squares
-)
+# over the body's size: rotations within it of about as many radians; strains err by their squares
+DEFLECTION = 0.05
 SPIN = 0.1  # over the first elastic frequency: stiffness then changes by about the square, 1 %
 
 
@@ -31,19 +30,18 @@ def watch(bodies: Sequence[Any], size: Array, deflection: Array, spin: Array) ->
     for i, b in enumerate(bodies):
         if b.young == 0.0:
             continue
+        told = []
         part = float(deflection[i] / size[i])
         if part > DEFLECTION:
-            warnings.warn(
+            told.append(
                 f"body {i} deflected by {part:.3g} of its size: strains are linear in the displacements, expected at"
-                f" most {DEFLECTION:g}",
-                LinearityWarning,
-                stacklevel=3,
+                f" most {DEFLECTION:g}"
             )
         stiffened = (b.geometric is not None and len(b.geometric) > 0) or len(b.boundary.tension) > 0
         if b.slowest > 0.0 and not stiffened and spin[i] > SPIN * b.slowest:
-            warnings.warn(
+            told.append(
                 f"body {i} spun at {spin[i]:.4g} rad/time, {spin[i] / b.slowest:.3g} of its first elastic frequency:"
-                f" what tension does to its stiffness is left out, expected at most {SPIN:g}; elastic_body has it",
-                LinearityWarning,
-                stacklevel=3,
+                f" what tension does to its stiffness is left out, expected at most {SPIN:g}; elastic_body has it"
             )
+        for text in told:
+            warnings.warn(text, LinearityWarning, stacklevel=3)

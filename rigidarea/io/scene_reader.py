@@ -94,7 +94,7 @@ class Reader(Values):
                 else 0
             )
             check(shapes, self.limits.parts, "shapes")
-            self.body(given, f"bodies[{i}]", space, bodies)
+            self.body(given, f"bodies[{i}]", bodies)
         # Chipmunk notes every pair of overlapping boxes as shapes are added: a heap in one place would take it hours
         boxes = [shape.cache_bb() for _, its_shapes in self.made for shape in its_shapes]
         overlapping_boxes(
@@ -111,7 +111,7 @@ class Reader(Values):
 
     # --- parts ---
 
-    def body(self, found: Any, place: str, space: pymunk.Space, bodies: dict[str, pymunk.Body]) -> None:
+    def body(self, found: Any, place: str, bodies: dict[str, pymunk.Body]) -> None:
         motion = ("position", "angle", "velocity", "angular_velocity")
         given = self.table(
             found, place, ("name", "type", "mass", "moment", "center_of_gravity", "shapes", *motion)
@@ -150,11 +150,15 @@ class Reader(Values):
                 given.get("angular_velocity", 0.0), f"{place}.angular_velocity"
             )
         self.made.append((body, shapes))
+        self.named(given, place, "body", body, bodies)
+
+    def named(self, given: dict[str, Any], place: str, what: str, made: Any, others: dict[str, Any]) -> None:
+        """Note what was made under its name, if it has one."""
         name = given.get("name")
         if name is not None:
-            if not isinstance(name, str) or not name or name in bodies:
-                raise ValueError(f"{place}.name: expected a name that no other body has, got {shown(name)}")
-            bodies[name] = body
+            if not isinstance(name, str) or not name or name in others:
+                raise ValueError(f"{place}.name: expected a name that no other {what} has, got {shown(name)}")
+            others[name] = made
 
     def _mass(self, body: pymunk.Body, shapes: list[pymunk.Shape], place: str) -> None:
         """Mass, moment and centre from the shapes' densities: exact outlines by their own, the others pymunk's."""
@@ -314,8 +318,4 @@ class Reader(Values):
         if "collide_bodies" in given:
             joint.collide_bodies = self.truth(given["collide_bodies"], f"{place}.collide_bodies")
         space.add(joint)
-        name = given.get("name")
-        if name is not None:
-            if not isinstance(name, str) or not name or name in joints:
-                raise ValueError(f"{place}.name: expected a name that no other joint has, got {shown(name)}")
-            joints[name] = joint
+        self.named(given, place, "joint", joint, joints)

@@ -113,12 +113,12 @@ class Host:
                 step(space, dt)
                 return
             self._first(space)
-            self._timed(space, lambda: step(space, dt))
+            self._timed(lambda: step(space, dt))
 
         def counted_contact_step(contact: AreaContact, *arguments: Any, **named: Any) -> int:
             taken: list[int] = []
             self._first(contact.space)
-            self._timed(contact.space, lambda: taken.append(contact_step(contact, *arguments, **named)))
+            self._timed(lambda: taken.append(contact_step(contact, *arguments, **named)))
             return taken[0]
 
         def counted_on_collision(space: pymunk.Space, *arguments: Any, **named: Any) -> None:
@@ -166,7 +166,7 @@ class Host:
         if self.engine == "area" and attached(space) is None:
             attach(space)
 
-    def _timed(self, space: pymunk.Space, step: Callable[[], None]) -> None:
+    def _timed(self, step: Callable[[], None]) -> None:
         self._inside = True
         start = time.process_time()
         try:
