@@ -11,7 +11,7 @@ import itertools
 import math
 import random
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,9 +90,6 @@ def _scene(
     )
 
 
-# Shapes -----------------------------------------------------------------------------------------------------
-
-
 # Scenes -----------------------------------------------------------------------------------------------------
 
 
@@ -121,19 +118,12 @@ def pit_of_discs(count: int) -> Scene:
 def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list[Body]:
     """Squares in a pyramid, each on two, moved sideways by up to `scatter`."""
     chance = random.Random(seed)
-    return [
-        block(
-            f"box{i}_{j}",
-            side,
-            side,
-            (
-                (1 + gap) * side * (j - (rows - 1 - i) / 2) + chance.uniform(-scatter, scatter),
-                (i + 0.5) * side,
-            ),
-        )
-        for i in range(rows)
-        for j in range(rows - i)
-    ]
+    boxes = []
+    for i in range(rows):
+        for j in range(rows - i):
+            x = (1 + gap) * side * (j - (rows - 1 - i) / 2) + chance.uniform(-scatter, scatter)
+            boxes.append(block(f"box{i}_{j}", side, side, (x, (i + 0.5) * side)))
+    return boxes
 
 
 def pyramid(seed: int) -> Scene:
@@ -210,40 +200,24 @@ def rope_bridge(seed: int) -> Scene:
     radius = length / (2 * math.sin(lean / count))
     angles = [lean * (2 * i / count - 1) for i in range(count + 1)]
     points = [(radius * math.sin(a), top + radius * (math.cos(lean) - math.cos(a))) for a in angles]
-    planks = [
+    planks = []
+    for i, ((x0, y0), (x1, y1)) in enumerate(itertools.pairwise(points)):
+        place, angle = ((x0 + x1) / 2, (y0 + y1) / 2), math.atan2(y1 - y0, x1 - x0)
         # a little shorter than from hinge to hinge, or the bend of the bridge would wedge them
-        block(
-            f"plank{i}",
-            length - 6.0,
-            thick,
-            ((x0 + x1) / 2, (y0 + y1) / 2),
-            angle=math.atan2(y1 - y0, x1 - x0),
-        )
-        for i, ((x0, y0), (x1, y1)) in enumerate(itertools.pairwise(points))
-    ]
+        planks.append(block(f"plank{i}", length - 6.0, thick, place, angle=angle))
     edge = points[-1][0] + 10.0
-    banks = Body(
-        "banks",
-        (
-            Segment((-1000.0, top), (-edge, top), WALL_PX),
-            Segment((edge, top), (1000.0, top), WALL_PX),
-            Segment((-1000.0, -WALL_PX), (1000.0, -WALL_PX), WALL_PX),
-        ),
-        kind="static",
+    lines = (
+        Segment((-1000.0, top), (-edge, top), WALL_PX),
+        Segment((edge, top), (1000.0, top), WALL_PX),
+        Segment((-1000.0, -WALL_PX), (1000.0, -WALL_PX), WALL_PX),
     )
+    banks = Body("banks", lines, kind="static")
     hinges = [Hinge(f"plank{i}", f"plank{i + 1}", points[i + 1]) for i in range(count - 1)]
     hinges += [Hinge("plank0", "", points[0]), Hinge(f"plank{count - 1}", "", points[-1])]
-    crates = [
-        block(
-            f"crate{i}",
-            20.0,
-            20.0,
-            (40.0 * (i % 5 - 2) + chance.uniform(-4, 4), top + 40.0 * (i // 5)),
-            0.5,
-            angle=chance.uniform(-0.3, 0.3),
-        )
-        for i in range(15)
-    ]
+    crates = []
+    for i in range(15):
+        place = 40.0 * (i % 5 - 2) + chance.uniform(-4, 4), top + 40.0 * (i // 5)
+        crates.append(block(f"crate{i}", 20.0, 20.0, place, 0.5, angle=chance.uniform(-0.3, 0.3)))
     room = (-1000.0, 0.0, 1000.0, 1000.0)
     return _scene("rope_bridge", [banks, *planks, *crates], room, hinges=hinges)
 
@@ -255,10 +229,7 @@ def bouncing(seed: int) -> Scene:
     for i in range(40):
         place = (80.0 * (i % 8 - 3.5), 100.0 + 80.0 * (i // 8))
         made = anything(f"body{i}", chance, place)
-        velocity = (chance.uniform(-300, 300), chance.uniform(-300, 300))
-        bodies.append(
-            Body(made.name, made.shapes, place, made.angle, velocity, mass=made.mass, moment=made.moment)
-        )
+        bodies.append(replace(made, velocity=(chance.uniform(-300, 300), chance.uniform(-300, 300))))
     return _scene("bouncing", bodies, (-400.0, 0.0, 400.0, 600.0), friction=0.4, elasticity=0.9)
 
 
@@ -322,10 +293,8 @@ def metre_pyramid(rows: int) -> Callable[[int], Scene]:
 
     def make(seed: int) -> Scene:
         boxes = _pile(rows, 1.0, 0.05, 1e-3, seed)
-        name = f"pyramid_{len(boxes)}"
-        return _scene(
-            name, [metre_floor(2.0 * rows), *boxes], (-2.0 * rows, 0.0, 2.0 * rows, 2.0 * rows), metres=True
-        )
+        half, name = 2.0 * rows, f"pyramid_{len(boxes)}"
+        return _scene(name, [metre_floor(half), *boxes], (-half, 0.0, half, half), metres=True)
 
     return make
 

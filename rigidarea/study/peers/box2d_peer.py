@@ -13,6 +13,9 @@ from .base import Run, Settings, combined, drive, rigid_only, samplings
 
 MOST_VERTICES = 8
 """Of a Box2D polygon (B2_MAX_POLYGON_VERTICES)."""
+STEPPING = ((1, 4), (1, 8), (2, 4), (4, 1), (4, 4), (1, 16), (8, 4), (16, 1), (16, 4), (64, 1), (64, 4))
+QUICK_STEPPING = ((1, 4), (4, 4), (16, 4), (64, 1))
+"""Steps a frame and substeps a step that are swept."""
 
 
 def _rotation(b2: Any, angle: float) -> Any:
@@ -160,24 +163,8 @@ class Box2D:
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Steps × substeps × contact softness × sampling."""
-        pairs: tuple[tuple[int, int], ...] = ((1, 4), (4, 4), (16, 4), (64, 1))
-        kinds: tuple[tuple[bool, int], ...] = ((False, 1), (True, 10))
-        if not quick:
-            pairs = (
-                (1, 4),
-                (1, 8),
-                (2, 4),
-                (4, 1),
-                (4, 4),
-                (1, 16),
-                (8, 4),
-                (16, 1),
-                (16, 4),
-                (64, 1),
-                (64, 4),
-            )
-            kinds = ((False, 1), (True, 1), (False, 10), (True, 10))
-        stepping = [{"steps": n, "substeps": m} for n, m in pairs]
+        kinds = ((False, 1), (True, 10)) if quick else ((False, 1), (True, 1), (False, 10), (True, 10))
+        stepping = [{"steps": n, "substeps": m} for n, m in (QUICK_STEPPING if quick else STEPPING)]
         contact = [{"stiff": stiff, "length": length} for stiff, length in kinds]
         return combined(stepping, contact, samplings(scene, quick))
 
