@@ -66,16 +66,9 @@ def viewport(
     if align != "none":
         sx = sy = max(sx, sy) if meet == ["slice"] else min(sx, sy)
     part = {"min": 0.0, "max": 1.0}
-    x += (
-        part.get(align[1:4].lower(), 0.5) * (width - box[2] * sx) - box[0] * sx
-        if align != "none"
-        else -box[0] * sx
-    )
-    y += (
-        part.get(align[5:8].lower(), 0.5) * (height - box[3] * sy) - box[1] * sy
-        if align != "none"
-        else -box[1] * sy
-    )
+    across, down = (0.0 if align == "none" else part.get(align[i : i + 3].lower(), 0.5) for i in (1, 5))
+    x += across * (width - box[2] * sx) - box[0] * sx
+    y += down * (height - box[3] * sy) - box[1] * sy
     return times(matrix, (sx, 0.0, 0.0, sy, x, y)), (box[2], box[3])
 
 
@@ -90,8 +83,7 @@ def times(a: Matrix, b: Matrix) -> Matrix:
 
 def transform(found: str) -> Matrix:
     """The matrix of SVG's transform attribute, or CSS's property."""
-    made: Matrix = (1.0, 0.0, 0.0, 1.0, 0.0, 0.0)
-    at = 0
+    made, at = STRAIGHT, 0
     if found.strip() in ("", "none"):
         return made
     while at < len(found):
@@ -104,14 +96,11 @@ def transform(found: str) -> Matrix:
 
 
 def _function(name: str, found: str) -> Matrix:
-    kind = name.lower()
-    units = (
-        _TURNS
-        if kind.startswith(("rotate", "skew"))
-        else _UNITS
-        if kind.startswith("translate")
-        else {"": 1.0}
-    )
+    kind, units = name.lower(), {"": 1.0}
+    if kind.startswith(("rotate", "skew")):
+        units = _TURNS
+    elif kind.startswith("translate"):
+        units = _UNITS
     given = []
     for i, (value, unit) in enumerate(_ARGUMENTS.findall(found)):
         table = _UNITS if kind == "rotate" and i else units  # a centre is a length

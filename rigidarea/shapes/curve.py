@@ -8,6 +8,8 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
+from ..geometry.gate import finite, size, whole
+
 Curve = Callable[[NDArray[np.float64]], NDArray[np.float64]]
 """Parameters (n,) -> points (n, 2)."""
 
@@ -16,6 +18,38 @@ MOST = 10**6  # chords of one curve: beyond, the outline would take gigabytes
 MOST_TEETH = 10_000  # of a gear: more than any has, and its outline is still some ten megabytes
 _ROUNDING = 16 * np.finfo(float).eps  # of a coordinate; a sagitta is not known better
 _WITHIN = np.arange(1, 8) / 8  # where, between a chord's ends, its distance from the curve is measured
+
+
+def check_gear(module: float, teeth: int, pressure_angle: float) -> None:
+    """ValueError for what is out of range of a gear, whatever its teeth look like."""
+    whole(teeth, "teeth", 3, MOST_TEETH)
+    size(module, "module")
+    if not 0 < finite(pressure_angle, "pressure_angle") < math.pi / 4:
+        raise ValueError(f"pressure_angle must lie between 0 and π/4 radians, got {pressure_angle!r}")
+
+
+def check_modules(teeth: int, **lengths: float) -> None:
+    """ValueError for a length (modules) of more than two pitch radii."""
+    for name, value in lengths.items():
+        if value > teeth:
+            raise ValueError(f"{name} must be at most {teeth} modules for {teeth} teeth, got {value:.6g}")
+
+
+def involute(roll: float) -> float:
+    """The involute function of the angle whose tangent is `roll`."""
+    return roll - math.atan(roll)
+
+
+def arc(radius: float, angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Points (n, 2) of a circle about the origin at angles (n,)."""
+    return radius * np.column_stack((np.cos(angle), np.sin(angle)))
+
+
+def repeated(points: NDArray[np.float64], teeth: int, sense: int) -> NDArray[np.float64]:
+    """Points (n, 2) of one tooth, repeated around the origin (sense 1: counter-clockwise, -1): (teeth · n, 2)."""
+    turn = np.exp(sense * 2j * math.pi * np.arange(teeth) / teeth)
+    z = (turn[:, None] * (points[:, 0] + 1j * points[:, 1])[None, :]).ravel()
+    return np.column_stack((z.real, z.imag))
 
 
 def sample_curve(

@@ -18,9 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.arcs import circle_points
-from ..geometry.gate import finite, not_negative, positive, size, whole
+from ..geometry.gate import finite, not_negative, positive
 from ..geometry.outline import Outline
-from .curve import MOST_TEETH, sample_curve
+from .curve import arc, check_gear, check_modules, involute, repeated, sample_curve
 
 STANDARD_RACK_TIP_RADIUS = 0.38
 """Rounding of the rack's tip in modules, ISO 53 profile A."""
@@ -60,10 +60,7 @@ def involute_gear(
     below the tip circle, rack tips without width, an undercut that leaves no flank or cuts teeth off, a
     bore that reaches the root circle.
     """
-    whole(teeth, "teeth", 3, MOST_TEETH)
-    size(module, "module")
-    if not 0 < finite(pressure_angle, "pressure_angle") < math.pi / 4:
-        raise ValueError(f"pressure_angle must lie between 0 and π/4 radians, got {pressure_angle!r}")
+    check_gear(module, teeth, pressure_angle)
     positive(addendum, "addendum")
     positive(dedendum, "dedendum")
     for name, value in (("backlash", backlash), ("bore", bore)):
@@ -71,13 +68,7 @@ def involute_gear(
     finite(profile_shift, "profile_shift")
     if rack_tip_radius is not None:
         not_negative(rack_tip_radius, "rack_tip_radius")
-    for name, value in (
-        ("addendum", addendum),
-        ("dedendum", dedendum),
-        ("profile_shift", abs(profile_shift)),
-    ):
-        if value > teeth:  # in modules: two pitch radii
-            raise ValueError(f"{name} must be at most {teeth} modules for {teeth} teeth, got {value:.6g}")
+    check_modules(teeth, addendum=addendum, dedendum=dedendum, profile_shift=abs(profile_shift))
     tolerance_length = 1e-3 * module if tolerance is None else positive(tolerance, "tolerance")
     if spacing is not None:
         positive(spacing, "spacing")
@@ -115,7 +106,7 @@ def involute_gear(
         )
     flank = sample_curve(tooth.involute, flank_roll, tip_roll, tolerance_length, spacing)
     tip_angle = tooth.half_angle(tip_roll)
-    tip = sample_curve(partial(_arc, tip_radius), -tip_angle, tip_angle, tolerance_length, spacing)
+    tip = sample_curve(partial(arc, tip_radius), -tip_angle, tip_angle, tolerance_length, spacing)
     rising = np.concatenate((fillet, flank[1:]))
     parts = [rising, tip[1:-1], rising[::-1] * (1, -1)]
     # half the space's, at the root circle
@@ -123,19 +114,9 @@ def involute_gear(
     if root_angle <= 1e-9:  # full rounding: the next tooth's fillet begins where this one ends
         parts[-1] = parts[-1][:-1]
     else:
-        pitch = 2 * math.pi / teeth
-        parts.append(
-            sample_curve(
-                partial(_arc, tooth.root_radius),
-                pitch / 2 - root_angle,
-                pitch / 2 + root_angle,
-                tolerance_length,
-                spacing,
-            )[1:-1]
-        )
-    one = np.concatenate(parts)
-    turn = np.exp(2j * math.pi * np.arange(teeth) / teeth)
-    z = (turn[:, None] * (one[:, 0] + 1j * one[:, 1])[None, :]).ravel()
+        half, root = math.pi / teeth, partial(arc, tooth.root_radius)
+        bottom = sample_curve(root, half - root_angle, half + root_angle, tolerance_length, spacing)
+        parts.append(bottom[1:-1])
     holes = []
     if bore > 0:
         sagitta = (
@@ -143,19 +124,10 @@ def involute_gear(
         )
         holes.append(circle_points((0, 0), bore, min(tolerance_length, sagitta)))
     again = partial(
-        involute_gear,
-        module,
-        teeth,
-        pressure_angle,
-        addendum,
-        dedendum,
-        profile_shift=profile_shift,
-        backlash=backlash,
-        rack_tip_radius=rack_tip_radius,
-        bore=bore,
-        spacing=spacing,
-    )
-    return Outline(np.column_stack((z.real, z.imag)), holes).with_curve(again)
+        involute_gear, module, teeth, pressure_angle, addendum, dedendum, profile_shift=profile_shift,
+        backlash=backlash, rack_tip_radius=rack_tip_radius, bore=bore, spacing=spacing,
+    )  # fmt: skip
+    return Outline(repeated(np.concatenate(parts), teeth, 1), holes).with_curve(again)
 
 
 class _Rack(NamedTuple):
@@ -217,7 +189,7 @@ class _Tooth(NamedTuple):
     def half_angle(self, roll: float) -> float:
         """Half the tooth's angle at a roll angle: ψ_pitch + inv α − inv α_r, with inv α_r = t − arctan t."""
         pitch_roll = self.roll(self.pitch_radius)
-        return self.half_angle_at_pitch + _inv(pitch_roll) - _inv(roll)
+        return self.half_angle_at_pitch + involute(pitch_roll) - involute(roll)
 
     def involute(self, roll: NDArray[np.float64]) -> NDArray[np.float64]:
         """Roll angles (n,) -> points (n, 2)."""
@@ -260,15 +232,6 @@ class _Tooth(NamedTuple):
         low = _bisect(outside_base, 0.0, end) if self.root_radius < self.base_radius else 0.0
         theta = _bisect(thicker, low, end)
         return theta, self.roll(outside_base(theta) + self.base_radius)
-
-
-def _inv(roll: float) -> float:
-    """The involute function of the angle whose tangent is `roll`."""
-    return roll - math.atan(roll)
-
-
-def _arc(radius: float, angle: NDArray[np.float64]) -> NDArray[np.float64]:
-    return radius * np.column_stack((np.cos(angle), np.sin(angle)))
 
 
 def _bisect(f: Callable[[float], float], low: float, high: float) -> float:

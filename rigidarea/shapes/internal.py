@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..geometry.arcs import circle_points
-from ..geometry.gate import finite, not_negative, positive, size, whole
+from ..geometry.gate import not_negative, positive
 from ..geometry.outline import Outline
-from .curve import MOST_TEETH, sample_curve
+from .curve import arc, check_gear, check_modules, involute, repeated, sample_curve
 
 
 def internal_gear(
@@ -44,14 +44,9 @@ def internal_gear(
     Raises ValueError, with the number concerned, for parameters out of range, tips below the base circle, and teeth or
     spaces that come to a point.
     """
-    whole(teeth, "teeth", 3, MOST_TEETH)
-    size(module, "module")
-    if not 0 < finite(pressure_angle, "pressure_angle") < math.pi / 4:
-        raise ValueError(f"pressure_angle must lie between 0 and π/4 radians, got {pressure_angle!r}")
+    check_gear(module, teeth, pressure_angle)
     for name, value in (("addendum", addendum), ("dedendum", dedendum), ("rim", rim)):
-        positive(value, name)
-        if value > teeth:  # in modules: two pitch radii
-            raise ValueError(f"{name} must be at most {teeth} modules for {teeth} teeth, got {value:.6g}")
+        check_modules(teeth, **{name: positive(value, name)})
     not_negative(backlash, "backlash")
     sagitta = 1e-3 * module if tolerance is None else positive(tolerance, "tolerance")
 
@@ -67,7 +62,7 @@ def internal_gear(
     at_pitch = (math.pi * module + 2 * backlash) / (4 * pitch)
 
     def half_space(t: float) -> float:
-        return at_pitch + _inv(math.tan(pressure_angle)) - _inv(t)
+        return at_pitch + involute(math.tan(pressure_angle)) - involute(t)
 
     def roll(radius: float) -> float:
         return math.sqrt((radius / base) ** 2 - 1)
@@ -85,27 +80,15 @@ def internal_gear(
 
     def flank(t: NDArray[np.float64]) -> NDArray[np.float64]:
         """The side y > 0 of the space on the x axis, points (n, 2) at rolls (n,)."""
-        angle = at_pitch + _inv(math.tan(pressure_angle)) - (t - np.arctan(t))
+        angle = at_pitch + involute(math.tan(pressure_angle)) - (t - np.arctan(t))
         return (base * np.hypot(1.0, t))[:, None] * np.column_stack((np.cos(angle), np.sin(angle)))
-
-    def arc(radius: float, angle: NDArray[np.float64]) -> NDArray[np.float64]:
-        return radius * np.column_stack((np.cos(angle), np.sin(angle)))
 
     out = sample_curve(flank, roll(tip), roll(root), sagitta)  # from tip to bottom
     bottom = sample_curve(partial(arc, root), high, -high, sagitta)
     top = sample_curve(partial(arc, tip), -low, low - 2 * math.pi / teeth, sagitta)
     # clockwise: down the upper flank, along the bottom, up the lower flank, along the next tooth's tip
     one = np.concatenate((out, bottom[1:-1], out[::-1] * (1, -1), top[1:-1]))
-    turn = np.exp(-2j * math.pi * np.arange(teeth) / teeth)
-    z = (turn[:, None] * (one[:, 0] + 1j * one[:, 1])[None, :]).ravel()
     outer = circle_points((0, 0), root + rim * module, sagitta)
-
-    again = partial(
-        internal_gear, module, teeth, pressure_angle, addendum, dedendum, rim=rim, backlash=backlash
-    )
-    return Outline(outer, [np.column_stack((z.real, z.imag))]).with_curve(again)
-
-
-def _inv(t: float) -> float:
-    """The involute function of the angle whose tangent is ``t``."""
-    return t - math.atan(t)
+    tooth = module, teeth, pressure_angle, addendum, dedendum
+    again = partial(internal_gear, *tooth, rim=rim, backlash=backlash)
+    return Outline(outer, [repeated(one, teeth, -1)]).with_curve(again)
