@@ -61,6 +61,7 @@ MESHES = (1.2, 0.9, 0.6, 0.45, 0.3)
 STEPS = (1e-5, 2e-5, 5e-5, 8e-5, 2e-4, 4e-4, 8e-4, 1.6e-3, 3.2e-3, 6.4e-3, 1.28e-2)
 DAMPERS = (0.15, 0.25, 0.4, 0.6, 1.0, 1.5, 2.0)
 SETTLED = RAMP + 0.2  # s: swings decay with 2 J / damper = 33 ms
+MESHED = np.pi + np.pi / TEETH[1]  # the wheel's angle, its teeth centred in mesh with the pinion's at 0
 MESHING = 1 / (TEETH[0] * SPEED / (2 * np.pi))  # s, the period of the teeth: 4.35 ms
 PAPER: dict[str, Any] = {
     "mean_ratio": 0.4035,
@@ -116,20 +117,11 @@ def bodies(
     """Pinion and wheel, teeth centred in mesh at rest, and their meshes."""
     pinion, wheel = outlines(addendum, root=root)
     keys: dict[str, Any] = {"hub": 1, "refine": refine, "modes": modes, "sides": sides, "cache": cache}
-    size = 1e-3 * mesh_mm
+    size, at = 1e-3 * mesh_mm, (CENTRES, 0.0)
+    driven: dict[str, Any] = {"anchor": at, "position": at, "angle": MESHED, "damper": damper}
     return (
         elastic_body(pinion.rings, size, STEEL, mode, anchor=(0.0, 0.0), drive=(0.0, SPEED, RAMP), **keys),
-        elastic_body(
-            wheel.rings,
-            size,
-            STEEL,
-            mode,
-            anchor=(CENTRES, 0.0),
-            position=(CENTRES, 0.0),
-            angle=np.pi + np.pi / TEETH[1],
-            damper=damper,
-            **keys,
-        ),
+        elastic_body(wheel.rings, size, STEEL, mode, **driven, **keys),
     )
 
 
@@ -138,36 +130,20 @@ def simulation(
 ) -> Simulation:
     """The gearbox; ``keys`` go to ``bodies``."""
     (a, _), (b, _) = bodies(mode, mesh_mm, **keys)
-    return Simulation(
-        [a, b],
-        [(0, 1)],
-        k=k,
-        q=q,
-        contact=contact,
-        reach=5e-4,
-        margin=5e-5,
-        rho=RHO,
-        depth_limit=0.25 * MODULE,
-    )
+    scheme: dict[str, Any] = {"reach": 5e-4, "margin": 5e-5, "rho": RHO, "depth_limit": 0.25 * MODULE}
+    return Simulation([a, b], [(0, 1)], k=k, q=q, contact=contact, **scheme)
 
 
 def through_hook(duration: float, addendum: float = ADDENDUM) -> Record:
     """The rigid level: exact flanks, through the pymunk hook."""
     from rigidarea.cases.rigid_level import turn
 
-    pinion, wheel = outlines(addendum)
-    return turn(
-        pinion,
-        wheel,
-        (CENTRES, 0.0),
-        STEEL.density * THICKNESS,
-        (0.0, np.pi + np.pi / TEETH[1]),
-        lambda t: SPEED * min(t / RAMP, 1.0),
-        K,
-        DAMPER,
-        duration,
-        STEP,
-    )
+    def speed(t: float) -> float:
+        return SPEED * min(t / RAMP, 1.0)
+
+    density = STEEL.density * THICKNESS
+    gears, at, angles = outlines(addendum), (CENTRES, 0.0), (0.0, MESHED)
+    return turn(*gears, at, density, angles, speed, K, DAMPER, duration, STEP)
 
 
 def measure(r: Record, addendum: float = ADDENDUM) -> dict[str, Any]:

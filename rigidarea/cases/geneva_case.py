@@ -97,31 +97,13 @@ def simulation(
     keys: dict[str, Any] = {"refine": refine, "modes": 30, "cache": cache}
     size = 1e-3 * mesh_mm
     at = (r * np.cos(start), r * np.sin(start))
-    pin, _ = elastic_body(
-        [pin_ring],
-        size,
-        STEEL,
-        mode,
-        position=at,
-        angle=start,
-        anchor=(0.0, 0.0),
-        drive=(start, SPEED, 0.0),
-        velocity=(-SPEED * at[1], SPEED * at[0], SPEED),
-        **keys,
-    )
+    moves: dict[str, Any] = {"drive": (start, SPEED, 0.0), "velocity": (-SPEED * at[1], SPEED * at[0], SPEED)}
+    placed: dict[str, Any] = {"position": at, "angle": start, "anchor": (0.0, 0.0)}
+    pin, _ = elastic_body([pin_ring], size, STEEL, mode, **placed, **moves, **keys)
     pin.hub = (-r, 0.0)  # the crank's axis: the pin's frame is carried rigidly
-    wheel, _ = elastic_body(
-        drive.wheel.rings,
-        size,
-        STEEL,
-        mode,
-        hub=1,
-        anchor=(CENTRES, 0.0),
-        position=(CENTRES, 0.0),
-        angle=drive.wheel_angle(-drive.entry_angle),
-        damper=DAMPER,
-        **keys,
-    )
+    angle = drive.wheel_angle(-drive.entry_angle)
+    placed = {"position": (CENTRES, 0.0), "angle": angle, "anchor": (CENTRES, 0.0)}
+    wheel, _ = elastic_body(drive.wheel.rings, size, STEEL, mode, hub=1, damper=DAMPER, **placed, **keys)
     return Simulation([pin, wheel], [(0, 1)], k=k, contact=contact, reach=2e-4, margin=2e-4, rho=RHO), start
 
 
@@ -131,18 +113,13 @@ def through_hook(duration: float, slots: int = 6) -> Record:
 
     drive = geneva(slots, CENTRES, PIN, CLEARANCE, bore=0.004, tolerance=2e-8)
     start = first_touch(slots) - SPEED * DUE
-    return turn(
-        drive.pin,
-        drive.wheel,
+    density = STEEL.density * THICKNESS
+    parts, at, angles = (
+        (drive.pin, drive.wheel),
         (CENTRES, 0.0),
-        STEEL.density * THICKNESS,
         (start, drive.wheel_angle(-drive.entry_angle)),
-        lambda t: SPEED,
-        K,
-        DAMPER,
-        duration,
-        STEP,
     )
+    return turn(*parts, at, density, angles, lambda t: SPEED, K, DAMPER, duration, STEP)
 
 
 def measure(r: Record, start: float, slots: int) -> dict[str, Any]:

@@ -97,17 +97,10 @@ def simulation(
 ) -> Simulation:
     """Pin and support in the flexible stepper."""
     size = 1e-3 * mesh_mm
-    pin, _ = elastic_body([circle(PIN)], size, STEEL, level, refine=refine, cache=cache)
-    support, _ = elastic_body(
-        [circle(RIM), circle(JOURNAL, True)],
-        size,
-        STEEL,
-        level,
-        contact_rings=(1,),
-        clamped=0,
-        refine=refine,
-        cache=cache,
-    )
+    keys: dict[str, Any] = {"refine": refine, "cache": cache}
+    pin, _ = elastic_body([circle(PIN)], size, STEEL, level, **keys)
+    rings = [circle(RIM), circle(JOURNAL, True)]
+    support, _ = elastic_body(rings, size, STEEL, level, contact_rings=(1,), clamped=0, **keys)
     return Simulation(
         [pin, support], k=K, contact=contact, reach=5e-4, margin=2e-4, rho=1.0, gravity=(0.0, -GRAVITY)
     )

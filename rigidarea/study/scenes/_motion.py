@@ -34,13 +34,11 @@ def slide_and_fly(rho: float, start: float, speed: float, leaving: float, t: Arr
         return float(y[0] - leaving)
 
     leaves.terminal = True  # type: ignore[attr-defined]
-    found = _solve(
-        lambda _, y: (y[1], -G / rho * math.sin(y[0])),
-        (start, speed / rho),
-        10.0,
-        events=leaves,
-        dense_output=True,
-    )
+
+    def rates(_: float, y: Array) -> tuple[float, float]:
+        return y[1], -G / rho * math.sin(y[0])
+
+    found = _solve(rates, (start, speed / rho), 10.0, events=leaves, dense_output=True)
     left = float(found.t_events[0][0])
     theta = found.sol(np.minimum(t, left))[0]
     place = rho * np.column_stack((np.sin(theta), -np.cos(theta)))

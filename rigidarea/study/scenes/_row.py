@@ -21,16 +21,10 @@ def row(
     `exact` (n,) are the velocities at the end; the error is relative to the largest of them.
     """
     names = [f"disc{i}" for i in range(len(masses))]
-    discs = tuple(
-        disc(
-            each,
-            radius,
-            (i * (2 * radius + gap) - first * (i == 0), 0.0),
-            m,
-            velocity=(speed * (i == 0), 0.0),
-        )
-        for i, (each, m) in enumerate(zip(names, masses, strict=True))
-    )
+    discs = []
+    for i, mass in enumerate(masses):
+        place = i * (2 * radius + gap) - first * (i == 0), 0.0
+        discs.append(disc(names[i], radius, place, mass, velocity=(speed * (i == 0), 0.0)))
 
     def error(trace: Trace) -> float:
         """Largest velocity error relative to the largest exact velocity."""
@@ -40,7 +34,7 @@ def row(
     return Scene(
         name=name,
         title=title,
-        bodies=discs,
+        bodies=tuple(discs),
         gravity=(0.0, 0.0),
         elasticity=1.0,
         duration=0.6,

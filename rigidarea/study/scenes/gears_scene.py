@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -43,19 +44,11 @@ def scene() -> Scene:
     # Centred in mesh, then turned against its own motion until the working flanks touch: half the backlash.
     centred = math.pi + math.pi / TEETH[1]
     touching = centred + BACKLASH * MODULE / 2 / RADII[1]
-    driver = Body(
-        "driver", (_curve(TEETH[0]),), angular_velocity=SPEED, mass=MASS, kind="kinematic", elastic=STEEL
-    )
-    driven = Body(
-        "driven",
-        (_curve(TEETH[1]),),
-        (RADII[0] + RADII[1], 0.0),
-        touching,
-        angular_velocity=-SPEED * TEETH[0] / TEETH[1],
-        mass=MASS,
-        moment=gear(TEETH[1]).moment(MASS),
-        elastic=STEEL,
-    )
+    curves = [_curve(teeth) for teeth in TEETH]
+    driver = Body("driver", (curves[0],), angular_velocity=SPEED, mass=MASS, kind="kinematic", elastic=STEEL)
+    inertia: dict[str, Any] = {"mass": MASS, "moment": gear(TEETH[1]).moment(MASS), "elastic": STEEL}
+    place, speed = (RADII[0] + RADII[1], 0.0), -SPEED * TEETH[0] / TEETH[1]
+    driven = Body("driven", (curves[1],), place, touching, angular_velocity=speed, **inertia)
     return Scene(
         name="gears",
         title="involute gears, 20 : 30",

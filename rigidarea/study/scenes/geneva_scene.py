@@ -2,6 +2,7 @@
 
 import math
 from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -55,23 +56,11 @@ def scene() -> Scene:
     start = -parts.entry_angle - LEAD
     lock = Curve(lambda tolerance: _rings(drive(tolerance).locking_disc), exact=lambda: drive().locking_disc)
     wheel = Curve(lambda tolerance: _rings(drive(tolerance).wheel), exact=lambda: drive().wheel)
+    pin, angle = Circle(PIN / 2, (parts.crank_radius, 0.0)), parts.wheel_angle(start)
+    inertia: dict[str, Any] = {"mass": MASS, "moment": parts.wheel.moment(MASS), "elastic": STEEL}
     bodies = (
-        Body(
-            "driver",
-            (Circle(PIN / 2, (parts.crank_radius, 0.0)), lock),
-            angle=start,
-            angular_velocity=SPEED,
-            kind="kinematic",
-        ),
-        Body(
-            "wheel",
-            (wheel,),
-            (CENTRES, 0.0),
-            parts.wheel_angle(start),
-            mass=MASS,
-            moment=parts.wheel.moment(MASS),
-            elastic=STEEL,
-        ),
+        Body("driver", (pin, lock), angle=start, angular_velocity=SPEED, kind="kinematic"),
+        Body("wheel", (wheel,), (CENTRES, 0.0), angle, **inertia),
     )
     return Scene(
         name="geneva",

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..scene import Body, G, Polygon, Scene, Trace, X, box, box_moment, floor
+from ..scene import Body, G, Polygon, Scene, Trace, X, block, floor
 
 SLOPE, M_WEDGE, M_BLOCK = math.radians(30), 2.0, 1.0
 LENGTH, SIDE = 3.0, 0.5
@@ -52,14 +52,7 @@ def scene() -> Scene:
     bodies = (
         floor(),
         Body("wedge", (Polygon(corners),), (0.0, -float(low)), mass=M_WEDGE, moment=moment),
-        Body(
-            "block",
-            (box(SIDE, SIDE),),
-            (float(start[X]), float(start[1])),
-            -SLOPE,
-            mass=M_BLOCK,
-            moment=box_moment(M_BLOCK, SIDE, SIDE),
-        ),
+        block("block", SIDE, SIDE, (float(start[X]), float(start[1])), M_BLOCK, angle=-SLOPE),
     )
     return Scene(
         name="wedge",
