@@ -35,14 +35,8 @@ class _Mesh(pyglet.shapes.ShapeBase):
         self._rotation = 0
         self._x = self._y = 0
         self._rgba = color
-        super().__init__(
-            len(self._corners),
-            pyglet.gl.GL_SRC_ALPHA,
-            pyglet.gl.GL_ONE_MINUS_SRC_ALPHA,
-            batch,
-            pyglet.graphics.Group(0),
-            None,
-        )
+        blend = pyglet.gl.GL_SRC_ALPHA, pyglet.gl.GL_ONE_MINUS_SRC_ALPHA
+        super().__init__(len(self._corners), *blend, batch, pyglet.graphics.Group(0), None)
 
     def _create_vertex_list(self) -> None:
         n = self._num_verts

@@ -77,13 +77,12 @@ def light_load(addendum: float = gb.ADDENDUM, points: int = 200) -> tuple[dict[s
     angles = 2 * np.pi / gb.TEETH[0] * np.arange(points) / points
     pairs, share, expected, error = [], [], [], []
     for phi in angles:
-        start = np.pi + np.pi / gb.TEETH[1] - phi * gb.IDEAL
-        turn = brentq(
-            lambda x, phi=phi, start=start: evaluate(phi, start + x).sum() - wanted,
-            -4e-6 / BASES[1],
-            8e-6 / BASES[1],
-            xtol=1e-14,
-        )
+        start = gb.MESHED - phi * gb.IDEAL
+
+        def lacks(x: float, phi: float = phi, start: float = start) -> float:
+            return float(evaluate(phi, start + x).sum() - wanted)
+
+        turn = brentq(lacks, -4e-6 / BASES[1], 8e-6 / BASES[1], xtol=1e-14)
         f = evaluate(phi, start + turn)
         pairs.append(int((f > 1e-9 * f.sum()).sum()))
         share.append(float(f.max() / f.sum()))
@@ -128,7 +127,7 @@ def _errors(held: list[Boundary], angles: Array) -> tuple[Array, list[int]]:
     stiff = force / (0.2e-3 * 5e-8)  # over a contact of 0.2 mm the load overlaps by 0.05 µm
     error, pairs = [], []
     for phi in angles:
-        start = np.pi + np.pi / gb.TEETH[1] - phi * gb.IDEAL
+        start = gb.MESHED - phi * gb.IDEAL
 
         def pressed(x: float, phi: float = phi, start: float = start) -> Solution:
             pose = (gb.CENTRES, 0, start + x / BASES[1])

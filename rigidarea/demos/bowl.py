@@ -8,6 +8,7 @@ import numpy as np
 from .. import Outline
 from ..gallery import Headline, Scene, add_body, new_space, static_body
 from ..geometry.arcs import arc_points
+from ..geometry.gate import ShapeAttributes
 from ..shapes import ring, rounded_polygon
 
 RADIUS, WALL, RIM = 5.0, 0.4, 2.0
@@ -78,19 +79,13 @@ def build() -> Scene:
     chance = random.Random(7)
     kinds = pieces()
     bodies, colors = [], {}
+    surface: ShapeAttributes = {"friction": FRICTION, "elasticity": ELASTICITY}
     for i in range(COLUMNS * ROWS):
         row, column = divmod(i, COLUMNS)
         kind = chance.randrange(len(kinds))
         x = (column - (COLUMNS - 1) / 2) * PITCH + chance.uniform(-0.1, 0.1)
-        body = add_body(
-            space,
-            kinds[kind],
-            (x, -1.5 + row * PITCH),
-            density=DENSITY,
-            angle=chance.uniform(-math.pi, math.pi),
-            friction=FRICTION,
-            elasticity=ELASTICITY,
-        )
+        place, angle = (x, -1.5 + row * PITCH), chance.uniform(-math.pi, math.pi)
+        body = add_body(space, kinds[kind], place, density=DENSITY, angle=angle, **surface)
         bodies.append(body)
         colors[body] = kind
 

@@ -197,13 +197,8 @@ class Picture:
         self._text(scene.shows if run.engine == "area" else how, (24, 37), 14, tint(INK, 0.75))
         bodies = f"{run.bodies} bodies" if run.bodies != 1 else "1 moving body"
         pace = "" if scene.slowdown < 1.2 else f", {scene.slowdown:.3g} times slowed"
-        self._text(
-            f"{engine}  ·  {bodies}  ·  t = {run.time:.3f} s{pace}",
-            (SIZE[0] - 24, 14),
-            14,
-            tint(INK, 0.85),
-            right=True,
-        )
+        told = f"{engine}  ·  {bodies}  ·  t = {run.time:.3f} s{pace}"
+        self._text(told, (SIZE[0] - 24, 14), 14, tint(INK, 0.85), right=True)
 
     def _legend(self) -> None:
         """The scale bar, a round length near a tenth of the picture's width, and a force of a round number."""

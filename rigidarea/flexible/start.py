@@ -200,11 +200,8 @@ def start(bodies: Sequence[Any], joints: Sequence[Joint], gravity: Array) -> tup
         c, s = np.cos(b.angle), np.sin(b.angle)
         arm = np.array([c * b.hub[0] - s * b.hub[1], s * b.hub[0] + c * b.hub[1]])
         mass[at] = b.mass, b.mass, b.inertia
-        load[at] = [
-            b.mass * gravity[0],
-            b.mass * gravity[1],
-            b.torque - (b.damper * omega if b.drive is None else 0.0),
-        ]
+        damping = b.damper * omega if b.drive is None else 0.0
+        load[at] = b.mass * gravity[0], b.mass * gravity[1], b.torque - damping
         if b.anchor is not None:
             rows.add((i, 0), ((i, [1.0, 0.0, -arm[1]]),), float(omega**2 * arm[0]))
             rows.add((i, 1), ((i, [0.0, 1.0, arm[0]]),), float(omega**2 * arm[1]))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import shapely
@@ -41,19 +41,14 @@ def stroked(rings: Sequence[Ring], pen: Stroke, tolerance: float | None) -> list
     sagitta = min(1e-3 * pen.width if tolerance is None else tolerance, half)
     quarter = min(64, max(1, math.ceil(math.pi / 4 / math.acos(1 - sagitta / half))))
     covered = []
+    look: dict[str, Any] = {
+        "cap_style": pen.cap if pen.cap in ("round", "square") else "flat",
+        "join_style": pen.join if pen.join in ("round", "bevel") else "mitre",
+    }
     for ring in rings:
         closed = pen.closed or (len(ring) > 2 and bool((ring[0] == ring[-1]).all()))
         way = shapely.LinearRing(ring) if closed and len(ring) > 2 else shapely.LineString(ring)
         with np.errstate(invalid="ignore"):  # of numbers near the largest; what is not finite is refused
-            covered.append(
-                shapely.buffer(
-                    way,
-                    half,
-                    quad_segs=quarter,
-                    cap_style={"round": "round", "square": "square"}.get(pen.cap, "flat"),
-                    join_style={"round": "round", "bevel": "bevel"}.get(pen.join, "mitre"),
-                    mitre_limit=4.0,
-                )
-            )
+            covered.append(shapely.buffer(way, half, quad_segs=quarter, **look, mitre_limit=4.0))
     parts = shapely.get_parts(shapely.union_all(covered))
     return [part for part in parts if part.geom_type == "Polygon" and part.area > 0]

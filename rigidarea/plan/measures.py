@@ -73,13 +73,9 @@ def fastest(space: pymunk.Space) -> Measured:
 def reach_of(body: pymunk.Body, shapes: Iterable[pymunk.Shape]) -> float:
     """How far the boxes of a body's shapes reach from its centre (length)."""
     x, y = body.position
-    return max(
-        (
-            math.hypot(max(box.right - x, x - box.left), max(box.top - y, y - box.bottom))
-            for box in (shape.cache_bb() for shape in shapes)
-        ),
-        default=0.0,
-    )
+    boxes = [shape.cache_bb() for shape in shapes]
+    ways = (math.hypot(max(b.right - x, x - b.left), max(b.top - y, y - b.bottom)) for b in boxes)
+    return max(ways, default=0.0)
 
 
 def extent_of(shape: pymunk.Shape) -> float:

@@ -240,11 +240,8 @@ def _chart(arguments: argparse.Namespace) -> int:
         shown = {"chart.png": pictures[0]} | ({"chart-defaults.png": defaults[0]} if defaults else {})
         page = harness("page", "--docs")
         page.keep(arguments.docs, "chart", page.concise(report), shown)
-    _tell(
-        arguments,
-        report,
-        [{k: row.get(k) for k in chart.TOLD} for row in report["summary"]] or report["results"],
-    )
+    rows = [{k: row.get(k) for k in chart.TOLD} for row in report["summary"]]
+    _tell(arguments, report, rows or report["results"])
     if arguments.json != "-":
         print("\n".join(lines(report["summary_defaults"])))
     return 0

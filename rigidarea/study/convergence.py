@@ -260,17 +260,8 @@ def pendulum_step(steps: Sequence[int] = (100, 200, 400, 800)) -> list[Study]:
         )
         r = Simulation([bob, _far()], [], rho=0.8, gravity=(0.0, -g)).run(1.0, 1 / n)
         errors.append(float(abs(r.x[-1, 0, 2] / exact - 1)))
-    return [
-        Study(
-            "step",
-            "pendulum's angle after 1 s, ρ∞ = 0.8",
-            "step (s)",
-            tuple(1 / n for n in steps),
-            tuple(errors),
-            "the equation of motion (scipy)",
-            2.0,
-        )
-    ]
+    name, against = "pendulum's angle after 1 s, ρ∞ = 0.8", "the equation of motion (scipy)"
+    return [Study("step", name, "step (s)", tuple(1 / n for n in steps), tuple(errors), against, 2.0)]
 
 
 def impact_step(

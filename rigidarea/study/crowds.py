@@ -66,16 +66,10 @@ def gas(bodies: int) -> Scene:
         for i, (place, v) in enumerate(zip(places, velocities, strict=True))
     )
     wall = side + 1.0
+    lying, upright = (2 * wall + 2, 2.0), (2.0, 2 * wall + 2)
+    sides = ((lying, (0.0, -wall)), (lying, (0.0, wall)), (upright, (-wall, 0.0)), (upright, (wall, 0.0)))
     walls = tuple(
-        Body(f"wall{i}", (box(*size),), place, kind="static")
-        for i, (size, place) in enumerate(
-            (
-                ((2 * wall + 2, 2.0), (0.0, -wall)),
-                ((2 * wall + 2, 2.0), (0.0, wall)),
-                ((2.0, 2 * wall + 2), (-wall, 0.0)),
-                ((2.0, 2 * wall + 2), (wall, 0.0)),
-            )
-        )
+        Body(f"wall{i}", (box(*size),), place, kind="static") for i, (size, place) in enumerate(sides)
     )
 
     def error(trace: Trace) -> float:

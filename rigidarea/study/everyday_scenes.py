@@ -12,6 +12,7 @@ import math
 import random
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -317,6 +318,8 @@ def metre_towers(bodies: int, height: int = 5) -> Callable[[int], Scene]:
     return make
 
 
+LARGE: dict[str, Any] = {"stands": True, "judged": False, "seeds": 1}
+
 EVERYDAY: dict[str, Everyday] = {
     scene.name: scene
     for scene in (
@@ -334,17 +337,8 @@ EVERYDAY: dict[str, Everyday] = {
         Everyday("bouncing", "bouncing shapes, e = 0.9", bouncing, rests=False, judged=False),
         Everyday("crates", "40 crates and one of 100", crates),
         Everyday("platformer", "platformer", platformer, rests=False, judged=False),
-        Everyday(
-            "pyramid_820", "pyramid of 820 boxes (m)", metre_pyramid(40), stands=True, judged=False, seeds=1
-        ),
-        Everyday(
-            "towers_10000",
-            "10,000 boxes in towers (m)",
-            metre_towers(10000),
-            stands=True,
-            judged=False,
-            seeds=1,
-        ),
+        Everyday("pyramid_820", "pyramid of 820 boxes (m)", metre_pyramid(40), **LARGE),
+        Everyday("towers_10000", "10,000 boxes in towers (m)", metre_towers(10000), **LARGE),
     )
 }
 """Every game scene by name."""

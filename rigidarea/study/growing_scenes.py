@@ -173,21 +173,18 @@ def _families() -> dict[str, Growing]:
     for boxes in (False, True):
         who = "boxes" if boxes else "discs"
         for radius in (0.0, 3.0):
-            found[f"rolling {who} {radius:g}"] = Growing(
+            title, make = (
                 f"100 {who} on terrain of radius {radius:g}",
                 partial(rolling, radius=radius, boxes=boxes),
-                (200, 1000),
-                settle=30,
             )
+            found[f"rolling {who} {radius:g}"] = Growing(title, make, (200, 1000), settle=30)
         for radius in (0.0, 5.0):
-            found[f"pit {who} {radius:g}"] = Growing(
+            title, make = (
                 f"{who} fall into a pit, walls of radius {radius:g}",
                 partial(pit, radius=radius, boxes=boxes),
-                (100,),
-                settle=0,
-                frames=240,
-                seeds=tuple(range(6)),
             )
+            seeds = tuple(range(6))
+            found[f"pit {who} {radius:g}"] = Growing(title, make, (100,), settle=0, frames=240, seeds=seeds)
     return found
 
 

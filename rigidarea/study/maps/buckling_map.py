@@ -38,14 +38,8 @@ def tallest(sinking: float) -> int:
 def tower(count: int) -> Scene:
     """Unit boxes, gravity leaning by a ten-thousandth."""
     boxes = tuple(block(f"box{i}", 1.0, 1.0, (0.0, i + 0.5)) for i in range(count))
-    return set_up(
-        name="tower",
-        bodies=(floor(10.0), *boxes),
-        gravity=(IMPERFECTION * G, -G),
-        friction=0.9,
-        duration=SECONDS,
-        frame=1 / 6,
-    )
+    bodies, gravity = (floor(10.0), *boxes), (IMPERFECTION * G, -G)
+    return set_up("tower", bodies, SECONDS, gravity=gravity, friction=0.9, frame=1 / 6)
 
 
 def lean(variant: Variant, sinking: float, count: int) -> float:

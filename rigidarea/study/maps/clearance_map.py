@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, Body, G, disc, set_up, slab_with_hole
+from ..scene import Array, Body, G, Trace, disc, set_up, slab_with_hole
 from ..scenes.bowl_slide_scene import path_error, period, swing
 
 HOLE, START, LIMIT = 1.0, math.radians(60), 0.2
@@ -17,14 +17,11 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     body = Body("journal", (slab_with_hole(HOLE, 1.5),), kind="static")
     pin = disc("pin", HOLE - rho, (rho * math.sin(START), -rho * math.cos(START)))
     whole = period(rho, START)
-    scene = set_up(
-        name="clearance",
-        bodies=(body, pin),
-        duration=whole,
-        error=lambda trace: path_error(trace, "pin", rho, swing(trace.times, rho, START)),
-        frame=whole / 40,
-        pressure=G / y,
-    )
+
+    def error(trace: Trace) -> float:
+        return path_error(trace, "pin", rho, swing(trace.times, rho, START))
+
+    scene = set_up("clearance", (body, pin), whole, error, frame=whole / 40, pressure=G / y)
     settings = {"sampling": x, **({"stiffness": 1e3} if variant.given else {})}
     return judge(scene.measure(run_scene(variant, scene, **settings)), LIMIT, "wrong path")
 

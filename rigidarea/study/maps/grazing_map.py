@@ -20,15 +20,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body("box", (box(2.0, 2.0),), (1.0, -1.0), kind="static"),
         disc("disc", RADIUS, (-1.2, height), velocity=(y, 0.0)),
     )
-    scene = set_up(
-        name="grazing",
-        bodies=bodies,
-        gravity=(0.0, 0.0),
-        elasticity=1.0,
-        duration=1.2 / y + 0.4 / y,
-        pressure=y**2,
-        frame=1 / 60,
-    )
+    duration = 1.2 / y + 0.4 / y
+    scene = set_up("grazing", bodies, duration, gravity=(0.0, 0.0), elasticity=1.0, pressure=y**2)
     settings = {"stiffness": 1e7} if variant.area else {}
     last = run_scene(variant, scene, **settings)["disc"][-1]
     return judge(float(np.hypot(*(last[[VX, VY]] - exact)) / y), LIMIT, "wrong way")

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, G, Scene, block, floor, rest_error, set_up
+from ..scene import Array, G, Scene, Trace, block, floor, rest_error, set_up
 
 SINKING, LIMIT = 1e-3, 0.02
 """Allowed sinking under the heavy box (sides), from which rigidarea's stiffness; displacement that counts."""
@@ -11,19 +11,13 @@ SINKING, LIMIT = 1e-3, 0.02
 
 def scene(ratio: float) -> Scene:
     """Unit boxes, masses 1 below and `ratio` above."""
-    bodies = (
-        floor(10.0),
-        block("light", 1.0, 1.0, (0.0, 0.5)),
-        block("heavy", 1.0, 1.0, (0.0, 1.5), mass=ratio),
-    )
-    return set_up(
-        name="mass_ratio",
-        bodies=bodies,
-        friction=0.5,
-        duration=3.0,
-        error=lambda trace: rest_error(trace, ["light", "heavy"], 1.0),
-        pressure=ratio * G,
-    )
+    light, heavy = block("light", 1.0, 1.0, (0.0, 0.5)), block("heavy", 1.0, 1.0, (0.0, 1.5), mass=ratio)
+    bodies = (floor(10.0), light, heavy)
+
+    def error(trace: Trace) -> float:
+        return rest_error(trace, ["light", "heavy"], 1.0)
+
+    return set_up("mass_ratio", bodies, 3.0, error, friction=0.5, pressure=ratio * G)
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:

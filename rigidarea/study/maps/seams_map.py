@@ -1,6 +1,7 @@
 """Butted tiles against one slab: a box slides over the seams."""
 
 import math
+from functools import partial
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
 from ..scene import Body, block, box, set_up
@@ -17,14 +18,8 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         Body(f"tile{i}", (box(tile, 0.5),), (i * tile - 1.0, -0.25), kind="static") for i in range(count)
     )
     sliding = block("box", SIDE, SIDE, (0.013, SIDE / 2), velocity=(x, 0.0))
-    scene = set_up(
-        name="seams",
-        bodies=(*tiles, sliding),
-        duration=min(WAY / x, 10.0),
-        error=lambda trace: error(trace, x),
-        size=SIDE,
-        pressure=9.81 / SIDE**2,
-    )
+    bodies, duration = (*tiles, sliding), min(WAY / x, 10.0)
+    scene = set_up("seams", bodies, duration, partial(error, speed=x), size=SIDE, pressure=9.81 / SIDE**2)
     settings = {"stiffness": 1e4} if variant.given else {}
     return judge(scene.measure(run_scene(variant, scene, **settings)), LIMIT, "caught")
 

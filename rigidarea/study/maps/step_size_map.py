@@ -27,14 +27,8 @@ def growth(phase: float, elasticity: float, variant: Variant) -> float:
     """
     sunk = G / K
     kick = 1e-3 * sunk * OMEGA
-    scene = set_up(
-        name="step_size",
-        bodies=(floor(10.0), block("box", 1.0, 1.0, (0.0, 0.5 - sunk), velocity=(0.0, kick))),
-        elasticity=elasticity,
-        duration=1.0,
-        pressure=1.0,
-        frame=phase / OMEGA,
-    )
+    bodies = floor(10.0), block("box", 1.0, 1.0, (0.0, 0.5 - sunk), velocity=(0.0, kick))
+    scene = set_up("step_size", bodies, 1.0, elasticity=elasticity, pressure=1.0, frame=phase / OMEGA)
     knob: dict[str, float] = {"stiffness": K, "rest_speed": 1e9}
     if variant.peer in ("pymunk", "box2d"):
         knob = {"hertz": OMEGA / (2 * math.pi)} if variant.peer == "box2d" else {}

@@ -1,5 +1,7 @@
 """A fast box against a thin wall: does it come out behind?"""
 
+from typing import Any
+
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
@@ -15,15 +17,9 @@ def scene(speed: float, thickness: float, share: float) -> Scene:
     start = -SIDE / 2 - 0.2 - share * speed * frame
     wall = Body("wall", (box(thickness, 20.0),), (thickness / 2, 0.0), kind="static")
     flying = block("box", SIDE, SIDE, (start, 0.0), velocity=(speed, 0.0))
-    return set_up(
-        name="tunnel",
-        bodies=(wall, flying),
-        gravity=(0.0, 0.0),
-        elasticity=0.3,
-        duration=2 * (0.2 + speed * frame) / speed + 0.3,
-        size=SIDE,
-        pressure=speed**2 / SIDE**3,
-    )
+    duration = 2 * (0.2 + speed * frame) / speed + 0.3
+    more: dict[str, Any] = {"gravity": (0.0, 0.0), "size": SIDE, "pressure": speed**2 / SIDE**3}
+    return set_up("tunnel", (wall, flying), duration, elasticity=0.3, **more)
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:

@@ -74,17 +74,13 @@ class FlexibleRun:
         moving = [body for body in scene.bodies if body.kind != "static"]
         made = []
         for body in moving:
-            keys: dict[str, Any] = {}
+            velocity = (*body.velocity, body.angular_velocity)
+            keys: dict[str, Any] = {"position": body.position, "angle": body.angle, "velocity": velocity}
             if body.kind == "kinematic":
-                keys = {"anchor": body.position, "drive": (body.angle, body.angular_velocity, 0.0)}
+                keys |= {"anchor": body.position, "drive": (body.angle, body.angular_velocity, 0.0)}
             elif body.name in pivots:
                 pivot = pivots[body.name]
-                keys = {"anchor": body.position, "torque": -pivot.turns * pivot.brake}
-            keys |= {
-                "position": body.position,
-                "angle": body.angle,
-                "velocity": (*body.velocity, body.angular_velocity),
-            }
+                keys |= {"anchor": body.position, "torque": -pivot.turns * pivot.brake}
             if level != "rigid" and body.elastic is not None:
                 flexible = copy.copy(elastic_body(scene.name, body.name, level, settings.get("modes", 0)))
                 for key, value in keys.items():
@@ -104,13 +100,8 @@ class FlexibleRun:
             made.append(FlexibleBody(build(ground), 1.0, 1.0, fixed=True))
         self.scene, self.steps, self.h = scene, settings["steps"], scene.frame / settings["steps"]
         self.failed = ""
-        self.simulation = Simulation(
-            made,
-            k=settings["stiffness"] * scene.pressure,
-            margin=MARGIN * scene.size,
-            rho=settings["rho"],
-            gravity=scene.gravity,
-        )
+        k, margin, rho = settings["stiffness"] * scene.pressure, MARGIN * scene.size, settings["rho"]
+        self.simulation = Simulation(made, k=k, margin=margin, rho=rho, gravity=scene.gravity)
 
     def advance(self, frames: int) -> None:
         """All steps in one compiled call."""
