@@ -8,7 +8,12 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from rigidarea.report import envelope, write_json
+
+Array = NDArray[np.float64]
 
 # Okabe–Ito, safe for colour-blind readers
 BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (

@@ -6,13 +6,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rigidarea.cases.case_report import BLACK, BLUE, FRAMED, ORANGE, PURPLE, RED, figure, save
+from rigidarea.cases.case_report import BLACK, BLUE, FRAMED, ORANGE, PURPLE, RED, Array, figure, save
 from rigidarea.flexible.boundary import Work
 from rigidarea.flexible.integrate import Record, Simulation
-
-Array = NDArray[np.float64]
 
 
 def placed(points: Array, frame: Array) -> Array:

@@ -8,16 +8,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigidarea.cases import gearbox as gb
+from rigidarea.cases.case_report import Array
 from rigidarea.flexible import nodal
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.boundary import Boundary, build, workspace
 from rigidarea.flexible.statics import Solution, hub_fixed, solve
 from rigidarea.shapes import involute_gear
-
-Array = NDArray[np.float64]
 
 BASES = tuple(r * float(np.cos(gb.ANGLE)) for r in gb.PITCHES)  # radii
 BASE_PITCH = float(np.pi * gb.MODULE * np.cos(gb.ANGLE))

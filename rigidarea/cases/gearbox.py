@@ -34,17 +34,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rigidarea.cases.case_report import Clock
+from rigidarea.cases.case_report import Array, Clock
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
 from rigidarea.flexible.mesh import Mesh
 from rigidarea.shapes import involute_gear
-
-Array = NDArray[np.float64]
 
 TEETH, MODULE, ANGLE, THICKNESS = (23, 57), 2e-3, np.radians(20), 0.050
 STEEL = Material(207e9, 0.29, 7800.0, THICKNESS)

@@ -7,17 +7,26 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse.linalg as spl
-from numpy.typing import NDArray
 
 from rigidarea.cases import figures, gear_statics
 from rigidarea.cases import gearbox as gb
-from rigidarea.cases.case_report import BLACK, BLUE, FRAMED, GREEN, ORANGE, RED, SKY, YELLOW, figure, save
+from rigidarea.cases.case_report import (
+    BLACK,
+    BLUE,
+    FRAMED,
+    GREEN,
+    ORANGE,
+    RED,
+    SKY,
+    YELLOW,
+    Array,
+    figure,
+    save,
+)
 from rigidarea.flexible.element import stiffness
 from rigidarea.flexible.integrate import Record, Simulation
 from rigidarea.flexible.mesh import Mesh
 from rigidarea.flexible.modes import carriers, hub_rows
-
-Array = NDArray[np.float64]
 
 NAMES = ("pinion", "wheel")
 

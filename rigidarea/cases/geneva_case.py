@@ -20,14 +20,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from rigidarea.cases.case_report import Array
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Record, Simulation
 from rigidarea.shapes import geneva
-
-Array = NDArray[np.float64]
 
 CENTRES, PIN, CLEARANCE, THICKNESS = 0.050, 0.008, 1e-5, 0.005
 STEEL = Material(207e8, 0.29, 7800.0, THICKNESS)

@@ -16,9 +16,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from rigidarea.cases.case_report import BLACK, BLUE, GREEN, ORANGE, RED, SKY, Case, figure, save, say
+from rigidarea.cases.case_report import BLACK, BLUE, GREEN, ORANGE, RED, SKY, Array, Case, figure, save, say
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Boundary, build, workspace
 from rigidarea.flexible.boundary_regions import arcs
@@ -27,8 +26,6 @@ from rigidarea.flexible.mesh import triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape, State
 from rigidarea.flexible.statics import solve
-
-Array = NDArray[np.float64]
 
 RADIUS, YOUNG, POISSON, FORCE = 8.0, 200.0, 0.3, 10.0
 MODULUS = YOUNG / (2 * (1 - POISSON**2))  # Eq. 28

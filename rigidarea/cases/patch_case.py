@@ -18,17 +18,14 @@ from typing import Any
 
 import numpy as np
 import scipy.sparse.linalg as spl
-from numpy.typing import NDArray
 
 from rigidarea.cases import figures
-from rigidarea.cases.case_report import BLACK, BLUE, RED, Case, figure, save
+from rigidarea.cases.case_report import BLACK, BLUE, RED, Array, Case, figure, save
 from rigidarea.flexible import nodal
 from rigidarea.flexible.boundary import Work, build, workspace
 from rigidarea.flexible.boundary_regions import arcs
 from rigidarea.flexible.element import Material, stiffness, stress
 from rigidarea.flexible.mesh import Mesh, triangulate
-
-Array = NDArray[np.float64]
 
 SLAVE, MASTER, K = (0.040, 0.020), (0.080, 0.030), 5e7
 GAPS = (0.002, 0.006)

@@ -19,16 +19,13 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from rigidarea.cases import figures
-from rigidarea.cases.case_report import BLUE, ORANGE, RED, Case, figure, save, say
+from rigidarea.cases.case_report import BLUE, ORANGE, RED, Array, Case, figure, save, say
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Simulation
-
-Array = NDArray[np.float64]
 
 PIN, JOURNAL, RIM, THICKNESS, DENSITY, K, GRAVITY = 0.020, 0.035, 0.045, 0.005, 7800.0, 5e7, 9.81
 STEEL = Material(207e8, 0.29, DENSITY, THICKNESS)

@@ -9,11 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from rigidarea.cases.case_report import BLUE, RED, figure, save
+from rigidarea.cases.case_report import BLUE, RED, Array, figure, save
 from rigidarea.flexible.recover import State, recover
 from rigidarea.flexible.stress_pictures import draw_deformed, draw_pressure, draw_stress
-
-Array = NDArray[np.float64]
 
 MM, MPA = 1e3, 1e-6
 

@@ -13,14 +13,12 @@ from rigidarea.flexible.boundary import build
 from rigidarea.flexible.check import check_elastic, held_nodes
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
-from rigidarea.flexible.mesh import Mesh, keep_area, resample, triangulate
+from rigidarea.flexible.mesh import Array, Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
 from rigidarea.flexible.reduction_store import arrays
 from rigidarea.geometry.gate import finite, listed, not_negative, numbers, positive
 from rigidarea.geometry.outline import Outline
-
-Array = NDArray[np.float64]
 
 LEVELS = ("rigid", "compliant", "modal")
 CONTACT_NODES = 8000  # the flexibility between so many nodes takes 2 GiB once all of it has been used

@@ -12,10 +12,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from rigidarea.flexible.mesh import Mesh
+from rigidarea.flexible.mesh import Array, Mesh
 from rigidarea.geometry.gate import finite, positive
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)

@@ -26,10 +26,9 @@ from threadpoolctl import threadpool_limits
 from rigidarea.flexible.blocks import WIDE, Pieces, no_pieces, spans, whole
 from rigidarea.flexible.element import Material, geometric_stiffness, lumped_mass, stiffness, stress
 from rigidarea.flexible.factor import factorise, forward, substitute, trace
-from rigidarea.flexible.mesh import CORNER, Mesh, turns
+from rigidarea.flexible.mesh import CORNER, Array, Mesh, turns
 from rigidarea.flexible.reduction_store import arrays
 
-Array = NDArray[np.float64]
 Ints = NDArray[np.int64]
 
 SOFT = 8  # modes of a compliant body that spin stiffens: a beam's tip at half its first frequency yields as with 24, to

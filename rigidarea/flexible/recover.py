@@ -21,11 +21,9 @@ import scipy.sparse.linalg as spl
 from numpy.typing import NDArray
 
 from rigidarea.flexible.element import Material, lumped_mass, strain_displacement, stress, von_mises
-from rigidarea.flexible.mesh import Mesh
+from rigidarea.flexible.mesh import Array, Mesh
 from rigidarea.flexible.modes import Flexibility, Reduced, carriers, elastic, hub_rows, rigid_modes
 from rigidarea.flexible.tension import matrix
-
-Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
