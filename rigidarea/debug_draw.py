@@ -178,11 +178,7 @@ def _common(a: pymunk.Shape, b: pymunk.Shape) -> list[Points]:
 
 
 #: pymunk's modules that draw, and those here that draw outlines with the same library.
-BACK_ENDS = {
-    "pymunk.pygame_util": "rigidarea.pygame_util",
-    "pymunk.pyglet_util": "rigidarea.pyglet_util",
-    "pymunk.matplotlib_util": "rigidarea.matplotlib_util",
-}
+BACK_ENDS = ("pygame_util", "pyglet_util", "matplotlib_util")
 _classes: dict[type, type] = {}
 
 
@@ -190,9 +186,10 @@ def _with_outlines(plain: type[pymunk.SpaceDebugDrawOptions]) -> type:
     """A class of options like `plain` that draws outlines; made once."""
     if plain not in _classes:
         drawing: type = OutlineOptions
-        for theirs, ours in BACK_ENDS.items():
-            if theirs in sys.modules and issubclass(plain, sys.modules[theirs].DrawOptions):
-                drawing = importlib.import_module(ours).Rings
+        for name in BACK_ENDS:
+            theirs = sys.modules.get(f"pymunk.{name}")
+            if theirs is not None and issubclass(plain, theirs.DrawOptions):
+                drawing = importlib.import_module(f"rigidarea.{name}").Rings
         _classes[plain] = type(plain.__name__, (drawing, plain), {})
     return _classes[plain]
 

@@ -27,15 +27,9 @@ from .geometry.gate import positive, whole
 
 CONTACTS = np.dtype(
     [
-        ("world", "i4"),
-        ("body_a", "i4"),
-        ("body_b", "i4"),
-        ("centroid", "f8", 2),
-        ("direction", "f8", 2),
-        ("area", "f8"),
-        ("force", "f8"),
-        ("friction", "f8"),
-        ("speed", "f8"),
+        *((name, "i4") for name in ("world", "body_a", "body_b")),
+        *((name, "f8", 2) for name in ("centroid", "direction")),
+        *((name, "f8") for name in ("area", "force", "friction", "speed")),
     ]
 )
 """A contact: the number of its world; the places of its bodies in `space.bodies` (-1: what is not among them); centroid

@@ -241,16 +241,9 @@ class Mechanism:
             b.boundary.points[b.boundary.ring_of == k] for b in self._bodies for k in set(b.boundary.ring_of)
         ]
         margin = MARGIN * min((0.5 * float(np.hypot(*np.ptp(ring, axis=0))) for ring in rings), default=1.0)
-        friction, restitution = ([h[i] for h in self._held] for i in range(2))
-        self.simulation = Simulation(
-            self._bodies,
-            self._pairs,
-            margin=margin,
-            friction=friction,
-            restitution=restitution,
-            joints=self._joints,
-            **self._settings,
-        )  # type: ignore[arg-type]
+        held = {"friction": [f for f, _ in self._held], "restitution": [e for _, e in self._held]}
+        settings = {**self._settings, **held, "margin": margin, "joints": self._joints}
+        self.simulation = Simulation(self._bodies, self._pairs, **settings)
         return self.simulation.run(duration, h, every, shapes)
 
     def state(self, record: Record, row: int, body: int) -> State:

@@ -37,7 +37,7 @@ def check_settings(
     positive(k, "k")
     for name, value in (("q", q), ("margin", margin)):
         not_negative(value, name)
-    _vector("gravity", gravity, 2)
+    numbers(gravity, "gravity", 2)
 
 
 def check_pairs(pairs: Sequence[tuple[int, int]], bodies: int) -> NDArray[np.int64]:
@@ -84,7 +84,7 @@ def check_joints(joints: Sequence[Joint], bodies: int) -> list[Joint]:
                 f"joint {n} must tie two of the bodies 0 … {bodies - 1}, or -1, the ground, to one; got ({j.a}, {j.b})"
             )
         for name in ("at_a", "at_b", "axis"):
-            _vector(f"joint {n}: {name}", getattr(j, name), 2)
+            numbers(getattr(j, name), f"joint {n}: {name}", 2)
         if not np.hypot(*j.axis) > 0:
             raise ValueError(f"joint {n}: axis must have a direction, got {j.axis}")
         finite(j.angle, f"joint {n}: angle")
@@ -179,7 +179,7 @@ def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -
             not_negative(getattr(b, name), f"body {i}: {name}")
         for name, size in (("position", 2), ("hub", 2), ("anchor", 2), ("drive", 3), ("velocity", 3)):
             if getattr(b, name) is not None:
-                _vector(f"body {i}: {name}", getattr(b, name), size)
+                numbers(getattr(b, name), f"body {i}: {name}", size)
         for name in ("angle", "torque"):
             finite(getattr(b, name), f"body {i}: {name}")
         if b.drive is not None and b.drive[2] < 0:
@@ -204,10 +204,6 @@ def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -
                 )
     if rho == 1.0 and (constrained or any(b.anchor is not None or b.drive is not None for b in bodies)):
         raise ValueError("rho must be below 1 with constraints (index 3 is unstable at 1), got 1")
-
-
-def _vector(name: str, value: Any, size: int) -> None:
-    numbers(value, name, size)
 
 
 def check_elastic(

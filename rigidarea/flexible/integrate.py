@@ -207,14 +207,8 @@ class Simulation:
         )
         self._table = table(self.boundaries, self.works, self.couplings, self._geometric)
         spread = any(bd.modes.shape[1] > 0 or len(bd.flexibility) for bd in self.boundaries)
-        loose = not self.joints and all(
-            b.anchor is None
-            and b.drive is None
-            and b.damper == 0.0
-            and b.torque == 0.0
-            and len(b.frequency) == 0
-            for b in bodies
-        )
+        bound = any(b.anchor is not None or b.drive is not None or b.damper or b.torque for b in bodies)
+        loose = not (bound or self.joints or sum(count))
         self.settings = Settings(float(k), float(reach if contact == "sts" else q), contact == "sts", spread,
                                  float(margin), float(rho), loose)  # fmt: skip
         m = int(first[-1])
@@ -230,13 +224,8 @@ class Simulation:
         sizes = [len(b.points) for b in self.boundaries]
         largest = max((sizes[i] + sizes[j] for i, j in self.pairs), default=0)
         self.scratch = nodal.scratch(largest, loads)
-        made = buffers(
-            len(self.bodies),
-            len(self.pairs),
-            len(self.joints),
-            [len(b.frequency) for b in self.bodies],
-            loads,
-        )
+        modes = [len(b.frequency) for b in self.bodies]
+        made = buffers(len(self.bodies), len(self.pairs), len(self.joints), modes, loads)
         if old is not None:
             made.counts[1], made.most[:] = old.counts[1], old.most
             made.springs[:], made.held[:] = old.springs, old.held

@@ -46,12 +46,7 @@ class WorldRun:
         self._joints(scene)
 
     def _add(self, b2: Any, scene: Scene, body: Body, tolerance: float) -> Any:
-        make = {
-            "dynamic": self.world.create_dynamic_body,
-            "kinematic": self.world.create_kinematic_body,
-            "static": self.world.create_static_body,
-        }[body.kind]
-        made = make(
+        made = getattr(self.world, f"create_{body.kind}_body")(
             position=self._scaled(body.position),
             rotation=_rotation(b2, body.angle),
             linear_velocity=self._scaled(body.velocity),
@@ -112,19 +107,14 @@ class WorldRun:
         index = {body.name: i for i, body in enumerate(scene.bodies)}
         for pivot in scene.pivots:
             i = index[pivot.body]
-            self.world.create_revolute_joint(
-                ground,
-                self.bodies[i],
-                local_anchor_a=self._scaled(scene.bodies[i].position),
-                local_anchor_b=(0.0, 0.0),
-                enable_motor=pivot.brake > 0,
-                max_motor_torque=pivot.brake * self.unit**2,
-                motor_speed=0.0,
-            )
+            brake = {"enable_motor": pivot.brake > 0, "max_motor_torque": pivot.brake * self.unit**2}
+            ends, place = (ground, self.bodies[i]), self._scaled(scene.bodies[i].position)
+            anchors = {"local_anchor_a": place, "local_anchor_b": (0.0, 0.0)}
+            self.world.create_revolute_joint(*ends, **anchors, **brake, motor_speed=0.0)
         for hinge in scene.hinges:
             ends = self.bodies[index[hinge.a]], self.bodies[index[hinge.b]] if hinge.b else ground
-            anchors = [body.local_point(self._scaled(hinge.point)) for body in ends]
-            self.world.create_revolute_joint(*ends, local_anchor_a=anchors[0], local_anchor_b=anchors[1])
+            at, on = (body.local_point(self._scaled(hinge.point)) for body in ends)
+            self.world.create_revolute_joint(*ends, local_anchor_a=at, local_anchor_b=on)
 
     def advance(self, frames: int) -> None:
         """World steps, called from a C loop."""
