@@ -160,9 +160,6 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         body = self._body
         return np.array([[*body.position, body.angle, *body.velocity, body.angular_velocity]])
 
-    def _tip(self) -> pymunk.Vec2d:
-        return pymunk.Vec2d(*tip(self._state())[0].tolist())
-
     def _distance(self) -> float:
         return float(distance(self._state())[0])
 

@@ -21,7 +21,7 @@ from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
 from .records import Row
 from .scene import Scene, check_known
-from .timing import median_times, one_core
+from .timing import median_times, one_core, spent
 
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
 
@@ -126,9 +126,7 @@ def call_overhead(count: int = 20000) -> Row:
 
 def _us(step: Any, count: int, *arguments: object) -> float:
     drive(step, count // 10, *arguments)
-    before = time.thread_time()
-    drive(step, count, *arguments)
-    return 1e6 * (time.thread_time() - before) / count
+    return 1e6 * spent(drive, step, count, *arguments) / count
 
 
 # Kernels
@@ -263,9 +261,7 @@ class Query:
             self.count *= 2
 
     def _seconds(self) -> float:
-        before = time.thread_time()
-        _loop(self.pool, *self.pose, self.work, self.count)
-        return time.thread_time() - before
+        return spent(_loop, self.pool, *self.pose, self.work, self.count)
 
     def time_us(self) -> float:
         """Mean time of a query (µs)."""

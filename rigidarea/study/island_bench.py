@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import statistics
-import time as clock
 from collections.abc import Callable, Sequence
 from functools import partial
 
@@ -19,12 +18,12 @@ from ..plan import Plan, plan
 from ..report import envelope
 from .records import Row
 from .scenes import gears_scene
-from .timing import one_core
+from .timing import one_core, spent
 
 G = 9.81
 FRAME = 1 / 60
 SECONDS = 2.0
-TOLERANCES = (0.01,)
+TOLERANCE = 0.01
 WIDE, HIGH, BALLS = 32, 25, 20
 """Boxes in the pile's lowest row, and rows, each one shorter: 500 boxes."""
 NAMES = ("pile", "gears", "balls")
@@ -120,14 +119,14 @@ PARTS = {"pile": _pile, "gears": _gears, "balls": _balls}
 class Level:
     """A space with what is named in it, planned."""
 
-    def __init__(self, names: Sequence[str], tolerance: float, steps: int | None = None) -> None:
+    def __init__(self, names: Sequence[str], steps: int | None = None) -> None:
         self.space = Counted()
         self.space.gravity = 0.0, -G
         ground = pymunk.Segment(self.space.static_body, (-100.0, 0.0), (200.0, 0.0), 0.0)
         ground.friction, ground.elasticity = 0.8, 1.0
         self.space.add(ground)
         self.errors = {name: PARTS[name](self.space) for name in names}
-        self.plan: Plan = plan(self.space, tolerance, SECONDS, frame=FRAME)
+        self.plan: Plan = plan(self.space, TOLERANCE, SECONDS, frame=FRAME)
         if steps is not None:
             self.plan.override(steps=steps)
         self.plan.apply()
@@ -152,47 +151,36 @@ class Level:
         return found
 
 
-def _timed(level: Level, frames: int) -> float:
-    """Processor time (s) of so many frames in one call."""
-    begin = clock.thread_time()
-    level.advance(frames)
-    return clock.thread_time() - begin
-
-
-def islands(tolerances: Sequence[float] = TOLERANCES) -> Row:
+def islands() -> Row:
     """The study: the object of `bench islands`."""
     rows: list[Row] = []
-    for tolerance in tolerances:
-        runs = {"all, one plan": NAMES, **{name: (name,) for name in NAMES}}
-        builds: dict[str, Callable[[], Level]] = {
-            what: partial(Level, names, tolerance) for what, names in runs.items()
-        }
-        finest = builds["all, one plan"]().finest
-        builds["all at the finest"] = partial(Level, NAMES, tolerance, finest)
-        times: dict[str, list[float]] = {what: [] for what in builds}
-        levels = {what: build() for what, build in builds.items()}
-        frames = round(SECONDS / FRAME / ROUNDS)
-        with one_core():
-            for _ in range(ROUNDS):  # in turn: a drift of the machine hits all alike
-                for what, level in levels.items():
-                    times[what].append(_timed(level, frames) / frames)
-        alone = sum(statistics.median(times[name]) for name in NAMES)
-        for what, build in builds.items():
-            level = build()
-            frame = statistics.median(times[what])
-            errors = level.worst() if what != "all at the finest" else {}
-            rows.append(
-                {
-                    "tolerance": tolerance,
-                    "what": what,
-                    "steps": level.plan.steps,
-                    "finest": level.finest,
-                    "sweeps": level.plan.sweeps,
-                    "penetration": level.plan.penetration,
-                    "frame_ms": 1e3 * frame,
-                    "over_sum_alone": frame / alone if what.startswith("all") else None,
-                    **{f"{name}_error": errors.get(name) for name in NAMES},
-                    "within": max(errors.values()) <= tolerance if errors else None,
-                }
-            )
+    builds = {"all, one plan": partial(Level, NAMES), **{name: partial(Level, (name,)) for name in NAMES}}
+    finest = builds["all, one plan"]().finest
+    builds["all at the finest"] = partial(Level, NAMES, finest)
+    times: dict[str, list[float]] = {what: [] for what in builds}
+    levels = {what: build() for what, build in builds.items()}
+    frames = round(SECONDS / FRAME / ROUNDS)
+    with one_core():
+        for _ in range(ROUNDS):  # in turn: a drift of the machine hits all alike
+            for what, level in levels.items():
+                times[what].append(spent(level.advance, frames) / frames)
+    alone = sum(statistics.median(times[name]) for name in NAMES)
+    for what, build in builds.items():
+        level = build()
+        frame = statistics.median(times[what])
+        errors = level.worst() if what != "all at the finest" else {}
+        rows.append(
+            {
+                "tolerance": TOLERANCE,
+                "what": what,
+                "steps": level.plan.steps,
+                "finest": level.finest,
+                "sweeps": level.plan.sweeps,
+                "penetration": level.plan.penetration,
+                "frame_ms": 1e3 * frame,
+                "over_sum_alone": frame / alone if what.startswith("all") else None,
+                **{f"{name}_error": errors.get(name) for name in NAMES},
+                "within": max(errors.values()) <= TOLERANCE if errors else None,
+            }
+        )
     return envelope("bench", {"what": "islands", "seconds": SECONDS, "frame": FRAME}, rows)

@@ -28,7 +28,7 @@ from rigidarea.study.peers.base import record
 from rigidarea.study.records import Row, append_rows, read_rows
 from rigidarea.study.scene import ANGLE, Curve, Scene, Trace, X, Y, get_scene, scenes
 from rigidarea.study.sweep import key
-from rigidarea.study.timing import one_core, timed
+from rigidarea.study.timing import one_core, spent
 
 from .judged import JUDGED
 from .trial import Trial, at_settings, planned, space_of
@@ -116,7 +116,7 @@ def seconds_of(scene: Scene, build: Callable[[], Trial]) -> float:
     (What is planned has driven more out of the caches than what is just built: a run of a tenth of a millisecond took
     twice as long then, whatever its settings.)
     """
-    found = timed(build(), scene.frames)
+    found = spent(build().advance, scene.frames)
     if found > 0.02:
         return found
     return statistics.median([_cold(build(), scene.frames) for _ in range(5)])
@@ -125,7 +125,7 @@ def seconds_of(scene: Scene, build: Callable[[], Trial]) -> float:
 def _cold(run: Trial, frames: int) -> float:
     """Time (s) of a run that finds nothing of its own in the caches."""
     np.ones(CACHE // 8).sum()
-    return timed(run, frames)
+    return spent(run.advance, frames)
 
 
 # --- the study -----------------------------------------------------------------------------------------------------
