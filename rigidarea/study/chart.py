@@ -69,26 +69,23 @@ def warm(scene: str, peer: str) -> None:
 
 def jobs(names: Sequence[str], peer_names: Sequence[str], quick: bool) -> list[Task]:
     """Every (scene, peer, settings) that the peers accept, in a fixed order."""
-    found = []
-    for name in names:
-        scene = get_scene(name)
-        for peer_name in peer_names:
-            peer = get_peer(peer_name)
-            if not peer.refuses(scene):
-                for settings in peer.settings(scene, quick):
-                    found.append({"scene": name, "peer": peer_name, "settings": dict(settings)})
-    return found
+    return [
+        {"scene": name, "peer": peer, "settings": dict(settings)}
+        for name in names
+        for peer in peer_names
+        if not get_peer(peer).refuses(get_scene(name))
+        for settings in get_peer(peer).settings(get_scene(name), quick)
+    ]
 
 
 def refusals(names: Sequence[str], peer_names: Sequence[str]) -> list[Row]:
     """Which peer cannot do which scene, and why."""
-    rows = []
-    for name in names:
-        for peer_name in peer_names:
-            why = get_peer(peer_name).refuses(get_scene(name))
-            if why:
-                rows.append({"scene": name, "peer": peer_name, "why": why})
-    return rows
+    return [
+        {"scene": name, "peer": peer, "why": why}
+        for name in names
+        for peer in peer_names
+        if (why := get_peer(peer).refuses(get_scene(name)))
+    ]
 
 
 def on_front(tasks: Sequence[Task], results: Sequence[Row]) -> list[bool]:

@@ -110,7 +110,7 @@ def run_tasks(
                     executor.submit(function, **task): task for task in missing
                 }
             try:
-                for future in as_completed(futures) if not scheduler else _dask_completed(futures):
+                for future in as_completed(futures):  # Dask's are futures of `concurrent.futures` as well
                     keep(futures[future], future.result())
             except BaseException as error:
                 # an interrupt, or one that failed: what others have finished is kept. At an interrupt our own workers
@@ -123,8 +123,3 @@ def run_tasks(
                             keep(task, future.result())
                 raise
     return [known[key(task)] for task in tasks]
-
-
-def _dask_completed(futures: dict[Future[Row], Task]) -> Iterator[Future[Row]]:
-    """`as_completed` for the futures of Dask's executor, which are `concurrent.futures` futures as well."""
-    yield from as_completed(futures)
