@@ -6,30 +6,17 @@ import signal
 import subprocess
 import sys
 import time
-from pathlib import Path
 
 import pytest
 
+from commands import ROOT, command
 from rigidarea import cases
 from rigidarea.__main__ import main, written
 from rigidarea.compile.chosen import _is_the_command
 from rigidarea.report import check_writable
 from rigidarea.study import atlas, chart
 
-ROOT = Path(__file__).parents[1]
 GAME = "import pymunk\nspace = pymunk.Space()\nfor _ in range({frames}):\n    space.step(1 / 60)\n"
-
-
-def command(folder, *words, **environment):
-    """In a process of its own: a host serves one program."""
-    return subprocess.run(
-        [sys.executable, "-m", "rigidarea", *words],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        timeout=300,
-        cwd=folder,
-    )
 
 
 @pytest.mark.parametrize("asked", ["plan", "run"])

@@ -13,6 +13,7 @@ import numpy as np
 import pymunk
 import pytest
 
+from commands import command
 from rigidarea import Outline
 from rigidarea.gallery import NAMES, Run, Scene, decompose, load
 from rigidarea.report import envelope, plain, write_json
@@ -326,14 +327,8 @@ def test_case_goes_to_the_cases(tmp_path, monkeypatch, capsys):
 
 def test_json_alone_on_standard_output(tmp_path):
     # a process of its own: pygame greets where it is first imported
-    command = ["demo", "cradle", "--frames", "1", "--no-film", "--json", "-", "--out", str(tmp_path)]
-    done = subprocess.run(
-        [sys.executable, "-m", "rigidarea", *command],
-        capture_output=True,
-        text=True,
-        env=os.environ,
-        timeout=300,
-    )
+    words = ["demo", "cradle", "--frames", "1", "--no-film", "--json", "-", "--out", str(tmp_path)]
+    done = command(tmp_path, *words)
     assert done.returncode == 0, done.stderr
     assert json.loads(done.stdout)["command"] == "demo"
     assert os.listdir(tmp_path) == ["cradle.png"]

@@ -1,19 +1,15 @@
 """`rigidarea run`: the command, as a user calls it."""
 
 import json
-import os
-import subprocess
-import sys
 import time
 from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
+from commands import ROOT, command
 from rigidarea.__main__ import main
 from rigidarea.programs.run_program import frames_told
-
-ROOT = Path(__file__).parents[2]
 
 PROGRAM = """
 import sys
@@ -31,22 +27,11 @@ assert abs(body.position.y - 15) < 2, body.position  # it lies on the segment, i
 """
 
 
-def command(folder: Path, *words: str, **environment: str) -> subprocess.CompletedProcess[str]:
-    return subprocess.run(
-        [sys.executable, "-m", "rigidarea", "run", *words],
-        capture_output=True,
-        text=True,
-        env={**os.environ, "PYTHONPATH": str(ROOT), **environment},
-        timeout=300,
-        cwd=folder,
-    )
-
-
 def test_json_alone_on_standard_output_and_a_film(tmp_path):
     imageio = pytest.importorskip("imageio.v2")
     pytest.importorskip("pygame")
     (tmp_path / "game.py").write_text(PROGRAM)
-    done = command(tmp_path, "--json", "-", "--film", "film", "game.py", "--fast", "7")
+    done = command(tmp_path, "run", "--json", "-", "--film", "film", "game.py", "--fast", "7")
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)
     assert told["command"] == "run" and told["settings"]["arguments"] == ["--fast", "7"]
@@ -68,7 +53,7 @@ def test_the_readmes_film_of_ones_own_shape(tmp_path):
     assert len([line for line in program.splitlines() if line.strip()]) <= 15
     assert "-m rigidarea run --film hook hook.py" in (ROOT / "README.md").read_text()
     (tmp_path / "hook.py").write_text(program)
-    done = command(tmp_path, "--film", "hook", "--json", "told.json", "hook.py")
+    done = command(tmp_path, "run", "--film", "hook", "--json", "told.json", "hook.py")
     assert done.returncode == 0, done.stderr
     told = json.loads((tmp_path / "told.json").read_text())["results"]
     pictures = imageio.mimread(tmp_path / told["film"], memtest=False)
@@ -78,7 +63,7 @@ def test_the_readmes_film_of_ones_own_shape(tmp_path):
 
 def test_frames_and_the_other_engine(tmp_path):
     (tmp_path / "game.py").write_text(PROGRAM)
-    done = command(tmp_path, "--engine", "pymunk", "--frames", "5", "game.py")
+    done = command(tmp_path, "run", "--engine", "pymunk", "--frames", "5", "game.py")
     assert done.returncode == 0, done.stderr
     assert "its own words []" in done.stdout
     rows = dict(line.split(None, 1) for line in done.stdout.splitlines()[1:])
@@ -100,9 +85,8 @@ def test_its_own_window_ends_after_the_frames_asked_for(tmp_path):
         "    pygame.display.flip()\n"
         "    print(type(clock).__name__, clock.tick(200) > 0)\n"
     )
-    done = command(
-        tmp_path, "--window", "--frames", "6", "--json", "told.json", "game.py", SDL_VIDEODRIVER="dummy"
-    )
+    words = "run --window --frames 6 --json told.json game.py"
+    done = command(tmp_path, *words.split(), SDL_VIDEODRIVER="dummy")
     assert done.returncode == 0, done.stderr
     assert json.loads((tmp_path / "told.json").read_text())["results"]["frames"] == 6
     assert "Clock True" in done.stdout  # pygame's own clock, which takes its time
@@ -110,7 +94,7 @@ def test_its_own_window_ends_after_the_frames_asked_for(tmp_path):
 
 def test_a_programs_own_error_is_told_as_its_own(tmp_path):
     (tmp_path / "game.py").write_text("import pymunk\nraise ValueError('my own')\n")
-    done = command(tmp_path, "game.py")
+    done = command(tmp_path, "run", "game.py")
     assert done.returncode == 1
     assert "game.py" in done.stderr and done.stderr.strip().endswith("ValueError: my own")
 

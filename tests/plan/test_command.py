@@ -1,12 +1,11 @@
 """`rigidarea plan`: a scene, a program, and the validation on one scene."""
 
 import json
-import subprocess
-import sys
 
 import pymunk
 import pytest
 
+from commands import command
 from harness import trial, validate, variations
 from rigidarea.__main__ import main
 
@@ -29,21 +28,16 @@ def test_a_scene(capsys):
     assert text.startswith("plan for 0.01 over 5 s: off by") and "tried out: " in text
 
 
-def command(*words):
-    """In a process of its own: a host serves one program."""
-    return subprocess.run([sys.executable, "-m", "rigidarea", *words], capture_output=True, text=True)
-
-
 def test_a_program(tmp_path):
     script = tmp_path / "game.py"
     script.write_text(PROGRAM)
-    done = command("plan", str(script), "--tolerance", "0.001", "--json", "-")
+    done = command(tmp_path, "plan", str(script), "--tolerance", "0.001", "--json", "-")
     assert done.returncode == 0, done.stderr
     told = json.loads(done.stdout)
     assert told["command"] == "plan" and told["results"]["reachable"]
     assert told["results"]["lines"][0]["what"] == "space"
     script.write_text("")
-    done = command("plan", str(script))
+    done = command(tmp_path, "plan", str(script))
     assert done.returncode == 2 and "nothing to plan" in done.stderr
 
 
