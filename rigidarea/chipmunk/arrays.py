@@ -18,7 +18,7 @@ from pymunk._chipmunk_cffi import ffi
 
 from ..contact.active import ISLAND, QUEUED
 from ..contact.dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
-from ..contact.joint import JOINT
+from ..contact.joint_record import JOINT
 from ..contact.preconditioner import FACTOR, MOBILITY
 from ..contact.space_record import _ARRAYS as ARRAYS
 from ..contact.space_record import LASTING, OFFSETS, STATE, enter_bodies

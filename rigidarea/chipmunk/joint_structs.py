@@ -70,7 +70,7 @@ _IMPULSES = {
 
 @lru_cache(maxsize=1)
 def kinds_of_joints() -> tuple[JointKind, ...]:
-    """Every class of joints, in the order of `contact.joint`.
+    """Every class of joints, in the order of `contact.joint_record`.
 
     Each is loaded for a step, and must have what Chipmunk calls its impulse there, and its parameters, else
     LayoutError.

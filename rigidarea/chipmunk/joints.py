@@ -20,7 +20,8 @@ import numpy as np
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, caller
 from ..contact.constants import NO_LENGTH
-from ..contact.joint import (
+from ..contact.joint import spring_reach
+from ..contact.joint_record import (
     DIRECTION,
     JOINT,
     KINDS,
@@ -30,7 +31,6 @@ from ..contact.joint import (
     RATCHET,
     ROTARY_SPRING,
     SPRING,
-    spring_reach,
 )
 from ..contact.space_record import EXTREME, row_of_body
 from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
@@ -82,7 +82,7 @@ def prepared(constraint: int, dt: float) -> None:
 
 @kernel(forceinline=True)
 def _kind_of(s: Any, joint: Any) -> int:
-    """Which kind of joint it is (`contact.joint`); -1: none that is known."""
+    """Which kind of joint it is (`contact.joint_record`); -1: none that is known."""
     kinds = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.uint64)
     for k in range(KINDS):
         if kinds[k, 0] == joint.own_class:

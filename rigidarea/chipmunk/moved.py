@@ -14,7 +14,7 @@ import numpy as np
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, record
 from ..contact.dtypes import BODY, SHAPE
-from ..contact.joint import DIRECTION, KINDS, PIN, RATCHET
+from ..contact.joint_record import DIRECTION, KINDS, PIN, RATCHET
 from ..contact.space_record import BACK, OUT, SIZE, load_tables, move, move_tables
 from ..contact.tables import (
     AWAKE,

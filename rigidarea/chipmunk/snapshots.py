@@ -11,7 +11,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi, lib
 
-from ..contact.joint import DIRECTION
+from ..contact.joint_record import DIRECTION
 from .joint_structs import kinds_of_joints
 from .structs import LayoutError, address_of, layout
 

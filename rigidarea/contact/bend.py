@@ -17,7 +17,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .joint import GROOVE, PIVOT, anchor
+from .joint_record import GROOVE, PIVOT, anchor
 from .tables import QUEUE, Tables
 
 

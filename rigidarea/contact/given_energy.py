@@ -21,7 +21,8 @@ from ..compile.jit import kernel
 from .active import island_of, list_active
 from .birth import drives
 from .constants import LOOSE, UNSOLVED_WORK
-from .joint import MOTOR, ROTARY_SPRING, SPRING, mending_speeds
+from .joint import mending_speeds
+from .joint_record import MOTOR, ROTARY_SPRING, SPRING
 from .tables import ISLANDS, LIVE, QUEUE, ROWS, Law, Tables
 
 #: Why an island is solved again (`Tables.islands.again`).

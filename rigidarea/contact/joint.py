@@ -7,8 +7,8 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 |---|---|---|---|
 | pivot | (1, 0) | free | free |
 | groove | the groove's normal | free | one sign, at the groove's ends |
-| pin (of no length: pivot) | A's anchor to B's | free | |
-| slide | the same | one sign, at either end of its range | |
+| pin (of no length: pivot) | A's anchor to B's | free | where taut: C (v' - vt) |
+| slide | the same | one sign, at either end of its range | the same |
 | damped spring | the same | F0 + C (v' - vt) | |
 | rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
 
@@ -24,51 +24,23 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..compile.raw_memory import record
 from .active import moves
-from .constants import FOLLOWED, JOINT_GIVE
-
-PIN, SLIDE, PIVOT, GROOVE, SPRING, ROTARY_SPRING, LIMIT, RATCHET, GEAR, MOTOR = range(10)
-#: Kinds of joints.
-KINDS = 10
-#: Parameters of a joint: what its struct has after the part that all constraints share; a pin's direction among them.
-PARAMETERS, DIRECTION = 11, 9
-
-#: A joint of the space while a frame has it.
-JOINT = record(
-    [
-        ("address", "u8"),  # of Chipmunk's constraint
-        ("own_class", "u8"),  # its class, a struct of Chipmunk's of four functions
-        ("pre_solve", "u8"),  # the user's callback; 0: none
-        ("kind", "i4"),  # as which it is solved, PIN to MOTOR; -1: unknown
-        ("stored", "i4"),  # as which Chipmunk keeps it
-        ("taken", "i4"),  # 1: since that, until the report, we run it
-        ("a", "i4"),  # rows of its bodies; -1: not ours
-        ("b", "i4"),
-        ("order", "i4"),  # which joint comes here in a sweep
-        ("mine", "i4"),  # 1: of the turn that is being solved
-        ("ordered", "i4"),  # 1: its place in that is known
-        ("max_force", "f8"),
-        ("error_bias", "f8"),  # share of an error that is left after a unit of time
-        ("max_bias", "f8"),  # (length/time)
-        ("p", "f8", (PARAMETERS,)),
-        ("force", "f8"),  # of a spring, what the user's function says in this frame
-        ("asked", "i4"),  # 1: there is such a function; 2: it has been asked in this frame
-        ("jx", "f8"),  # impulse that it did last, as Chipmunk keeps it
-        ("jy", "f8"),
-        ("step", "f8"),  # in this time; 0: never
-        ("x", "f8"),  # and summed over the frame
-        ("y", "f8"),
-    ]
+from .constants import FOLLOWED, JOINT_GIVE, SWINGS_ON
+from .joint_record import (
+    GEAR,
+    GROOVE,
+    LIMIT,
+    MOTOR,
+    PIN,
+    PIVOT,
+    RATCHET,
+    ROTARY_SPRING,
+    SLIDE,
+    SPRING,
+    anchor,
+    held_by,
+    unfollowed,
 )
-
-
-@kernel(forceinline=True)
-def anchor(body: Any, x: float, y: float) -> tuple[float, float]:
-    """A point of the body's frame, from its centre of gravity, world axes (length)."""
-    x -= body.cog_x
-    y -= body.cog_y
-    return body.c * x - body.s * y, body.s * x + body.c * y
 
 
 @kernel(forceinline=True)
@@ -198,6 +170,26 @@ def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
     return float(JOINT_GIVE + part * part)
 
 
+@kernel(forceinline=True)
+def _give_across(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
+    """By which part a taut rod gives way across itself: a short one turns farther in a step than its row knows.
+
+    As of a spring, the force at the step's end where the step does not follow: the shorter, the more it is a pivot.
+    Less what it swings on by (SWINGS_ON): a slow swing would be damped with the fast one.
+    """
+    _, _, stiffness = held_by(joint, a, b)
+    phase2 = stiffness * row.w22 * h * h
+    part = unfollowed(phase2, 1.0) * phase2
+    if part == 0.0:
+        return 0.0
+    row.low_t = -math.inf
+    row.high_t = math.inf
+    vx, vy = a.vx - a.kick_x - b.vx + b.kick_x, a.vy - a.kick_y - b.vy + b.kick_y
+    slip = vy * row.nx - vx * row.ny + (a.w - a.kick_w) * row.lean_a - (b.w - b.kick_w) * row.lean_b
+    row.ft = -SWINGS_ON * slip * part / row.w22
+    return 1.0 / part
+
+
 @kernel
 def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float) -> bool:
     """The row of a joint where its bodies are; False: it can do nothing. `a`, `b`: its bodies, the kick already given.
@@ -268,22 +260,23 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float) -> bool:
     if row.w11 <= 0.0:
         return False
     row.weight = row.w11
-    give = JOINT_GIVE if kind == MOTOR else _give(row, joint, a, b, h)
     row.f1 = 0.0
     row.f2 = 0.0
     row.ft = 0.0
+    give = JOINT_GIVE if kind == MOTOR else _give(row, joint, a, b, h)
     row.alpha = give / (1.0 + give)
     row.gamma = row.alpha / (give * row.w11)
     row.own = 1.0
     row.other = 0.0
     row.alpha_t = 0.0
     row.gamma_t = 1.0
+    give_t = _give_across(row, joint, a, b, h) if kind == PIN or kind == SLIDE else give
     row.grips = row.low_t < row.high_t and row.w22 > 0.0
     if row.grips:
-        row.alpha_t = row.alpha
-        row.gamma_t = row.alpha / (give * row.w22)
+        row.alpha_t = give_t / (1.0 + give_t)
+        row.gamma_t = row.alpha_t / (give_t * row.w22)
         row.w11 *= 1.0 + give
-        row.w22 *= 1.0 + give
+        row.w22 *= 1.0 + give_t
         row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     if kind == SPRING or kind == ROTARY_SPRING:
         _load_spring(row, joint, a, b, h)
@@ -328,12 +321,6 @@ def settle_joint(joint: Any, row: Any, h: float) -> None:
 
 
 @kernel(forceinline=True)
-def _unfollowed(phase2: float, most: float) -> float:
-    """The part of a stiffness that steps do not follow: those do where (w h)^2 is `most` or less."""
-    return 0.0 if phase2 <= most else 1.0 - (most / phase2) ** 2
-
-
-@kernel(forceinline=True)
 def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     """A spring's force where it is now, its damping, and its stiffness as far as the step does not follow it.
 
@@ -356,8 +343,8 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     force = min(joint.max_force, max(-joint.max_force, force))
     w = row.weight
     phase2 = stiffness * w * h * h
-    kept = 0.25 * phase2 * _unfollowed(phase2, FOLLOWED)
-    q = math.expm1(min(700.0, damping * h * w)) + _unfollowed(phase2, 1.0) * phase2 + kept
+    kept = 0.25 * phase2 * unfollowed(phase2, FOLLOWED)
+    q = math.expm1(min(700.0, damping * h * w)) + unfollowed(phase2, 1.0) * phase2 + kept
     if kept > 0.0:
         ux = a.vx - a.kick_x - b.vx + b.kick_x
         uy = a.vy - a.kick_y - b.vy + b.kick_y
@@ -390,7 +377,7 @@ def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
         l1, _ = clamp_joint(row, row.l1 + r1, 0.0)
         return l1 - row.l1, 0.0
     r1 = v - row.t1 - row.alpha / row.gamma * row.l1
-    rt = slip - row.tt - row.alpha_t / row.gamma_t * row.lt
+    rt = slip - row.tt + row.alpha_t / row.gamma_t * (row.ft - row.lt)
     lt = row.lt + (row.w11 * rt - row.w12 * r1) * row.det
     within = min(row.high_t, max(row.low_t, lt))
     l1 = row.l1 + (row.w22 * r1 - row.w12 * rt) * row.det

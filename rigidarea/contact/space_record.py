@@ -18,7 +18,7 @@ from ..geometry.place import Pose, overlap_of_outlines
 from ..geometry.pool import HEAD, Pool
 from .active import ISLAND, QUEUED
 from .dtypes import BODY, NEIGHBOURS, PAIR, REGION, ROW, SHAPE
-from .joint import JOINT
+from .joint_record import JOINT
 from .preconditioner import FACTOR, MOBILITY
 from .tables import (
     APART,

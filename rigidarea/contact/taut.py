@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .constants import FOLLOWED
-from .joint import PIVOT, anchor
+from .constants import FOLLOWED, SWINGS_ON
+from .joint_record import PIVOT, anchor, held_by, unfollowed
 from .tables import JOINTS, LIVE, Tables
 
 
@@ -15,26 +15,32 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
     joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
     doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
-    damping. Only as far as the step is too long to follow it, as of a contact (`row`).
+    damping. What goes through more than a radian in a step takes the force at its end, and keeps SWINGS_ON of its
+    swing: else what a blow has left shook a light chain until it parted. Only as far as no step follows it.
     """
     for k in range(tables.counters[LIVE]):
         tables.bodies[tables.live[k]].tension = 0.0
     for k in range(tables.counters[JOINTS]):
         joint = tables.joints[k]
-        if joint.mine and joint.step > 0.0 and joint.kind == PIVOT:
+        if joint.mine and 0 <= joint.kind <= PIVOT:
             a = tables.bodies[joint.a]
             b = tables.bodies[joint.b]
+            fx, fy, _ = held_by(joint, a, b)
             ax, ay = anchor(a, joint.p[0], joint.p[1])
             bx, by = anchor(b, joint.p[2], joint.p[3])
-            a.tension -= (ax * joint.jx + ay * joint.jy) / joint.step
-            b.tension += (bx * joint.jx + by * joint.jy) / joint.step
+            a.tension -= ax * fx + ay * fy
+            b.tension += bx * fx + by * fy
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.own_inverse_moment = body.inverse_moment
         if body.calm < 0 and body.inverse_moment > 0.0:
             phase2 = h * h * body.tension * body.inverse_moment
             if phase2 > FOLLOWED:
-                body.inverse_moment /= 1.0 + 0.25 * phase2 * (1.0 - (FOLLOWED / phase2) ** 2)
+                fast = phase2 * unfollowed(phase2, 1.0)
+                more = 0.25 * phase2 * unfollowed(phase2, FOLLOWED) + fast
+                body.inverse_moment /= 1.0 + more
+                body.w -= (1.0 - SWINGS_ON) * fast / (1.0 + more) * (body.w - body.kick_w)
+                body.came_w = body.w
 
 
 @kernel

@@ -86,7 +86,7 @@ def test_one_joint_does_what_pymunks_own_does(kind):
 
 
 def gap(joint: pymunk.Constraint) -> float:
-    """How far apart a pivot's two anchors are."""
+    """How far apart a joint's two anchors are."""
     return (joint.a.local_to_world(joint.anchor_a) - joint.b.local_to_world(joint.anchor_b)).length
 
 
@@ -186,7 +186,7 @@ def test_fewer_light_chains_part_than_by_pymunks_own(free):
     for bound in (5, 20, 100, 1000):
         found, there = (sum(parted > bound for parted in all_parted) for all_parted in (ours, theirs))
         print(f"of 60 part by more than {bound} px {found}, by pymunk's own response {there}")
-        assert found <= there
+        assert found <= 0.7 * there
 
 
 @pytest.mark.parametrize("held", ["pivot", "weld"])
@@ -264,6 +264,81 @@ def test_a_hand_drags_as_by_pymunks_own(jump, force, share):
         frames_to_the_hand(jump, force, (1 - share) ** 60, attached) for attached in (True, False)
     )
     assert abs(ours - theirs) <= 1 + 0.1 * theirs
+
+
+def pendulum(links: int, length: float, mass: float) -> pymunk.Space:
+    """Small discs on a string of rods, the last one heavy, 0.4 rad from upright."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    before = space.static_body
+    for i in range(links):
+        own = mass if i == links - 1 else 1.0
+        body = pymunk.Body(own, pymunk.moment_for_circle(own, 0, 3))
+        body.position = math.sin(0.4) * length * (i + 1), -math.cos(0.4) * length * (i + 1)
+        space.add(body, pymunk.PinJoint(before, body))
+        before = body
+    return space
+
+
+@pytest.mark.parametrize(
+    "links, length, mass", [(8, 20, 30), (8, 20, 100), (20, 5, 30), (20, 5, 100), (4, 25, 300), (20, 20, 300)]
+)
+def test_a_heavy_weight_swings_on_light_rods(links, length, mass):
+    """Twelve seconds: its rods keep their lengths (8 to 44 px off before; pymunk's 0.4 to 62), it keeps its swing.
+
+    At most a tenth of that is lost, where a rod under that load swings by itself at more than a radian a substep.
+    """
+    space = pendulum(links, length, mass)
+    weight = list(space.bodies)[-1]
+    ra.attach(space)
+    reached, off = [], 0.0
+    for _ in range(720):
+        space.step(DT)
+        reached.append(abs(weight.position.x))
+        off = max(off, *(abs(gap(joint) - length) for joint in space.constraints))
+    assert off < 0.05
+    assert 0.9 < max(reached[-180:]) / (math.sin(0.4) * length * links) < 1.01
+
+
+@pytest.mark.parametrize("kind", ["pin", "slide"])
+@pytest.mark.parametrize("length", [0.1, 1.0, 3.0, 10.0])
+def test_short_rods_hold_a_weight(length, kind):
+    """Links of 20 px, three to twelve of them aslant, by rods or slides between their ends, over 1 to 30 times a link.
+
+    Of sixteen no joint is off by more than half a link, twelve hold to 0.2 px (before, and by pymunk's own
+    response, half of them were off by more than 15, up to 370 px).
+    """
+    furthest = []
+    for seed in range(16):
+        draw = random.Random(seed)
+        links, mass = draw.randint(3, 12), 10 ** draw.uniform(0, 1.5)
+        way = pymunk.Vec2d(0, -1).rotated(draw.uniform(-1.2, 1.2))
+        space = pymunk.Space()
+        space.gravity = 0, -900
+        before, at, end, joints = space.static_body, pymunk.Vec2d(0, 0), (0.0, 0.0), []
+        for _ in range(links):
+            at += length * way
+            link = pymunk.Body(1, pymunk.moment_for_segment(1, (-10, 0), (10, 0), 2))
+            link.position, link.angle = at + 10 * way, way.angle
+            joint: pymunk.Constraint = pymunk.PinJoint(before, link, end, (-10, 0))
+            if kind == "slide":
+                joint = pymunk.SlideJoint(before, link, end, (-10, 0), 0, length)
+            space.add(link, joint)
+            joints.append(joint)
+            before, at, end = link, at + 20 * way, (10.0, 0.0)
+        weight = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, 15))
+        weight.position = at
+        space.add(weight, pymunk.PivotJoint(before, weight, at))
+        ra.attach(space)
+        off = 0.0
+        for _ in range(300):
+            space.step(DT)
+            for joint in joints:
+                stretched = gap(joint) - length
+                off = max(off, stretched if kind == "slide" else abs(stretched))
+        furthest.append(off)
+    assert max(furthest) < 10
+    assert sorted(furthest)[11] < 0.2
 
 
 def rope(joint: str, seed: int) -> pymunk.Space:
