@@ -72,8 +72,8 @@ DEEPER = 20.0
 JOINT_GIVE = 1e-5
 #: Of its anchors' distances, the part that is no length of a pin: it is made of positions that are rounded.
 NO_LENGTH = 1e-9
-#: What goes through more than a radian in a step between taut joints keeps this part of its swing: it is gone in half a
-#: second, and a slow swing of the whole, which has a small part of it, in minutes.
+#: A taut rod that swings by more than a radian in a step keeps this part of its swing: it is gone in half a second, and
+#: a slow swing of the whole, of which that is a small part, in minutes.
 SWINGS_ON = 0.9
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10

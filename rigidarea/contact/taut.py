@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..compile.jit import kernel
-from .constants import FOLLOWED, SWINGS_ON
+from .constants import FOLLOWED
 from .joint_record import PIVOT, anchor, held_by, unfollowed
 from .tables import JOINTS, LIVE, Tables
 
@@ -15,8 +15,9 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
     joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
     doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
-    damping. What goes through more than a radian in a step takes the force at its end, and keeps SWINGS_ON of its
-    swing: else what a blow has left shook a light chain until it parted. Only as far as no step follows it.
+    damping. What goes through more than a radian in a step takes the force at its end, and comes to rest: each joint
+    takes half of how its bodies turn against each other, a link's two the whole. (Else what a blow has left shook a
+    light chain until it parted; a whirl of the whole is not damped.) Only as far as no step follows it.
     """
     for k in range(tables.counters[LIVE]):
         tables.bodies[tables.live[k]].tension = 0.0
@@ -33,14 +34,28 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.own_inverse_moment = body.inverse_moment
+        part = 0.0
         if body.calm < 0 and body.inverse_moment > 0.0:
             phase2 = h * h * body.tension * body.inverse_moment
             if phase2 > FOLLOWED:
                 fast = phase2 * unfollowed(phase2, 1.0)
                 more = 0.25 * phase2 * unfollowed(phase2, FOLLOWED) + fast
                 body.inverse_moment /= 1.0 + more
-                body.w -= (1.0 - SWINGS_ON) * fast / (1.0 + more) * (body.w - body.kick_w)
-                body.came_w = body.w
+                part = fast / (1.0 + more)
+        body.tension = part  # not needed any more
+    for k in range(tables.counters[JOINTS]):
+        joint = tables.joints[k]
+        if joint.mine and 0 <= joint.kind <= PIVOT:
+            a = tables.bodies[joint.a]
+            b = tables.bodies[joint.b]
+            part = max(a.tension, b.tension)
+            if part > 0.0 and a.inverse_moment > 0.0 and b.inverse_moment > 0.0:
+                turning = a.w - a.kick_w - b.w + b.kick_w
+                lost = 0.5 * part * turning / (a.own_inverse_moment + b.own_inverse_moment)
+                a.w -= lost * a.own_inverse_moment
+                b.w += lost * b.own_inverse_moment
+                a.came_w = a.w
+                b.came_w = b.w
 
 
 @kernel
