@@ -88,7 +88,8 @@ BODY = record(
         ("old_fy", "f8"),
         ("old_torque", "f8"),
         ("replaced", "i8"),  # frame before which the user has put it elsewhere, if nothing moves it; -1: none
-        ("spare", "i8"),  # of 512 bytes, one field of all bodies would lie in the same few lines of the cache
+        # (not 512 bytes: one field of all bodies would lie in the same few lines of the cache)
+        ("swayed", "f8"),  # `tension` a substep ago, then the part of its sway that is lost
     ]
 )
 

@@ -9,7 +9,7 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 | groove | the groove's normal | free | one sign, at the groove's ends |
 | pin (of no length: pivot) | A's anchor to B's | free | where taut: C (v' - vt) |
 | slide | the same | one sign, at either end of its range | the same |
-| damped spring | the same | F0 + C (v' - vt) | |
+| damped spring | the same | F0 + C (v' - vt) | the same |
 | rotary spring, limit, ratchet, gear, motor | (0, 0), a torque | as those | |
 
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
@@ -172,7 +172,7 @@ def _give(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
 
 @kernel(forceinline=True)
 def _give_across(row: Any, joint: Any, a: Any, b: Any, h: float) -> float:
-    """By which part a taut rod gives way across itself: a short one turns farther in a step than its row knows.
+    """By which part a taut rod or spring gives way across itself: a short one turns farther than its row knows.
 
     As of a spring, the force at the step's end where the step does not follow: the shorter, the more it is a pivot.
     Less what it swings on by (SWINGS_ON): a slow swing would be damped with the fast one.
@@ -270,19 +270,21 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float) -> bool:
     row.other = 0.0
     row.alpha_t = 0.0
     row.gamma_t = 1.0
-    give_t = _give_across(row, joint, a, b, h) if kind == PIN or kind == SLIDE else give
+    along = kind == PIN or kind == SLIDE or kind == SPRING
+    give_t = _give_across(row, joint, a, b, h) if along else give
     row.grips = row.low_t < row.high_t and row.w22 > 0.0
-    if row.grips:
-        row.alpha_t = give_t / (1.0 + give_t)
-        row.gamma_t = row.alpha_t / (give_t * row.w22)
-        row.w11 *= 1.0 + give
-        row.w22 *= 1.0 + give_t
-        row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     if kind == SPRING or kind == ROTARY_SPRING:
         _load_spring(row, joint, a, b, h)
+        row.grips = row.grips and row.gamma > 0.0  # 0: the step follows it, its force is given
     elif joint.step > 0.0:
         scale = h / joint.step
         row.l1, row.lt = clamp_joint(row, scale * _along(row, joint), scale * _across(row, joint))
+    if row.grips:
+        row.alpha_t = give_t / (1.0 + give_t)
+        row.gamma_t = row.alpha_t / (give_t * row.w22)
+        row.w11 = row.w11 * (1.0 + give) if kind != SPRING else row.w11 + row.alpha / row.gamma
+        row.w22 *= 1.0 + give_t
+        row.det = 1.0 / (row.w11 * row.w22 - row.w12 * row.w12)
     row.l2 = 0.0
     return True
 
@@ -376,7 +378,7 @@ def solve_joint(row: Any, v: float, slip: float) -> tuple[float, float]:
     if not row.grips:  # alpha + gamma W = 1
         l1, _ = clamp_joint(row, row.l1 + r1, 0.0)
         return l1 - row.l1, 0.0
-    r1 = v - row.t1 - row.alpha / row.gamma * row.l1
+    r1 = v - row.t1 + row.alpha / row.gamma * (row.f1 - row.l1)
     rt = slip - row.tt + row.alpha_t / row.gamma_t * (row.ft - row.lt)
     lt = row.lt + (row.w11 * rt - row.w12 * r1) * row.det
     within = min(row.high_t, max(row.low_t, lt))

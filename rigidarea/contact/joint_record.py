@@ -53,12 +53,12 @@ def anchor(body: Any, x: float, y: float) -> tuple[float, float]:
 
 @kernel
 def held_by(joint: Any, a: Any, b: Any) -> tuple[float, float, float]:
-    """The force with which a pivot, pin or slide joint held B in its last step, world axes, and its stiffness across.
+    """The force with which a pivot, pin, slide or spring held B in its last step, world axes, and its stiffness across.
 
     What pulls at d turns with what it holds: across itself it is as stiff as its force is by length. (What pushes is
     not: it would buckle.)
     """
-    if joint.step <= 0.0 or joint.kind > PIVOT:
+    if joint.step <= 0.0 or joint.kind > SPRING or joint.kind == GROOVE:
         return 0.0, 0.0, 0.0
     if joint.kind == PIVOT:
         return joint.jx / joint.step, joint.jy / joint.step, 0.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..compile.jit import kernel
 from .constants import FOLLOWED
-from .joint_record import PIVOT, anchor, held_by, unfollowed
+from .joint_record import SPRING, anchor, held_by, unfollowed
 from .tables import JOINTS, LIVE, Tables
 
 
@@ -20,10 +20,12 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     light chain until it parted; a whirl of the whole is not damped.) Only as far as no step follows it.
     """
     for k in range(tables.counters[LIVE]):
-        tables.bodies[tables.live[k]].tension = 0.0
+        body = tables.bodies[tables.live[k]]
+        body.swayed = body.tension
+        body.tension = 0.0
     for k in range(tables.counters[JOINTS]):
         joint = tables.joints[k]
-        if joint.mine and 0 <= joint.kind <= PIVOT:
+        if joint.mine and 0 <= joint.kind <= SPRING:
             a = tables.bodies[joint.a]
             b = tables.bodies[joint.b]
             fx, fy, _ = held_by(joint, a, b)
@@ -34,21 +36,22 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.own_inverse_moment = body.inverse_moment
-        part = 0.0
+        lasting = min(body.tension, body.swayed)  # a blow's is none
+        body.swayed = 0.0
         if body.calm < 0 and body.inverse_moment > 0.0:
             phase2 = h * h * body.tension * body.inverse_moment
             if phase2 > FOLLOWED:
-                fast = phase2 * unfollowed(phase2, 1.0)
+                lasting *= h * h * body.inverse_moment
+                fast = lasting * unfollowed(lasting, 1.0)
                 more = 0.25 * phase2 * unfollowed(phase2, FOLLOWED) + fast
                 body.inverse_moment /= 1.0 + more
-                part = fast / (1.0 + more)
-        body.tension = part  # not needed any more
+                body.swayed = fast / (1.0 + more)
     for k in range(tables.counters[JOINTS]):
         joint = tables.joints[k]
-        if joint.mine and 0 <= joint.kind <= PIVOT:
+        if joint.mine and 0 <= joint.kind <= SPRING:
             a = tables.bodies[joint.a]
             b = tables.bodies[joint.b]
-            part = max(a.tension, b.tension)
+            part = max(a.swayed, b.swayed)
             if part > 0.0 and a.inverse_moment > 0.0 and b.inverse_moment > 0.0:
                 turning = a.w - a.kick_w - b.w + b.kick_w
                 lost = 0.5 * part * turning / (a.own_inverse_moment + b.own_inverse_moment)
