@@ -343,7 +343,7 @@ def test_short_rods_hold_a_weight(length, kind):
 
 @pytest.mark.parametrize("length", [1.0, 3.0, 10.0])
 def test_short_stiff_springs_hold_a_weight(length):
-    """The same chains with springs of 1e4 to 1e6: stretched by what they bear, and two pixels at the most (measured: 1.2).
+    """The same chains with springs of 1e4 to 1e6: stretched by what they bear, and 2 px at the most (1.2).
 
     (Before 200 to 270 px, with up to 7,000 times their energy; by pymunk's own response 12 of 16 are lost.)
     """
