@@ -43,7 +43,7 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 3,000 at most 15: measured 8. By pymunk's own response one in seven or more, the other way round: 450.
+    """Of 3,000 at most 15: measured 6. By pymunk's own response one in seven or more, the other way round: 442.
 
     (75 while joints that nearly contradict each other were all held, 20 while those that do gave what it took. What is
     left: paddles and platforms that wedge bodies in corners.)
