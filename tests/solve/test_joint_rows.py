@@ -3,6 +3,8 @@
 import math
 import pickle
 import random
+from collections.abc import Callable
+from typing import Any
 
 import pymunk
 import pytest
@@ -300,35 +302,44 @@ def test_a_heavy_weight_swings_on_light_rods(links, length, mass):
     assert 0.9 < max(reached[-180:]) / (math.sin(0.4) * length * links) < 1.01
 
 
+def string(
+    links: int, mass: float, way: pymunk.Vec2d, length: float, held: Callable[..., pymunk.Constraint]
+) -> tuple[pymunk.Space, list[pymunk.Constraint]]:
+    """Links of 20 px along `way`, `length` apart from end to end, over a weight; what holds them, made by `held`."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    before, at, end, joints = space.static_body, pymunk.Vec2d(0, 0), (0.0, 0.0), []
+    for _ in range(links):
+        at += length * way
+        link = pymunk.Body(1, pymunk.moment_for_segment(1, (-10, 0), (10, 0), 2))
+        link.position, link.angle = at + 10 * way, way.angle
+        joints.append(held(before, link, end, (-10, 0)))
+        space.add(link, joints[-1])
+        before, at, end = link, at + 20 * way, (10.0, 0.0)
+    weight = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, 15))
+    weight.position = at
+    space.add(weight, pymunk.PivotJoint(before, weight, at))
+    return space, joints
+
+
 @pytest.mark.parametrize("kind", ["pin", "slide"])
 @pytest.mark.parametrize("length", [0.1, 1.0, 3.0, 10.0])
 def test_short_rods_hold_a_weight(length, kind):
-    """Links of 20 px, three to twelve of them aslant, by rods or slides between their ends, over 1 to 30 times a link.
+    """Three to twelve links aslant, by rods or slides between their ends, over 1 to 30 times a link.
 
     Of sixteen no joint is off by more than half a link, twelve hold to 0.2 px (before, and by pymunk's own
     response, half of them were off by more than 15, up to 370 px).
     """
+
+    def held(*ends: Any) -> pymunk.Constraint:
+        return pymunk.PinJoint(*ends) if kind == "pin" else pymunk.SlideJoint(*ends, 0, length)
+
     furthest = []
     for seed in range(16):
         draw = random.Random(seed)
         links, mass = draw.randint(3, 12), 10 ** draw.uniform(0, 1.5)
         way = pymunk.Vec2d(0, -1).rotated(draw.uniform(-1.2, 1.2))
-        space = pymunk.Space()
-        space.gravity = 0, -900
-        before, at, end, joints = space.static_body, pymunk.Vec2d(0, 0), (0.0, 0.0), []
-        for _ in range(links):
-            at += length * way
-            link = pymunk.Body(1, pymunk.moment_for_segment(1, (-10, 0), (10, 0), 2))
-            link.position, link.angle = at + 10 * way, way.angle
-            joint: pymunk.Constraint = pymunk.PinJoint(before, link, end, (-10, 0))
-            if kind == "slide":
-                joint = pymunk.SlideJoint(before, link, end, (-10, 0), 0, length)
-            space.add(link, joint)
-            joints.append(joint)
-            before, at, end = link, at + 20 * way, (10.0, 0.0)
-        weight = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, 15))
-        weight.position = at
-        space.add(weight, pymunk.PivotJoint(before, weight, at))
+        space, joints = string(links, mass, way, length, held)
         ra.attach(space)
         off = 0.0
         for _ in range(300):
@@ -350,27 +361,17 @@ def test_short_stiff_springs_hold_a_weight(length):
     for seed in range(16):
         draw = random.Random(seed)
         links, mass = draw.randint(3, 12), 10 ** draw.uniform(0, 1.5)
-        stiffness, damping = 10 ** draw.uniform(4, 6), 10 ** draw.uniform(0, 2)
+        spring = length, 10 ** draw.uniform(4, 6), 10 ** draw.uniform(0, 2)
         way = pymunk.Vec2d(0, -1).rotated(draw.uniform(-1.2, 1.2))
-        space = pymunk.Space()
-        space.gravity = 0, -900
-        before, at, end, springs = space.static_body, pymunk.Vec2d(0, 0), (0.0, 0.0), []
-        for _ in range(links):
-            at += length * way
-            link = pymunk.Body(1, pymunk.moment_for_segment(1, (-10, 0), (10, 0), 2))
-            link.position, link.angle = at + 10 * way, way.angle
-            springs.append(pymunk.DampedSpring(before, link, end, (-10, 0), length, stiffness, damping))
-            space.add(link, springs[-1])
-            before, at, end = link, at + 20 * way, (10.0, 0.0)
-        weight = pymunk.Body(mass, pymunk.moment_for_circle(mass, 0, 15))
-        weight.position = at
-        space.add(weight, pymunk.PivotJoint(before, weight, at))
+        space, springs = string(
+            links, mass, way, length, lambda *ends, spring=spring: pymunk.DampedSpring(*ends, *spring)
+        )
         ra.attach(space)
         # at the lowest point of the swing three times the weight, twice that for the jerk with which it begins
-        most = 6 * 900 * (mass + links) / stiffness
+        most = 6 * 900 * (mass + links) / spring[1]
         for _ in range(300):
             space.step(DT)
-            assert max(gap(spring) for spring in springs) - length < most + 2.0
+            assert max(map(gap, springs)) - length < most + 2.0
 
 
 def rope(joint: str, seed: int) -> pymunk.Space:
