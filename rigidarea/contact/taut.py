@@ -17,7 +17,8 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
     damping. What goes through more than a radian in a step takes the force at its end, and comes to rest: each joint
     takes half of how its bodies turn against each other, a link's two the whole. (Else what a blow has left shook a
-    light chain until it parted; a whirl of the whole is not damped.) Only as far as no step follows it.
+    light chain until it parted; a whirl of the whole is not damped.) Only what lasts two substeps, for a blow is over,
+    and only as far as no step follows it.
     """
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
@@ -36,16 +37,13 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
         body.own_inverse_moment = body.inverse_moment
-        lasting = min(body.tension, body.swayed)  # a blow's is none
+        phase2 = h * h * min(body.tension, body.swayed) * body.inverse_moment
         body.swayed = 0.0
-        if body.calm < 0 and body.inverse_moment > 0.0:
-            phase2 = h * h * body.tension * body.inverse_moment
-            if phase2 > FOLLOWED:
-                lasting *= h * h * body.inverse_moment
-                fast = lasting * unfollowed(lasting, 1.0)
-                more = 0.25 * phase2 * unfollowed(phase2, FOLLOWED) + fast
-                body.inverse_moment /= 1.0 + more
-                body.swayed = fast / (1.0 + more)
+        if body.calm < 0 and body.inverse_moment > 0.0 and phase2 > FOLLOWED:
+            fast = phase2 * unfollowed(phase2, 1.0)
+            more = 0.25 * phase2 * unfollowed(phase2, FOLLOWED) + fast
+            body.inverse_moment /= 1.0 + more
+            body.swayed = fast / (1.0 + more)
     for k in range(tables.counters[JOINTS]):
         joint = tables.joints[k]
         if joint.mine and 0 <= joint.kind <= SPRING:
