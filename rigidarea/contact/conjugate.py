@@ -9,9 +9,10 @@ Systems, 10.3).
 In a pile, where supports are shared, it is the preconditioner of conjugate gradients (Hestenes & Stiefel, J Res NBS 49
 (1952), doi:10.6028/jres.049.044).
 
-The system is that of the rows that bear: a face on both ends, a point that presses, friction that grips. An end that
-the step would pull on is let go, and the search begins anew; what ought to press again is found by the sweeps before
-and after. Each island (`active`) is searched by itself, all of them side by side: a step's length is the island's.
+The system is that of the rows that bear: a face on both ends (with joints, where a search is more than a step or two,
+also on one), a point that presses, friction that grips. An end that the step would pull on is let go, and the search
+begins anew; what ought to press again is found by the sweeps before and after. Each island (`active`) is searched by
+itself, all of them side by side: a step's length is the island's.
 """
 
 from __future__ import annotations
@@ -338,7 +339,7 @@ def conjugate_gradients(tables: Tables, steps: int, jointed: bool) -> None:
     for k in range(tables.counters[ACTIVE]):
         active_island(tables, k).before = 0.0
     for _ in range(steps):
-        take_part(tables)
+        take_part(tables, jointed)
         if not _descend(tables, SETTLED if jointed else 0.0):
             return
         _go(tables)

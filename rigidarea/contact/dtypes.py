@@ -316,6 +316,7 @@ ROW = record(
         ("low_t", "f8"),
         ("high_t", "f8"),
         ("grips", "i4"),  # 1: lt is an unknown
+        ("swapped", "i4"),  # 1: its second end is called its first
         ("bend1", "f8"),  # what `bend` has added to t1 and tt
         ("bend_t", "f8"),
         # not of the sweeps:

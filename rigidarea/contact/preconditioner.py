@@ -141,8 +141,21 @@ def _take(
 
 
 @kernel
-def _bears(row: Any, f: Any) -> bool:
-    """Which unknowns of a row take part, and their compliance."""
+def _swap_ends(row: Any) -> None:
+    """Call the row's second end its first."""
+    row.swapped = 1 - row.swapped
+    row.e1, row.e2 = row.e2, row.e1
+    row.f1, row.f2 = row.f2, row.f1
+    row.t1, row.t2 = row.t2, row.t1
+    row.l1, row.l2 = row.l2, row.l1
+    row.w11, row.w22 = row.w22, row.w11
+    row.slip1, row.slip2 = row.slip2, row.slip1
+    row.was1, row.was2 = row.was2, row.was1
+
+
+@kernel
+def _bears(row: Any, f: Any, jointed: bool) -> bool:
+    """Which unknowns of a row take part, and their compliance; jointed: a face on one end too."""
     most = row.friction * (row.l1 + row.l2) + row.most
     given = row.gamma == 0.0  # an impact that the steps follow: its force is given
     f.first = not given and row.l1 > 0.0
@@ -152,8 +165,10 @@ def _bears(row: Any, f: Any) -> bool:
         free = row.l1 * row.l1 + row.lt * row.lt < limit * limit
         f.first = not given and free and row.low < row.l1 < row.high
         f.grip = row.grips and free and row.low_t < row.lt < row.high_t
-    elif row.ends == 2 and not (f.first and f.second):  # which end of a face opens, the sweeps find
-        f.first = 0
+    elif row.ends == 2 and f.second != f.first:
+        f.first = jointed  # without joints, the sweeps find which end of a face opens
+        if jointed and f.second:
+            _swap_ends(row)
         f.second = 0
     if row.ends > 0:
         f.grip = abs(row.lt) < (1.0 - AT_ITS_BOUND) * most
@@ -202,8 +217,11 @@ def _invert(
 
 
 @kernel
-def take_part(tables: Tables) -> None:
-    """Which rows of islands that begin anew bear, and what each finds its bodies like, and leaves them."""
+def take_part(tables: Tables, jointed: bool) -> None:
+    """Which rows of islands that begin anew bear, and what each finds its bodies like, and leaves them.
+
+    jointed: faces that bear on one end among them.
+    """
     _free(tables)
     for k in range(tables.counters[QUEUE]):
         if not begins_anew(tables.islands[tables.queue[k].island]):
@@ -211,7 +229,7 @@ def take_part(tables: Tables) -> None:
         i = tables.queue[k].row
         row = tables.rows[i]
         f = tables.factors[i]
-        if not _bears(row, f):
+        if not _bears(row, f, jointed):
             continue
         ma = tables.mobility[row.a]
         mb = tables.mobility[row.b]

@@ -179,6 +179,7 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
                 row.nx = r.nx
                 row.ny = r.ny
     row.began = row.l1 + row.l2
+    row.swapped = 0
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib
@@ -363,8 +364,8 @@ def settle(row: Any, r: Any, law: Law, pair: Any, a: Any, b: Any, h: float, last
     ahead = (
         0.0 if flying or normal <= 0.0 else max(0.0, 1.0 - OVERTAKE * max(0.0, row.began - normal) / normal)
     )
-    r.l1 = ahead * row.l1
-    r.l2 = ahead * row.l2
+    r.l1 = ahead * (row.l2 if row.swapped else row.l1)
+    r.l2 = ahead * (row.l1 if row.swapped else row.l2)
     r.lt = ahead * row.lt
     r.step = h
     r.force = normal / h
