@@ -37,6 +37,7 @@ ISLAND = record(
         ("moment", "f8"),
         ("mending", "f8"),  # speeds at which its joints mend errors, summed (length/time)
         ("turning", "f8"),  # and rotary ones (1/time)
+        ("lifted", "f8"),  # what they do against what they bore, as they mend (energy)
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)

@@ -296,7 +296,8 @@ ROW = record(
         (
             "held",
             "f8",
-        ),  # no less than its spring holds, and could give back: what is linear in depth half (energy)
+        ),  # no less than its spring holds, and could give back: what is linear in depth half; what a joint does as it
+        # mends an error, against what it bore before (energy)
         ("m1", "f8"),  # of one end: what an impulse there adds to its speed, its friction gripping, inverse
         # of two ends:
         ("e1", "f8"),

@@ -9,7 +9,8 @@ joints do counts as well, through which a contact may give what it does not itse
 
 Joints give energy as they mend errors of place, without bound where two contradict each other on one body: its island
 may have as much of it as if every body went at all their speeds together, ½ M T^2 + ½ I R^2 (M, I: its mass and moment;
-T, R: the sums of its joints' mending speeds). What gives more is mixed with a solve that mends nothing.
+T, R: the sums of its joints' mending speeds), and as it takes to mend against the load that they bore before: a hanging
+bridge is lifted. What gives more is mixed with a solve that mends nothing.
 """
 
 from __future__ import annotations
@@ -77,6 +78,7 @@ def _note_held(tables: Tables) -> None:
         tables.islands[k].moment = 0.0
         tables.islands[k].mending = 0.0
         tables.islands[k].turning = 0.0
+        tables.islands[k].lifted = 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         island = tables.islands[island_of(tables, row)]
@@ -86,6 +88,7 @@ def _note_held(tables: Tables) -> None:
                 island.mending += math.sqrt(t1 * t1 + tt * tt)
             else:
                 island.turning += abs(t1)
+            island.lifted += row.held
         elif row.ends > 0:
             island.held += 0.5 * (1.0 - row.theta) * row.held
             island.product += 0.5 * row.theta * row.held
@@ -106,7 +109,7 @@ def _note_held(tables: Tables) -> None:
         island.held += min(island.product, LOOSE * island.energy)
         island.product = 0.0
         island.mending *= island.mass * island.mending
-        island.mending += island.moment * island.turning * island.turning
+        island.mending += island.moment * island.turning * island.turning + 2.0 * island.lifted
 
 
 @kernel

@@ -15,7 +15,8 @@ together within a disc of radius `most` (max_force). What Chipmunk's own functio
 `vt` is Chipmunk's bias velocity: of the error of place, the part 1 - error_bias^h is to go within h, no faster than
 max_bias. Joints that cannot all be held share what is asked of them (`_give`). A limit ahead is a speculative row: it
 may close by what is left of it, over h. A spring's damping is exact for the pair alone, exp(-c h W) of its speed, as
-Chipmunk's; its stiffness is taken midway where the step hardly follows it, at the step's end where it cannot.
+Chipmunk's, and c times its speed where others load it; its stiffness is taken midway where the step hardly follows it,
+at the step's end where it cannot.
 """
 
 from __future__ import annotations
@@ -279,6 +280,8 @@ def make_joint_row(row: Any, joint: Any, a: Any, b: Any, h: float) -> bool:
     elif joint.step > 0.0:
         scale = h / joint.step
         row.l1, row.lt = clamp_joint(row, scale * _along(row, joint), scale * _across(row, joint))
+    t1, tt = mending_speeds(row)
+    row.held = max(0.0, -(row.l1 * t1 + row.lt * tt)) if kind != MOTOR else 0.0
     if row.grips:
         row.alpha_t = give_t / (1.0 + give_t)
         row.gamma_t = row.alpha_t / (give_t * row.w22)
@@ -330,6 +333,10 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     oscillation's amplitude whatever its frequency (Newmark's constant acceleration, J Eng Mech Div 85 (1959)): it is
     l = f1 + q (v - v0) / W, v0 the speed before kicks. What goes through more than a radian in a step is not seen to
     oscillate, and comes to rest: the force at the step's end.
+
+    Its damper does c h of the speed, of v and v0 in the proportion by which the pair alone keeps exp(-c h W) of it
+    (exponential fitting: W. Liniger & R. A. Willoughby, SIAM J. Numer. Anal. 7 (1970), doi:10.1137/0707002): between
+    the trapezoidal rule and the speed at the step's end.
     """
     if joint.kind == SPRING:
         stiffness = joint.p[5]
@@ -346,13 +353,16 @@ def _load_spring(row: Any, joint: Any, a: Any, b: Any, h: float) -> None:
     w = row.weight
     phase2 = stiffness * w * h * h
     kept = 0.25 * phase2 * unfollowed(phase2, FOLLOWED)
-    q = math.expm1(min(700.0, damping * h * w)) + unfollowed(phase2, 1.0) * phase2 + kept
-    if kept > 0.0:
+    damped = damping * h * w
+    at_end = damped / -math.expm1(-damped) - 1.0 if damped > 0.0 else 0.0
+    q = at_end + unfollowed(phase2, 1.0) * phase2 + kept
+    before = kept - (damped - at_end)  # by how much of the speed before
+    if before != 0.0 and q > 0.0:
         ux = a.vx - a.kick_x - b.vx + b.kick_x
         uy = a.vy - a.kick_y - b.vy + b.kick_y
         wa = a.w - a.kick_w
         wb = b.w - b.kick_w
-        row.t1 = kept / q * (ux * row.nx + uy * row.ny + (wa * row.arm_a - wb * row.arm_b))
+        row.t1 = before / q * (ux * row.nx + uy * row.ny + (wa * row.arm_a - wb * row.arm_b))
     row.alpha = 1.0 / (1.0 + q)
     row.gamma = q / w * row.alpha
     row.f1 = h * force
