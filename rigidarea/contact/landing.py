@@ -13,8 +13,10 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.place import overlap_of_outlines
 from ..geometry.work import Work
-from .exposed import SAME_FACE, TwoShapes, exposed_patch
+from .constants import SMOOTH
+from .exposed import TwoShapes, exposed_patch
 from .motion import centre_of, earlier
+from .patch import longest_edges
 from .region import closing, fill, least_extent
 from .stiffness import allowed_depth
 
@@ -44,6 +46,14 @@ def _corners(work: Work, loop: Any) -> int:
         cross = ux * vy - uy * vx
         n += cross * cross > STRAIGHT * (ux * ux + uy * uy) * (vx * vx + vy * vy)
     return n
+
+
+@kernel
+def _flat(work: Work, loop: Any) -> bool:
+    """Whether a loop's two faces are one plane but for a small angle: a corner beside an edge is none that lands."""
+    ax, ay, bx, by = longest_edges(work, loop.start, loop.stop)
+    cross = ax * by - ay * bx
+    return bool(cross * cross <= SMOOTH * (ax * ax + ay * ay) * (bx * bx + by * by))
 
 
 @kernel
@@ -86,12 +96,12 @@ def find_other_end(two: TwoShapes, region: Any, h: float) -> None:
         pose = earlier(a, -then)
         other = earlier(b, -then)
         n, _ = overlap_of_outlines(two.pool, two.ia, pose, two.ib, other, two.work)
-        if n != 1:
+        if n != 1 or not _flat(two.work, two.work.loops[0]):
             return
         down = _corners(two.work, two.work.loops[0]) > 3  # a triangle ends in nothing
         patch = exposed_patch(two, 0, pose, other)
         along = patch.nx * region.nx + patch.ny * region.ny
-        if patch.blind or patch.straight < 0.5 * patch.chord or along < SAME_FACE:
+        if patch.blind or patch.straight < 0.5 * patch.chord or along <= 0.0:
             return
         ax, ay = centre_of(a, pose)
         bx, by = centre_of(b, other)

@@ -42,13 +42,8 @@ def reach_along(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: fl
 
 
 @kernel
-def _depth(work: Work, start: int, stop: int, arcs: bool, reach: float) -> float:
-    """How far a loop's outlines have gone into each other: its least width.
-
-    Of those along the direction (`reach`) and across its longest edges. Along the direction alone a thin long strip
-    would seem deep, its chord running from corner to opposite corner.
-    """
-    least = reach
+def longest_edges(work: Work, start: int, stop: int) -> tuple[float, float, float, float]:
+    """Of a loop's straight edges the longest of A and of B, from end to end, in its own frame; (0, 0): there is none."""
     longest_a = longest_b = 0.0
     ax = ay = bx = by = 0.0
     j = stop - 1
@@ -66,11 +61,23 @@ def _depth(work: Work, start: int, stop: int, arcs: bool, reach: float) -> float
             bx = dx
             by = dy
         j = i
-    if longest_a > 0.0:
-        length = math.sqrt(longest_a)
+    return ax, ay, bx, by
+
+
+@kernel
+def _depth(work: Work, start: int, stop: int, arcs: bool, reach: float) -> float:
+    """How far a loop's outlines have gone into each other: its least width.
+
+    Of those along the direction (`reach`) and across its longest edges. Along the direction alone a thin long strip
+    would seem deep, its chord running from corner to opposite corner.
+    """
+    least = reach
+    ax, ay, bx, by = longest_edges(work, start, stop)
+    length = math.sqrt(ax * ax + ay * ay)
+    if length > 0.0:
         least = min(least, reach_along(work, start, stop, arcs, -ay / length, ax / length))
-    if longest_b > 0.0:
-        length = math.sqrt(longest_b)
+    length = math.sqrt(bx * bx + by * by)
+    if length > 0.0:
         least = min(least, reach_along(work, start, stop, arcs, -by / length, bx / length))
     return least
 
