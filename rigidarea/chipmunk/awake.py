@@ -76,6 +76,9 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.left_vx = body.vx
         body.left_vy = body.vy
         notice(s, address, body)
+        body.put_x = body.x - x
+        body.put_y = body.y - y
+        body.put_a = body.angle - angle
         if not met:
             body.left_vx = body.vx
             body.left_vy = body.vy

@@ -313,6 +313,9 @@ def placed_anew(state: int, addresses: int, n: int) -> None:
         place(body)
         if body.x != x or body.y != y or body.angle != angle:
             body.replaced = s.frame + 1
+            body.put_x = body.x - x
+            body.put_y = body.y - y
+            body.put_a = body.angle - angle
         shape_at = words(address + s.body_shapes, 1)[0]
         while shape_at != 0:
             i = row_of_shape(s, shape_at)

@@ -13,7 +13,7 @@ from .constants import FOLLOWED, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SM
 from .exposed import TwoShapes, exposed_patch
 from .landing import find_other_end
 from .motion import centre_of, earlier, since_of, unseen_for
-from .region import closing, fill, inverse_mass, is_face, others_push, region_stiffness
+from .region import closing, fill, inverse_mass, is_face, others_push, put_closer, region_stiffness
 from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law
 
@@ -189,7 +189,7 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
     By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
     """
     speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0)) + abs(a.w - b.w) * r.chord
-    inside = r.depth - before - MOST_ARRIVED * h * speed
+    inside = r.depth - before - MOST_ARRIVED * h * speed - put_closer(r, a, b)
     least = min(size_of(a), size_of(b))
     if inside <= PUT_FOLLOWED * least:
         return False
@@ -206,12 +206,12 @@ def drives(law: Law, body: Any) -> bool:
 
 
 @kernel(forceinline=True)
-def crushed(law: Law, depth: float, a: Any, b: Any) -> bool:
+def crushed(law: Law, r: Any, a: Any, b: Any) -> bool:
     """Whether a kinematic body has pressed another so deep that no bed is stiff enough: it has put it there."""
     return bool(
         (drives(law, a) or drives(law, b))
         and law.stiffness == 0.0
-        and depth > PUT * min(size_of(a), size_of(b))
+        and r.depth - put_closer(r, a, b) > PUT * min(size_of(a), size_of(b))
     )
 
 

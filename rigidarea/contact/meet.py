@@ -244,7 +244,7 @@ def meet(pool: Pool, tables: Tables, work: Work, law: Law, p: int, h: float) -> 
             if region.mode == REST and region.stiffness * region.area <= 1.1 * region.force:
                 region.placed = 0  # it bears its load
             deeper = region.placed == 0 and region.depth > 2.0 * before
-            if crushed(law, region.depth, a, b) or (deeper and jumped_in(law, region, before, a, b, h)):
+            if crushed(law, region, a, b) or (deeper and jumped_in(law, region, before, a, b, h)):
                 region.placed = PLACED
             _go_on(law, pair, region, a, b, h)
     free_regions(regions, counters, old)

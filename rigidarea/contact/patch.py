@@ -43,7 +43,7 @@ def reach_along(work: Work, start: int, stop: int, arcs: bool, nx: float, ny: fl
 
 @kernel
 def longest_edges(work: Work, start: int, stop: int) -> tuple[float, float, float, float]:
-    """Of a loop's straight edges the longest of A and of B, from end to end, in its own frame; (0, 0): there is none."""
+    """Of a loop's straight edges the longest of A and of B, end to end, in its own frame; (0, 0): there is none."""
     longest_a = longest_b = 0.0
     ax = ay = bx = by = 0.0
     j = stop - 1

@@ -8,6 +8,7 @@ from ..compile.jit import kernel
 from ..geometry.extent import extent
 from ..geometry.place import Pose
 from ..geometry.work import Work
+from .constants import LOOK
 from .patch import Patch
 from .tables import LAW_AREA, Law
 
@@ -105,6 +106,22 @@ def closing(r: Any, a: Any, b: Any, full: float) -> float:
         + (a.w - full * a.kick_w) * r.arm_a
         - (b.w - full * b.kick_w) * r.arm_b
     )
+
+
+@kernel
+def put_closer(r: Any, a: Any, b: Any) -> float:
+    """How much nearer a program has put the two before this frame, of which one moves as it is told (length).
+
+    What has been put farther on than LOOK of the smaller one is no motion.
+    """
+    x = y = turn = 0.0
+    if not a.mobile:
+        x, y, turn = a.put_x, a.put_y, a.put_a * r.arm_a
+    if not b.mobile:
+        x, y, turn = x - b.put_x, y - b.put_y, turn - b.put_a * r.arm_b
+    nearer = x * r.nx + y * r.ny + turn
+    most = LOOK * least_extent(a, b)
+    return nearer if abs(x) + abs(y) + abs(turn) <= most and nearer > 0.0 else 0.0
 
 
 @kernel

@@ -33,6 +33,7 @@ from .constants import DRIVEN_SPEED, OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
 from .joint import solve_joint
 from .region import beyond, closing, growth, inverse_mass, is_face, least_extent, region_stiffness, slipping
+from .stiffness import damping_that_opens
 from .tables import BLOW, FOLLOWS, IMPACT, LAW_AREA, LIES, NEARING, PLACED, REST, SPENT, STRUCK, Law
 from .target_speeds import aim_bounce, aim_speculative, turn_along
 
@@ -89,9 +90,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     inverse = inverse_mass(r, a, b)
     inverse_t = masses + r.lean_a * r.lean_a * ia + r.lean_b * r.lean_b * ib
     row.weight = inverse
-    k = r.stiffness
-    stiffness = region_stiffness(law, k, r.chord)
-    elastic = k * r.area if law.law == LAW_AREA else k * r.area * r.chord / law.length
+    stiffness = region_stiffness(law, r.stiffness, r.chord)
+    elastic = r.stiffness * (r.area if law.law == LAW_AREA else r.area * r.chord / law.length)
     middle_speed = closing(r, a, b, 0.5)
     if r.mode == IMPACT:
         if r.born:
@@ -147,6 +147,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             c = max(c, stiffness / PUT_SPEED)
         elif r.placed == PLACED:
             c = max(c, elastic / ((DRIVEN_SPEED if driven else PUT_SPEED) * least_extent(a, b)))
+        if driven:
+            c = min(c, damping_that_opens(r, a, b, pair.least, elastic, inverse, h))
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)

@@ -9,8 +9,8 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .constants import DEEPER, LOAD_TIME, WEIGHTLESS_PHASE2
-from .region import growth, least_extent, region_stiffness
+from .constants import DEEPER, LOAD_TIME, RELEASE_STEPS, WEIGHTLESS_PHASE2
+from .region import closing, growth, least_extent, put_closer, region_stiffness
 from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
 
@@ -18,6 +18,25 @@ from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 def allowed_depth(law: Law, a: Any, b: Any) -> float:
     """How deep the two bodies may sink into each other (length): a fraction of the smaller one that can move."""
     return law.penetration * least_extent(a, b)
+
+
+@kernel
+def damping_that_opens(
+    r: Any, a: Any, b: Any, pressed: float, elastic: float, inverse: float, h: float
+) -> float:
+    """The damping with which a contact opens, within a substep, as far as a program has put its bodies into each other.
+
+    So that what is moved by its place, frame by frame, carries and pushes as if it had the velocity; what was there
+    already opens as all does. pressed: the least that presses the two together; infinity: nothing has been put, or
+    `elastic` is too little for it.
+    """
+    nearer = min(put_closer(r, a, b), r.depth)
+    if nearer <= 0.0:
+        return math.inf
+    pressed = max(pressed, (closing(r, a, b, 0.0) - closing(r, a, b, 1.0)) / (h * inverse))
+    opens = nearer + (r.depth - nearer) / (1.0 + RELEASE_STEPS)
+    damping = (elastic - pressed) * h / opens - 1.0 / (h * inverse)
+    return damping if damping > 0.0 else math.inf
 
 
 @kernel
