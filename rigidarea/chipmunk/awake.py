@@ -167,6 +167,34 @@ def wake(s: Any, tables: Tables, i: int) -> None:
 
 
 @kernel
+def look_again(s: Any, tables: Tables) -> None:
+    """What callbacks of the user's have set of bodies since the frame began: it counts as set before.
+
+    So that who is sent elsewhere is there, and a blow is of the velocities that a `begin` has left.
+    """
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if body.stamp != s.frame or words(body.address + s.body_position_func, 1)[0] != s.hold_at:
+            continue
+        x, y, angle = body.x, body.y, body.angle
+        vx, vy, w = body.vx, body.vy, body.w
+        read_place(s, body.address, body)
+        read_motion(s, body.address, body)
+        if x != body.x or y != body.y or angle != body.angle:
+            body.since = 0.0
+            body.old_since = 0.0
+            body.old_x = body.x
+            body.old_y = body.y
+            body.old_a = body.angle
+        if vx != body.vx or vy != body.vy or w != body.w:
+            body.since = 0.0
+            body.old_since = 0.0
+            body.old_vx = body.vx
+            body.old_vy = body.vy
+            body.old_w = body.w
+
+
+@kernel
 def put_to_rest(s: Any, body: Any) -> None:
     """A body that is asleep, or static: where it has been left, and nothing moves it."""
     body.awake = 0

@@ -13,7 +13,7 @@ import numpy as np
 
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at, caller
-from ..contact.broad import forget_the_gone
+from ..contact.broad import forget_the_gone, shapes_collide
 from ..contact.join import roomy
 from ..contact.space_record import load_pool, load_tables, load_work
 from ..contact.tables import BOXED, KNOWN, MORE_JOINTS, MOVERS, TOLD, Tables
@@ -88,7 +88,12 @@ def _last(s: Any, tables: Tables, dt: float) -> None:
     """What touches still, but for a hair: Chipmunk does not take it for separated in this step."""
     for k in range(tables.counters[BOXED]):
         pair = tables.pairs[tables.near[k].pair]
-        if pair.a >= 0 and lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
+        if pair.a < 0:
+            continue
+        one, other = tables.shapes[pair.a], tables.shapes[pair.b]
+        if not (one.sensor or other.sensor or shapes_collide(tables, one, other)):  # parted in play
+            continue
+        if lasts(load_pool(s), tables, load_work(s), pair, s.frame, dt):
             pair.lasting = s.frame
             if pair.arbiter != 0:  # a copy has none yet
                 array_at(pair.arbiter + s.arbiter_stamp, (1,), np.uint32)[0] = np.uint32(s.frame)
@@ -122,8 +127,6 @@ def begin(s: Any, space: int, dt: float) -> bool:
             return False
     load_tables(s).counters[KNOWN] = 0
     look_at_partners(s, load_tables(s))
-    if listened(s):
-        _last(s, load_tables(s), dt)
     s.asleep = len(members(space, s.space_sleeping)) > 0
     if not s.explicit:
         n = len(members(space, s.space_constraints))
@@ -138,6 +141,8 @@ def begin(s: Any, space: int, dt: float) -> bool:
         tables = load_tables(s)
         take_joints(s, tables, members(space, s.space_constraints))
         look_at_jointed(s, tables)
+    if listened(s):  # joints have been told who does not collide
+        _last(s, load_tables(s), dt)
     # last: a joint that is not taken acts on bodies after a frame that could not begin
     good = roomy(load_tables(s), load_tables(s).counters[MOVERS], dt) or ask(s, GROW)
     lap(s, WATCHING)

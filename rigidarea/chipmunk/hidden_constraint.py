@@ -13,7 +13,8 @@ from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at
 from ..contact.space_record import load_tables
 from ..contact.tables import COUNTED, TOLD, find_pair
-from .begin import begin
+from .awake import look_again
+from .begin import begin, listened
 from .frame import whole_frame
 from .joints import give_back, hide, joints_of
 from .phases import REPORTING, lap, start
@@ -38,6 +39,8 @@ def silence(constraint: int, dt: float) -> None:
     if s.frame != np.int64(timestamp(space)) and not begin(s, space, dt):
         return
     tables = load_tables(s)
+    if listened(s) and s.explicit == 0:
+        look_again(s, tables)
     for k in range(tables.counters[TOLD]):
         pair = tables.pairs[tables.told[k]]
         if pair.verdict:

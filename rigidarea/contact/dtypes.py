@@ -88,12 +88,10 @@ BODY = record(
         ("old_fy", "f8"),
         ("old_torque", "f8"),
         ("replaced", "i8"),  # frame before which the user has put it elsewhere, if nothing moves it; -1: none
-        (
-            "put_x",
-            "f8",
-        ),  # by how much the user has put it elsewhere before this frame (length), and turned it
+        ("put_x", "f8"),  # by how much the user has moved it before this frame (length), and turned it
         ("put_y", "f8"),
         ("put_a", "f8"),
+        ("turned", "f8"),  # `w` a substep ago, where joints have looked at it
         # (not 512 bytes: one field of all bodies would lie in the same few lines of the cache)
         ("swayed", "f8"),  # `tension` a substep ago, then the part of its sway that is lost
     ]

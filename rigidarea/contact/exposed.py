@@ -14,12 +14,12 @@ import math
 from typing import Any, NamedTuple
 
 from ..compile.jit import kernel
-from ..geometry.arc import distance2
-from ..geometry.locate import inside_outline
+from ..geometry.locate import inside_outline, nearest_edge
 from ..geometry.place import Pose, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import A_EDGE, Relative, Work
 from .constants import SMOOTH
+from .motion import centre_of
 from .patch import Patch, patch_of, reach_along
 from .region import least_extent
 from .tables import CHORD, FIXED, Law, Tables
@@ -149,6 +149,17 @@ def _turned(patch: Patch, area: float, x: float, y: float, nx: float, ny: float,
 
 
 @kernel
+def _along_centres(two: TwoShapes, patch: Patch, pose: Pose, other: Pose) -> Patch:
+    """A patch of two bodies, one put into the midst of the other: away from its centre, as all their patches there."""
+    ax, ay = centre_of(two.a, pose)
+    bx, by = centre_of(two.b, other)
+    apart = math.hypot(bx - ax, by - ay)
+    if apart == 0.0:
+        return patch
+    return _turned(patch, patch.area, patch.x, patch.y, (bx - ax) / apart, (by - ay) / apart, patch.reach)
+
+
+@kernel
 def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
     """Loop k of the work as `patch_of` sees it, its direction that of what is exposed of a shape's edges.
 
@@ -159,13 +170,19 @@ def exposed_patch(two: TwoShapes, k: int, pose: Pose, other: Pose) -> Patch:
     if patch.blind or two.law.direction != CHORD:
         return patch
     first = 1 if two.a.mobile and not two.b.mobile else 0  # what nothing moves
+    both = two.a.mobile and two.b.mobile
+    best, turned = patch, False
     for i in range(2):
         of_b = first != i
         if _has_neighbours(two.b if of_b else two.a):
-            found, hidden = _exposed(two, k, pose, other, patch, of_b)
-            if hidden:
-                return found
-    return patch
+            found, hidden, lost = _exposed(two, k, pose, other, patch, of_b)
+            if lost and both:
+                return _along_centres(two, patch, pose, other)
+            if hidden and not turned:
+                best, turned = found, True
+            if turned and not both:
+                break
+    return best
 
 
 class _Look(NamedTuple):
@@ -198,30 +215,6 @@ def _within_neighbours(look: _Look, x: float, y: float) -> bool:
 
 
 @kernel
-def _edge_at(pool: Pool, i: int, rel: Relative, x: float, y: float) -> tuple[float, float, float, float]:
-    """Both ends of the straight edge of outline i, placed by `rel`, that is nearest to a point."""
-    head = pool.heads[i]
-    least = math.inf
-    best = (0.0, 0.0, 0.0, 0.0)
-    for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
-        k = pool.following[e]
-        px = rel.c * pool.points[e, 0] - rel.s * pool.points[e, 1] + rel.tx
-        py = rel.s * pool.points[e, 0] + rel.c * pool.points[e, 1] + rel.ty
-        qx = rel.c * pool.points[k, 0] - rel.s * pool.points[k, 1] + rel.tx
-        qy = rel.s * pool.points[k, 0] + rel.c * pool.points[k, 1] + rel.ty
-        dx = qx - px
-        dy = qy - py
-        square = dx * dx + dy * dy
-        part = ((x - px) * dx + (y - py) * dy) / square if square > 0.0 else 0.0
-        part = min(1.0, max(0.0, part))
-        distance = distance2(x, y, px + part * dx, py + part * dy)
-        if distance < least:
-            least = distance
-            best = (px, py, qx, qy)
-    return best
-
-
-@kernel
 def _ends_within(
     look: _Look, theirs: _Look, loop: Any, side: int, hidden: int, of_b: bool, step: float
 ) -> bool:
@@ -244,7 +237,7 @@ def _ends_within(
         rel = seen_from(two.pool.heads[two.ia], look.pose, two.pool.heads[two.ib], theirs.at)
     mx = 0.5 * (work.polygon[i, 0] + work.polygon[j, 0])
     my = 0.5 * (work.polygon[i, 1] + work.polygon[j, 1])
-    px, py, qx, qy = _edge_at(two.pool, two.ia if of_b else two.ib, rel, mx, my)
+    px, py, qx, qy = nearest_edge(two.pool, two.ia if of_b else two.ib, rel, mx, my)
     dx = qx - px
     dy = qy - py
     length = math.sqrt(dx * dx + dy * dy)
@@ -299,8 +292,10 @@ def _goes_on(look: _Look, loop: Any, side: int, hidden: int, step: float) -> tup
 
 
 @kernel
-def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b: bool) -> tuple[Patch, bool]:
-    """The patch by what is exposed of one shape's edges; and whether any of them is hidden."""
+def _exposed(
+    two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b: bool
+) -> tuple[Patch, bool, bool]:
+    """The patch by what is exposed of one shape's edges; whether any of them is hidden; whether they show no way."""
     pool, work = two.pool, two.work
     own, mover, body, side = two.pair.a, two.pair.b, two.a, A_EDGE
     at = pose
@@ -319,7 +314,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         else:
             faces += 2 if curved else 1
     if edges < 2 and caps == 0 and two.pair.head >= 0:  # one edge is hidden only if it is not met from out
-        return patch, False
+        return patch, False, False
     head = pool.heads[two.ia]
     beyond = FLUSH * least_extent(two.a, two.b)
     look = _Look(two, own, mover, body, head, pose, at, patch.reach + 2.0 * beyond)
@@ -354,7 +349,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             nx += dy
             ny -= dx
     if hidden == 0:
-        return patch, False
+        return patch, False, False
     length = math.sqrt(nx * nx + ny * ny)
     corner = straight = False
     if length > 0.0 and (faces == 1 or length <= beyond):
@@ -365,9 +360,9 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
         y = 0.5 * (there.bottom + there.top)
         if not _hidden(two, own, mover, body, x, y, look.room):  # it is not put into the midst of them
             # all of it within neighbours, which say where the body can go
-            return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True
+            return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True, False
     if length == 0.0:
-        return patch, False
+        return patch, False, True
     if side != A_EDGE:  # from A to B is into B
         length = -length
     nx /= length
@@ -379,7 +374,7 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
             two, mover, own, two.a if of_b else two.b, head, pose, pose if of_b else other, look.room
         )
         if flat or corner or not _ends_within(look, theirs, loop, side, hidden, of_b, beyond):
-            return patch, True  # it says better where to go
+            return patch, True, False  # it says better where to go
     wx = pose.c * nx - pose.s * ny
     wy = pose.s * nx + pose.c * ny
     reach = reach_along(work, loop.start, loop.stop, loop.arcs > 0, nx, ny)
@@ -396,4 +391,4 @@ def _exposed(two: TwoShapes, k: int, pose: Pose, other: Pose, patch: Patch, of_b
                 px = cx + along * wx
                 py = cy + along * wy
                 break
-    return _turned(patch, patch.area, px, py, wx, wy, reach), True
+    return _turned(patch, patch.area, px, py, wx, wy, reach), True, False

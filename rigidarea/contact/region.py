@@ -112,7 +112,7 @@ def closing(r: Any, a: Any, b: Any, full: float) -> float:
 def put_closer(r: Any, a: Any, b: Any) -> float:
     """How much nearer a program has put the two before this frame, of which one moves as it is told (length).
 
-    What has been put farther on than LOOK of the smaller one is no motion.
+    What has been put farther on than half of LOOK of the smaller one is no motion.
     """
     x = y = turn = 0.0
     if not a.mobile:
@@ -120,7 +120,7 @@ def put_closer(r: Any, a: Any, b: Any) -> float:
     if not b.mobile:
         x, y, turn = x - b.put_x, y - b.put_y, turn - b.put_a * r.arm_b
     nearer = x * r.nx + y * r.ny + turn
-    most = LOOK * least_extent(a, b)
+    most = 0.5 * LOOK * least_extent(a, b)
     return nearer if abs(x) + abs(y) + abs(turn) <= most and nearer > 0.0 else 0.0
 
 

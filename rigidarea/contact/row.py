@@ -147,15 +147,15 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
             c = max(c, stiffness / PUT_SPEED)
         elif r.placed == PLACED:
             c = max(c, elastic / ((DRIVEN_SPEED if driven else PUT_SPEED) * least_extent(a, b)))
-        if driven:
-            c = min(c, damping_that_opens(r, a, b, pair.least, elastic, inverse, h))
+        put = damping_that_opens(r, a, b, pair.least, elastic, inverse, h) if driven else math.inf
+        c = min(c, put)
         q = h * c * inverse
         row.alpha = 1.0 / (1.0 + q)
         row.jammed = r.placed == PLACED and (a.calm < 0 or b.calm < 0)
         row.theta = (1.0 if r.placed == PLACED else theta) * (1.0 - row.alpha)
         # a step longer than an edge's own time opens it all by itself: no trace of speed is left; what is round rolls
         if phase2 >= 1.0:
-            row.theta = 1.0 if row.ends == 2 else max(row.theta, 2.0 * growth(r) - 3.0)
+            row.theta = 1.0 if row.ends == 2 or c == put else max(row.theta, 2.0 * growth(r) - 3.0)
         gamma = h * c * row.alpha
         force = h * elastic
         kt = TANGENT_STIFFNESS * stiffness

@@ -15,10 +15,11 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
     A force f at the arm r resists turning with the stiffness r.f, which no row knows of (the second derivative of the
     joint, times its force; M. Tournier et al., "Stable constrained dynamics", ACM Trans. Graph. 34 (2015),
     doi:10.1145/2766969). A moment of inertia larger by h^2/4 of it is the trapezoidal rule: stable at any step, and no
-    damping. What goes through more than a radian in a step takes the force at its end, and comes to rest: each joint
-    takes half of how its bodies turn against each other, a link's two the whole. (Else what a blow has left shook a
-    light chain until it parted; a whirl of the whole is not damped.) Only what lasts two substeps, for a blow is over,
-    and only as far as no step follows it.
+    damping. What goes through more than a radian in a step takes the force at its end, and comes to rest: it sways to
+    and fro from step to step, and each joint takes a quarter of how that has changed by which its bodies turn against
+    each other, a link's two the whole of what has changed sign. (Else what a blow has left shook a light chain until it
+    parted. What turns steadily, a crank, is not damped.) Only what lasts two substeps, for a blow is over, and only as
+    far as no step follows it.
     """
     for k in range(tables.counters[LIVE]):
         body = tables.bodies[tables.live[k]]
@@ -51,12 +52,15 @@ def geometric_stiffness(tables: Tables, h: float) -> None:
             b = tables.bodies[joint.b]
             part = max(a.swayed, b.swayed)
             if part > 0.0 and a.inverse_moment > 0.0 and b.inverse_moment > 0.0:
-                turning = a.w - a.kick_w - b.w + b.kick_w
-                lost = 0.5 * part * turning / (a.own_inverse_moment + b.own_inverse_moment)
+                change = a.w - a.kick_w - a.turned - (b.w - b.kick_w - b.turned)
+                lost = 0.25 * part * change / (a.own_inverse_moment + b.own_inverse_moment)
                 a.w -= lost * a.own_inverse_moment
                 b.w += lost * b.own_inverse_moment
                 a.came_w = a.w
                 b.came_w = b.w
+    for k in range(tables.counters[LIVE]):
+        body = tables.bodies[tables.live[k]]
+        body.turned = body.w - body.kick_w
 
 
 @kernel

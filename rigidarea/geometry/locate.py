@@ -1,9 +1,11 @@
-"""Whether a point lies inside an outline."""
+"""Whether a point lies inside an outline, and which of its edges is nearest."""
 
 from __future__ import annotations
 
+import math
+
 from ..compile.jit import kernel
-from .arc import across
+from .arc import across, distance2
 from .pool import LEAF, Pool
 from .predicates import side
 from .work import Relative, Work, placed
@@ -64,3 +66,27 @@ def inside_outline(p: Pool, i: int, rel: Relative, x: float, y: float, point_of_
                 if across(x, y, cx, cy, r) and (side(ux, uy, vx, vy, x, y, point_of_b) < 0.0) == (r > 0.0):
                     inside = not inside
     return inside
+
+
+@kernel
+def nearest_edge(pool: Pool, i: int, rel: Relative, x: float, y: float) -> tuple[float, float, float, float]:
+    """Both ends of the straight edge of outline i, placed by `rel`, that is nearest to a point."""
+    head = pool.heads[i]
+    least = math.inf
+    best = (0.0, 0.0, 0.0, 0.0)
+    for e in range(pool.rings[head.ring, 0], pool.rings[head.ring, 1]):
+        k = pool.following[e]
+        px = rel.c * pool.points[e, 0] - rel.s * pool.points[e, 1] + rel.tx
+        py = rel.s * pool.points[e, 0] + rel.c * pool.points[e, 1] + rel.ty
+        qx = rel.c * pool.points[k, 0] - rel.s * pool.points[k, 1] + rel.tx
+        qy = rel.s * pool.points[k, 0] + rel.c * pool.points[k, 1] + rel.ty
+        dx = qx - px
+        dy = qy - py
+        square = dx * dx + dy * dy
+        part = ((x - px) * dx + (y - py) * dy) / square if square > 0.0 else 0.0
+        part = min(1.0, max(0.0, part))
+        distance = distance2(x, y, px + part * dx, py + part * dy)
+        if distance < least:
+            least = distance
+            best = (px, py, qx, qy)
+    return best

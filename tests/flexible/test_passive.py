@@ -131,7 +131,7 @@ def test_levels_meet():
 @pytest.mark.parametrize("damper", [0.0, 0.02, 0.5])
 def test_cams_with_dampers(damper):
     """An eccentric lifts a flat follower that a torque presses on it: no step gives up, and all levels lift it by the
-    same, but for what 2e11 N/m² and the lever yield under 60 N (some 0.1 %)."""
+    same, but for what 2e11 N/m² and the lever yield under 60 N (some 0.1 %; undamped, up to .4 % where it rattles)."""
     radius, speed, lifts = 0.03, 20.0, []
     for level in ("rigid", "compliant", "modal"):
         m = Mechanism(2e11, rho=0.8)
@@ -150,7 +150,7 @@ def test_cams_with_dampers(damper):
         r = m.run(0.1, 2e-5)
         assert r.halved.sum() == 0
         lifts.append(np.ptp(r.hub[1000:, follower]))
-    assert np.abs(np.array(lifts) / lifts[0] - 1).max() < 3e-3
+    assert np.abs(np.array(lifts) / lifts[0] - 1).max() < 5e-3
 
 
 def pendulum(level, young=2e8):

@@ -110,6 +110,43 @@ def two_discs(draw: random.Random, ours: bool, elasticity: float) -> float:
     return max(wrong) / speed
 
 
+def beside_an_edge(draw: random.Random, ours: bool, elasticity: float) -> float | None:
+    """A smooth tilted box strikes a ground near the end of it: how far off it is after that, of its speed.
+
+    As `corner`. (Where the end was within a substep's way, both were taken for two faces that land flat.)
+    """
+    space = pymunk.Space()
+    _slab(space, 0.0, elasticity)
+    side, height = draw.uniform(6, 40), draw.uniform(6, 40)
+    tilt, fall, beside = draw.uniform(0.25, 1.3), draw.uniform(60, 600), 10 ** draw.uniform(-0.7, 0.9)
+    moment = pymunk.moment_for_box(1, (side, height))
+    body = pymunk.Body(1, moment)
+    shape = pymunk.Poly.create_box(body, (side, height))
+    shape.elasticity = 1
+    body.angle, body.velocity = tilt, (0, -fall)
+    (x, y), *others = sorted((v.rotated(tilt) for v in shape.get_vertices()), key=lambda v: v.y)
+    body.position = 4000 - beside - x, -y + draw.uniform(0.3, 2.5) * fall * DT
+    space.add(body, shape)
+    j = (1 + elasticity) * fall / (1 + x * x / moment)
+    right = np.array([0, j - fall, x * j / moment])
+    for next_x, next_y in others:  # another comes down at once, or the box's side on the end
+        if next_y - y < -4 * DT * (right[1] + right[2] * next_x):
+            return None
+    across, up = next((v.x - x, v.y - y) for v in others if v.x > x)
+    if beside < across and beside * up / across < -4 * DT * (right[1] + right[2] * (x + beside)):
+        return None
+    scale = np.array([1, 1, side / 2]) / fall
+    off = math.inf
+    if ours:
+        ra.attach(space)
+    for _ in range(6):
+        space.step(DT)
+        if body.velocity.y > -fall:
+            now = np.array([*body.velocity, body.angular_velocity])
+            off = min(off, float(np.abs(scale * (now - right)).max()))
+    return off
+
+
 def lands_rough(draw: random.Random, ours: bool) -> float:
     """A disc lands on a slab, is braked by as much as friction bears, and skids until it rolls."""
     space = pymunk.Space()
@@ -144,11 +181,13 @@ def rolls_on_a_plank(draw: random.Random, ours: bool) -> float:
     return abs(body.angular_velocity * radius + speed) / speed
 
 
-#: What is asked of each, of its speed: 2e-3 where a body turns between the first touch and the frame's end; what rolls
-#: has its lever from the overlap's centroid, 1e-4 of a radius within.
+#: What is asked of each, of its speed: 2e-3 where a body turns between the first touch and the frame's end, 5e-3 where
+#: it turns fast; what rolls has its lever from the overlap's centroid, 1e-4 of a radius within.
 KINDS: dict[str, tuple[Scene, float]] = {
     "smooth corner": (lambda draw, ours: corner(draw, ours, 0.0), 2e-3),
     "rough corner": (lambda draw, ours: corner(draw, ours, 0.4), 2e-3),
+    "elastic corner beside an edge": (lambda draw, ours: beside_an_edge(draw, ours, 1.0), 5e-3),
+    "half elastic corner beside an edge": (lambda draw, ours: beside_an_edge(draw, ours, 0.5), 5e-3),
     "plastic discs": (lambda draw, ours: two_discs(draw, ours, 0.0), 2e-3),
     "elastic discs": (lambda draw, ours: two_discs(draw, ours, 1.0), 2e-3),
     "half elastic discs": (lambda draw, ours: two_discs(draw, ours, 0.5), 2e-3),

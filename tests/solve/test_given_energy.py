@@ -128,7 +128,7 @@ def _hinged_pair(seed: int, elasticity: float, friction: float) -> pymunk.Space 
 
 @pytest.mark.parametrize("elasticity, friction", [(0, 0), (0, 1), (0.3, 0.5), (0.8, 0.5), (1, 0), (1, 1)])
 def test_a_hinged_pair_has_what_it_had(elasticity: float, friction: float) -> None:
-    """Some 180 pairs, a second each: a contact whose line passes the hinge asks the joint for 1e6 times its own impulse.
+    """Some 180 pairs, a second each: a contact whose line passes the hinge asks the joint for 1e6 times its impulse.
 
     2 % more at the most: what the hinge mends moves them. (86 to 1,190 times as much before, where rough and elastic;
     4.5 where smooth: the joint gave what the contact had asked of it; 1.09 while a blow counted as what holds them

@@ -117,3 +117,69 @@ def test_a_lattice_of_undamped_springs_gains_no_energy(stiffness: float) -> None
     assert max(measured) <= 1.02 * before
     if stiffness <= 1000:  # eight springs a body: none goes through a radian in a step
         assert min(measured) >= 0.98 * before
+
+
+@pytest.mark.parametrize(
+    "ratio, frequency, damping", [(2, 10, 0.7), (20, 15, 0.3), (20, 15, 0.7), (100, 10, 1.0)]
+)
+def test_a_suspension_sags_as_its_chassis_does(ratio: float, frequency: float, damping: float) -> None:
+    """A light wheel on the ground carries a heavy chassis by a damped spring: the oscillator of the chassis alone.
+
+    Within 5 % of its sag, in every frame: a step of a frame takes the wheel's weight for the chassis's for a moment.
+    (Where the damper held the two as if both flew, 100 to 1 did not sag at all; pymunk's falls through.)
+    """
+    mass, gravity = 10.0, 900.0
+    space = pymunk.Space()
+    space.gravity = 0, -gravity
+    space.add(pymunk.Segment(space.static_body, (-99, 0), (99, 0), 0))
+    wheel = pymunk.Body(mass / ratio, mass / ratio * 50)
+    wheel.position = 0, 10
+    chassis = pymunk.Body(mass, math.inf)
+    chassis.position = 0, 310
+    space.add(
+        wheel,
+        chassis,
+        pymunk.Circle(wheel, 10),
+        pymunk.GrooveJoint(space.static_body, chassis, (0, -999), (0, 999), (0, 0)),
+        pymunk.GrooveJoint(chassis, wheel, (0, -600), (0, 0), (0, 0)),
+        pymunk.DampedSpring(
+            chassis, wheel, (0, 0), (0, 0), 300, mass * frequency**2, 2 * damping * mass * frequency
+        ),
+    )
+    ra.attach(space)
+    sag = gravity / frequency**2
+    x = v = 0.0
+    for _ in range(60):
+        space.step(DT)
+        for _ in range(200):  # symplectic Euler, a step of 1e-4 of the oscillation's time
+            v -= DT / 200 * (gravity + frequency**2 * x + 2 * damping * frequency * v)
+            x += DT / 200 * v
+        assert chassis.position.y - 310 == pytest.approx(x, abs=0.05 * sag)
+
+
+@pytest.mark.parametrize("anchor", [-60, -30, -15])
+@pytest.mark.parametrize("damping", [30, 100, 1000])
+def test_a_fork_on_a_spring_comes_to_rest_where_it_hangs(damping: float, anchor: float) -> None:
+    """A fork in a groove, kept level by a limit, on a spring beside its middle: it rests where the spring bears it.
+
+    The limit mends its error against the load that it bears: that was taken for energy that it gives, and the fork
+    rested up to 36 px too low. pymunk's, where damped strongly, has not arrived after 15 s.
+    """
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    fork = pymunk.Body(3, pymunk.moment_for_box(3, (60, 6)))
+    fork.position = 60, 30
+    ground = space.static_body
+    at = 60 + anchor
+    space.add(
+        fork,
+        pymunk.Poly.create_box(fork, (60, 6)),
+        pymunk.GrooveJoint(ground, fork, (at, -100), (at, 400), (anchor, 0)),
+        pymunk.RotaryLimitJoint(ground, fork, 0, 0),
+        pymunk.DampedSpring(ground, fork, (at, 280), (anchor, 0), 120, 1500, damping),
+    )
+    ra.attach(space)
+    for _ in range(900):
+        space.step(DT)
+    assert fork.position.y == pytest.approx(160 - 3 * 900 / 1500, abs=1e-3)
+    assert fork.velocity.length < 1e-6
