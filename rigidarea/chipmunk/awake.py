@@ -76,9 +76,10 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.left_vx = body.vx
         body.left_vy = body.vy
         notice(s, address, body)
-        body.put_x = body.x - x
-        body.put_y = body.y - y
-        body.put_a = body.angle - angle
+        free = body.inverse_mass > 0.0 or body.inverse_moment > 0.0
+        body.put_x = 0.0 if free else body.x - x
+        body.put_y = 0.0 if free else body.y - y
+        body.put_a = 0.0 if free else body.angle - angle
         if not met:
             body.left_vx = body.vx
             body.left_vy = body.vy

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
-from ..contact.tables import AWAKE, DRIFTS, Tables
+from ..contact.tables import AWAKE, DRIFTS, LED, Tables
 from ..geometry.place import place
 from .joints import joints_of
-from .record import cache_boxes, words, write_motion, write_place
+from .record import cache_boxes, words, write_bias, write_motion, write_place
 
 
 @kernel
-def finish_frame(s: Any, tables: Tables, good: bool) -> None:
+def finish_frame(s: Any, tables: Tables, good: bool, dt: float) -> None:
     """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at.
 
     Of a frame that failed also what the user's position functions have moved.
@@ -30,6 +30,8 @@ def finish_frame(s: Any, tables: Tables, good: bool) -> None:
             body.was_w = body.forced_w
         if body.mobile or not good:
             write_motion(s, body)
+        if body.kind == LED and body.mobile and good and dt > 0.0:
+            write_bias(s, body, dt)
         if (body.kind == DRIFTS and s.explicit == 0) or not good:
             if body.kind == DRIFTS:
                 place(body)

@@ -130,6 +130,18 @@ def write_motion(s: Any, body: Any) -> None:
 
 
 @kernel(forceinline=True)
+def write_bias(s: Any, body: Any, dt: float) -> None:
+    """Have its position function move it, in the next step, as far as contacts ask: Chipmunk's v_bias and w_bias.
+
+    They stand behind its transform and the user's pointer (struct cpBody).
+    """
+    v = floats(body.address + s.body_transform + 56, 3)
+    v[0] = body.put_x / dt
+    v[1] = body.put_y / dt
+    v[2] = body.put_a / dt
+
+
+@kernel(forceinline=True)
 def notice(s: Any, address: int, body: Any) -> None:
     """A body that is awake, as it is now, and whether it has been set so by the user."""
     x, y, angle = body.x, body.y, body.angle

@@ -88,7 +88,9 @@ BODY = record(
         ("old_fy", "f8"),
         ("old_torque", "f8"),
         ("replaced", "i8"),  # frame before which the user has put it elsewhere, if nothing moves it; -1: none
-        ("put_x", "f8"),  # by how much the user has moved it before this frame (length), and turned it
+        # by how much the user has moved it before this frame, if contacts do not; by how much they ask a function of
+        # the user's to, in the next (length)
+        ("put_x", "f8"),
         ("put_y", "f8"),
         ("put_a", "f8"),
         ("turned", "f8"),  # `w` a substep ago, where joints have looked at it

@@ -17,7 +17,7 @@ from ..compile.jit import kernel
 from ..geometry.place import turn
 from .active import island_of, list_active, measure
 from .row import take_inverse
-from .tables import DRIFTS, ISLANDS, LIVE, ROWS, Law, Tables
+from .tables import DRIFTS, ISLANDS, LED, LIVE, ROWS, Law, Tables
 
 
 @kernel
@@ -57,6 +57,10 @@ def end_relaxing(tables: Tables, h: float) -> None:
         taken.vy -= body.vy
         taken.vw -= body.w
         taken.moved = body.kind == DRIFTS and (taken.vx != 0.0 or taken.vy != 0.0 or taken.vw != 0.0)
+        if body.kind == LED:  # its own function moves it
+            body.put_x += h * taken.vx
+            body.put_y += h * taken.vy
+            body.put_a += h * taken.vw
         if taken.moved:
             body.x += h * taken.vx
             body.y += h * taken.vy

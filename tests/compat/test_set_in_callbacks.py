@@ -1,4 +1,7 @@
-"""What a callback sets of a body is set: a respawn, a portal, a blow that it takes away, a pair that it parts."""
+"""What a callback sets of a body is set: a respawn, a portal, a blow that it takes away, a pair that it parts.
+
+And what a position function moves contacts move too.
+"""
 
 from __future__ import annotations
 
@@ -115,3 +118,27 @@ def test_what_is_parted_in_play_is_heard(by: str) -> None:
             space.step(DT)
         heard[attached] = log
     assert heard[True] == heard[False] == [("begin", 0), ("separate", 60)]
+
+
+@pytest.mark.parametrize("size, height", [(40, 430), (40, 65), (10, 14.9)])
+def test_what_a_position_function_moves_comes_out(size: float, height: float) -> None:
+    """A box with a position function, which calls pymunk's own, lands half in a floor, or is put there: it lies on it.
+
+    Pymunk's functions move it by `v_bias` too, with which its contacts take overlaps apart. (It stayed where its
+    velocity had taken it, 13 px deep of 40.)
+    """
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    body = pymunk.Body(1, 266)
+    body.position = 0, height
+    space.add(
+        pymunk.Segment(space.static_body, (-500, 0), (500, 0), 10),
+        body,
+        pymunk.Poly.create_box(body, (size, size)),
+    )
+    rigidarea.attach(space)
+    body.position_func = lambda body, dt: pymunk.Body.update_position(body, dt)
+    for _ in range(240):
+        space.step(DT)
+    assert body.position.y == pytest.approx(10 + size / 2, abs=1e-3 * size)  # as deep as all lies
+    assert body.velocity.length < 1e-6
