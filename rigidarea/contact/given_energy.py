@@ -88,7 +88,7 @@ def _note_held(tables: Tables) -> None:
                 island.mending += math.sqrt(t1 * t1 + tt * tt)
             else:
                 island.turning += abs(t1)
-            island.lifted += row.held
+            island.lifted += min(row.held, max(0.0, -(row.l1 * t1 + row.lt * tt)))  # a blow is no load
         elif row.ends > 0:
             island.held += 0.5 * (1.0 - row.theta) * row.held
             island.product += 0.5 * row.theta * row.held
