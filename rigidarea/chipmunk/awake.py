@@ -76,10 +76,10 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.left_vx = body.vx
         body.left_vy = body.vy
         notice(s, address, body)
-        free = body.inverse_mass > 0.0 or body.inverse_moment > 0.0
-        body.put_x = 0.0 if free else body.x - x
-        body.put_y = 0.0 if free else body.y - y
-        body.put_a = 0.0 if free else body.angle - angle
+        told = met and body.inverse_mass == 0.0 and body.inverse_moment == 0.0
+        body.put_x = body.x - x if told else 0.0
+        body.put_y = body.y - y if told else 0.0
+        body.put_a = body.angle - angle if told else 0.0
         if not met:
             body.left_vx = body.vx
             body.left_vy = body.vy
@@ -181,18 +181,12 @@ def look_again(s: Any, tables: Tables) -> None:
         vx, vy, w = body.vx, body.vy, body.w
         read_place(s, body.address, body)
         read_motion(s, body.address, body)
-        if x != body.x or y != body.y or angle != body.angle:
+        moved = x != body.x or y != body.y or angle != body.angle
+        if moved or vx != body.vx or vy != body.vy or w != body.w:
             body.since = 0.0
             body.old_since = 0.0
-            body.old_x = body.x
-            body.old_y = body.y
-            body.old_a = body.angle
-        if vx != body.vx or vy != body.vy or w != body.w:
-            body.since = 0.0
-            body.old_since = 0.0
-            body.old_vx = body.vx
-            body.old_vy = body.vy
-            body.old_w = body.w
+            body.old_x, body.old_y, body.old_a = body.x, body.y, body.angle
+            body.old_vx, body.old_vy, body.old_w = body.vx, body.vy, body.w
 
 
 @kernel

@@ -189,7 +189,9 @@ def jumped_in(law: Law, r: Any, before: float, a: Any, b: Any, h: float) -> bool
     By how far: where the step does not follow the contact, by what a solve may have left, which takes its load.
     """
     speed = abs(closing(r, a, b, 0.0)) + abs(closing(r, a, b, 1.0)) + abs(a.w - b.w) * r.chord
-    inside = r.depth - before - MOST_ARRIVED * h * speed - put_closer(r, a, b)
+    inside = r.depth - before - MOST_ARRIVED * h * speed
+    if drives(law, a) or drives(law, b):
+        inside -= put_closer(r, a, b)
     least = min(size_of(a), size_of(b))
     if inside <= PUT_FOLLOWED * least:
         return False

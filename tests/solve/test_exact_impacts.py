@@ -42,6 +42,23 @@ def _run(space: pymunk.Space, ours: bool, frames: int) -> None:
         space.step(DT)
 
 
+def _off_after_a_blow(
+    space: pymunk.Space, body: pymunk.Body, right: np.ndarray, side: float, ours: bool
+) -> float:
+    """How far off a body that falls is, of its speed, in the best of the frames after it has struck (no gravity)."""
+    fall = -body.velocity.y
+    scale = np.array([1, 1, side / 2]) / fall
+    off = math.inf
+    if ours:
+        ra.attach(space)
+    for _ in range(6):
+        space.step(DT)
+        if body.velocity.y > -fall:
+            now = np.array([*body.velocity, body.angular_velocity])
+            off = min(off, float(np.abs(scale * (now - right)).max()))
+    return off
+
+
 def corner(draw: random.Random, ours: bool, friction: float) -> float | None:
     """A tilted box, without gravity, plastic: how far off it is after its first corner has struck, of its speed.
 
@@ -71,16 +88,7 @@ def corner(draw: random.Random, ours: bool, friction: float) -> float | None:
     right = np.array([along + jt, j - fall, (x * j - y * jt) / moment])
     if next_y - y < -2 * DT * (right[1] + right[2] * next_x):
         return None
-    scale = np.array([1, 1, side / 2]) / fall
-    off = math.inf
-    if ours:
-        ra.attach(space)
-    for _ in range(6):
-        space.step(DT)
-        if body.angular_velocity != 0:
-            now = np.array([*body.velocity, body.angular_velocity])
-            off = min(off, float(np.abs(scale * (now - right)).max()))
-    return off
+    return _off_after_a_blow(space, body, right, side, ours)
 
 
 def two_discs(draw: random.Random, ours: bool, elasticity: float) -> float:
@@ -135,16 +143,7 @@ def beside_an_edge(draw: random.Random, ours: bool, elasticity: float) -> float 
     across, up = next((v.x - x, v.y - y) for v in others if v.x > x)
     if beside < across and beside * up / across < -4 * DT * (right[1] + right[2] * (x + beside)):
         return None
-    scale = np.array([1, 1, side / 2]) / fall
-    off = math.inf
-    if ours:
-        ra.attach(space)
-    for _ in range(6):
-        space.step(DT)
-        if body.velocity.y > -fall:
-            now = np.array([*body.velocity, body.angular_velocity])
-            off = min(off, float(np.abs(scale * (now - right)).max()))
-    return off
+    return _off_after_a_blow(space, body, right, side, ours)
 
 
 def lands_rough(draw: random.Random, ours: bool) -> float:

@@ -147,3 +147,32 @@ def test_what_is_put_far_on_is_no_motion(kind: int) -> None:
         assert box.position.x - before < 1.01 * 4 * 30 * DT
         before = box.position.x
     assert box.position.x > 36.9
+
+
+def test_what_has_been_moved_once_drives_nobody_later() -> None:
+    """A wall that is moved by 3 px, once: a box put 4 px into it a second later leaves as from one that never moved.
+
+    (What had been put there before a past frame was taken from that overlap, and the box left at twice the speed.)
+    """
+
+    def course(moved: float) -> list[float]:
+        space = pymunk.Space()
+        wall = pymunk.Body(body_type=pymunk.Body.STATIC)
+        wall.position = -10 - moved, 0
+        box = pymunk.Body(1, pymunk.moment_for_box(1, (30, 30)))
+        box.position = 300, 0
+        space.add(wall, pymunk.Poly.create_box(wall, (20, 300)), box, pymunk.Poly.create_box(box, (30, 30)))
+        rigidarea.attach(space)
+        space.step(DT)
+        wall.position = -10, 0
+        space.reindex_shapes_for_body(wall)
+        for _ in range(60):
+            space.step(DT)
+        box.position = 15 - 4, 0
+        places = []
+        for _ in range(30):
+            space.step(DT)
+            places.append(box.position.x)
+        return places
+
+    assert course(3.0) == course(0.0)
