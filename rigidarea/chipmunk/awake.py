@@ -62,6 +62,7 @@ def add_to_awake(tables: Tables, i: int, body: Any) -> None:
 def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
     """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
     counters = tables.counters
+    ahead = 0.5 * dt / s.substeps
     moved = True  # Chipmunk has moved what it has listed before the first that is held: that begins the frame
     i = -1
     for address in members(space, s.space_bodies):
@@ -72,14 +73,15 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         if body.stamp == s.frame:
             continue
         met = body.stamp >= 0
-        x, y, angle = body.x, body.y, body.angle
+        x, y, angle, w = body.x, body.y, body.angle, body.w
         body.left_vx = body.vx
         body.left_vy = body.vy
         notice(s, address, body)
         told = met and body.inverse_mass == 0.0 and body.inverse_moment == 0.0
-        body.put_x = body.x - x if told else 0.0
-        body.put_y = body.y - y if told else 0.0
-        body.put_a = body.angle - angle if told else 0.0
+        # a new velocity has it ahead, by half a substep, of who goes along as fast as it went
+        body.put_x = body.x - x + ahead * (body.vx - body.left_vx) if told else 0.0
+        body.put_y = body.y - y + ahead * (body.vy - body.left_vy) if told else 0.0
+        body.put_a = body.angle - angle + ahead * (body.w - w) if told else 0.0
         if not met:
             body.left_vx = body.vx
             body.left_vy = body.vy

@@ -10,9 +10,10 @@ import numpy as np
 from ..compile.jit import kernel
 from ..geometry.place import Pose, overlap_of_outlines
 from .constants import FOLLOWED, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
-from .exposed import TwoShapes, exposed_patch
+from .exposed import exposed_patch
 from .landing import find_other_end
 from .motion import centre_of, earlier, since_of, unseen_for
+from .neighbours import TwoShapes
 from .region import closing, fill, inverse_mass, is_face, others_push, put_closer, region_stiffness
 from .stiffness import depth_for, stiffness_of
 from .tables import FIXED, IMPACT, NEARING, PLACED, REST, STRUCK, Law

@@ -14,8 +14,9 @@ from ..compile.jit import kernel
 from ..geometry.place import overlap_of_outlines
 from ..geometry.work import Work
 from .constants import SMOOTH
-from .exposed import TwoShapes, exposed_patch
+from .exposed import exposed_patch
 from .motion import centre_of, earlier
+from .neighbours import TwoShapes
 from .patch import longest_edges
 from .region import closing, fill, least_extent
 from .stiffness import allowed_depth

@@ -20,7 +20,7 @@ from ..geometry.pool import Pool
 from ..geometry.work import Relative
 from .birth import arrives, bounces_again, crushed, end_comes_down, enter, expect, jumped_in, size_of
 from .constants import HIT
-from .exposed import TwoShapes, exposed_patch
+from .exposed import exposed_patch
 from .motion import (
     afford,
     centre_of,
@@ -31,6 +31,7 @@ from .motion import (
     time_of_impact,
     unseen_for,
 )
+from .neighbours import TwoShapes
 from .patch import centred, faceless
 from .region import closing, fill, steer, to_the_surfaces
 from .sides import length_on_first_edge, shown_sides

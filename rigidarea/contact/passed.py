@@ -216,8 +216,13 @@ def _line(
     side = kept
     if side * came <= -radius:  # put there by hand
         side = 0
-    if side == 0:  # where it has been over the line's end, the side that it was shown
-        side = -shown if shown != 0 and abs(came) < radius else (1 if came > 0.0 else -1)
+    if side == 0:
+        if abs(came) >= radius or (shown == 0 and 0.0 <= first <= length):
+            side = 1 if came > 0.0 else -1
+        else:  # where it has been over the line's end, the side that it was shown
+            side = -shown
+    if side == 0:
+        return 0, False
     if side * went > 0.0:
         return side, False
     through = abs(went) >= radius

@@ -27,7 +27,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..geometry.turning import turning_speed
+from ..geometry.turning import turning_speed, turning_together
 from .birth import drives, flies_off
 from .constants import DRIVEN_SPEED, OVERTAKE, PLACED_LOADS, PUT_SPEED, RELEASE_STEPS, TANGENT_STIFFNESS
 from .impact import begin_impact, damping_ratio, follow_impact, impact_force
@@ -63,10 +63,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
 
     Row.region, a, b are set by the caller.
     """
-    row.shift = 0.0
-    row.theta = 0.0
-    row.slid = 0.0
-    row.jammed = 0
+    row.shift = row.theta = row.slid = 0.0
+    row.jammed = row.swapped = 0
     row.friction = pair.friction
     row.most = 0.0
     surface = -pair.surface_x * r.ny + pair.surface_y * r.nx
@@ -103,14 +101,11 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
     # a given speed: of a bounce, or of what is yet to come, neither of which has borne a load
     gamma = 1.0 / inverse
     force = 0.0
-    row.alpha = 0.0
-    row.alpha_t = 0.0
+    row.alpha = row.alpha_t = 0.0
     row.gamma_t = 1.0 / inverse_t
     row.ft = 0.0
     row.tt = surface
-    row.l1 = 0.0
-    row.l2 = 0.0
-    row.lt = 0.0
+    row.l1 = row.l2 = row.lt = 0.0
     if r.mode >= STRUCK:
         r.spring = 0.0
     elif flies_off(law, pair, r, a, b, h):
@@ -132,6 +127,8 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
         row.lt = r.lt * (h / r.step)
     else:
         stiffness = max(stiffness, pair.firm)
+        if law.followed < math.inf:  # past a body's middle the area hardly grows: a force without a slope
+            stiffness = max(stiffness, elastic / r.depth)
         driven = drives(law, a) or drives(law, b)
         if r.placed == PLACED and law.stiffness == 0.0:
             pressed = pair.least if driven else max(pair.least, pair.load)
@@ -180,8 +177,9 @@ def make_row(row: Any, r: Any, law: Law, a: Any, b: Any, pair: Any, h: float) ->
                 row.t1 += turn_along(r, a, b, 0.0)
                 row.nx = r.nx
                 row.ny = r.ny
+        else:
+            row.t1 = row.t2 = turning_together(r, a, b, h)
     row.began = row.l1 + row.l2
-    row.swapped = 0
     row.mt = 1.0 / (row.alpha_t + row.gamma_t * inverse_t)
     lean_a = row.lean_a * ia
     lean_b = row.lean_b * ib

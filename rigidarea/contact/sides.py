@@ -6,9 +6,11 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
+from ..geometry.locate import way_into
 from ..geometry.overlap import A_EDGE, Relative, Work
 from ..geometry.place import Pose
 from ..geometry.pool import Pool
+from .constants import SMOOTH
 from .tables import Tables
 
 
@@ -56,14 +58,44 @@ def over(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> tuple[
 
 
 @kernel
+def _nearest_height(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, last: bool) -> float:
+    """To which side of a segment another outline is from its first end, or its last: left positive (length^2).
+
+    0: it is about straight on.
+    """
+    head = pool.heads[i]
+    p = head.point
+    dx = pool.points[p + 1, 0] - pool.points[p, 0]
+    dy = pool.points[p + 1, 1] - pool.points[p, 1]
+    lx = pool.points[p + last, 0] + head.x
+    ly = pool.points[p + last, 1] + head.y
+    x = pose.x + pose.c * lx - pose.s * ly - other_pose.x
+    y = pose.y + pose.s * lx + pose.c * ly - other_pose.y
+    it = pool.heads[other]
+    ux, uy = way_into(
+        pool,
+        other,
+        other_pose.c * x + other_pose.s * y - it.x,
+        other_pose.c * y - other_pose.s * x - it.y,
+    )
+    wx = other_pose.c * ux - other_pose.s * uy
+    wy = other_pose.s * ux + other_pose.c * uy
+    across = dx * (pose.c * wy - pose.s * wx) - dy * (pose.c * wx + pose.s * wy)
+    straight_on = across * across <= SMOOTH * (dx * dx + dy * dy) * (wx * wx + wy * wy)
+    return 0.0 if straight_on else float(across)
+
+
+@kernel
 def faces(
     pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int, kept: int, way: float
 ) -> int:
     """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
 
     The solid lies to the left of outline i's first edge, the segment, and the other outline's middle decides: the
-    solid is on the far side of it. `before`: what it showed when it was last looked at, 0: nothing. It shows that for
-    as long as the other one is over the segment and may reach through it: what tumbles has its middle on either side.
+    solid is on the far side of it. Where that is past an end, it says nothing (of a plank that lies across a peak it is
+    below the slope); what is nearest to the end does. `before`: what it showed when it was last looked at, 0: nothing.
+    It shows that for as long as the other one is over the segment and may reach through it: what tumbles has its middle
+    on either side.
     `kept`: on which side of it the other one has stayed when the last frame ended (`passed`), 0: not known. What
     bounces off one wall of a corner has its middle over neither, and may have gone a substep's `way` (length) too far.
     """
@@ -71,8 +103,12 @@ def faces(
     radius = pool.heads[other].radius
     if kept != 0 and abs(height) < radius + way:
         return -kept
-    if before != 0 and abs(height) < radius and 0.0 <= along <= length:
+    over_it = 0.0 <= along <= length
+    if before != 0 and abs(height) < radius and over_it:
         return before
+    if not over_it and abs(height) < radius and not pool.heads[other].disc:
+        nearest = _nearest_height(pool, i, pose, other, other_pose, along > 0.0)
+        height = nearest if nearest != 0.0 else height
     return 1 if height <= 0.0 else -1
 
 

@@ -11,7 +11,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.clearance import clearance
 from ..geometry.overlap import OVERFLOW
-from ..geometry.place import place, seen_from
+from ..geometry.place import overlap_of_outlines, place, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .birth import size_of
@@ -111,6 +111,7 @@ def _put_back(body: Any, back: float) -> None:
 def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: float) -> bool:
     """After a frame of dt: what has passed a shape that the user is to be asked about goes back to where they touch.
 
+    Not what overlaps it still, which Chipmunk will report where it is; a line does not say so of its solid side.
     False: the scratch is too small.
     """
     for i in range(tables.counters[NEAR]):
@@ -123,6 +124,10 @@ def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: fl
         if looks == 1 or (a.kind != DRIFTS and b.kind != DRIFTS):
             continue
         ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
+        lines = tables.shapes[pair.a].mirror >= 0 or tables.shapes[pair.b].mirror >= 0
+        n = 0 if lines else overlap_of_outlines(pool, ia, pose_of(a), ib, pose_of(b), work)[0]
+        if n > 0:
+            continue
         n, back = overlap_before(pool, work, ia, ib, a, b, dt, afford(tables.counters, looks))
         if n == OVERFLOW:
             tables.counters[MORE_WORK] = 1

@@ -1,4 +1,4 @@
-"""Whether a point lies inside an outline, and which of its edges is nearest."""
+"""Whether a point lies inside an outline, which of its edges is nearest, and which way it is from there."""
 
 from __future__ import annotations
 
@@ -89,4 +89,46 @@ def nearest_edge(pool: Pool, i: int, rel: Relative, x: float, y: float) -> tuple
         if distance < least:
             least = distance
             best = (px, py, qx, qy)
+    return best
+
+
+@kernel
+def way_into(pool: Pool, i: int, x: float, y: float) -> tuple[float, float]:
+    """Which way outline i is from a point of its frame, by what of its boundary is nearest: against the normal there.
+
+    Of a corner, towards it; from it where the point is within. Of any length, 0 on the corner itself.
+    """
+    head = pool.heads[i]
+    least = math.inf
+    best = (0.0, 0.0)
+    for e in range(head.point, head.point + head.count):
+        k = pool.following[e]
+        fx = x - pool.points[e, 0]
+        fy = y - pool.points[e, 1]
+        dx = pool.points[k, 0] - pool.points[e, 0]
+        dy = pool.points[k, 1] - pool.points[e, 1]
+        radius = pool.arcs[e, 2] if head.arcs > 0 else 0.0
+        out_x = dy
+        out_y = -dx
+        if radius == 0.0:
+            square = dx * dx + dy * dy
+            beside = 0.0 < fx * dx + fy * dy < square
+            distance = (fx * dy - fy * dx) ** 2 / square
+        else:  # of no more than half a turn: the way from the centre leaves between its two ends
+            ux = x - pool.arcs[e, 0]
+            uy = y - pool.arcs[e, 1]
+            turn = math.copysign(1.0, radius)
+            out_x = turn * ux
+            out_y = turn * uy
+            first = (ux - fx) * uy - (uy - fy) * ux
+            second = ux * (uy - fy + dy) - uy * (ux - fx + dx)
+            beside = turn * first >= 0.0 and turn * second >= 0.0
+            distance = (math.sqrt(ux * ux + uy * uy) - abs(radius)) ** 2
+        if beside and distance < least:
+            least = distance
+            best = (-out_x, -out_y)
+        distance = fx * fx + fy * fy
+        if distance < least:
+            least = distance
+            best = (fx, fy) if fx * dy - fy * dx < 0.0 else (-fx, -fy)
     return best

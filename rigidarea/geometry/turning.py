@@ -112,3 +112,21 @@ def turning_speed(r: Any, a: Any, b: Any, h: float) -> float:
     bend += wa * wa * r.lean_a - wb * wb * r.lean_b
     angle = h * (product * s + mixed) / both
     return h * bend / (1.0 + math.sqrt(1.0 + angle * angle))
+
+
+@kernel(forceinline=True)
+def turning_together(r: Any, a: Any, b: Any, h: float) -> float:
+    """The same of a face on a face, which have no curvature and go on turning as one: as fast as both turn at least.
+
+    A box in a drum goes straight on for a step, while the wall under it turns into its way.
+    """
+    wa = a.w - a.kick_w
+    wb = b.w - b.kick_w
+    if wa * wb <= 0.0:
+        return 0.0
+    w = wa if abs(wa) < abs(wb) else wb
+    ux = b.vx - b.kick_x - a.vx + a.kick_x
+    uy = b.vy - b.kick_y - a.vy + a.kick_y
+    s = uy * r.nx - ux * r.ny + wb * r.lean_b - wa * r.lean_a
+    bend = 2.0 * s * w + w * w * (r.lean_a - r.lean_b)
+    return float(h * bend / (1.0 + math.sqrt(1.0 + h * h * w * w)))

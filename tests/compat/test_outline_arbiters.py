@@ -11,6 +11,7 @@ import random
 import numpy as np
 import pymunk
 import pytest
+import shapely
 
 import rigidarea as ra
 
@@ -50,8 +51,20 @@ def place(body: pymunk.Body) -> tuple[float, float, float]:
     return (*body.position, body.angle)
 
 
+def _way(start: pymunk.Vec2d, end: pymunk.Vec2d, middle: pymunk.Vec2d, far: shapely.Polygon) -> pymunk.Vec2d:
+    """From a line to what is on one side of it: its middle, or past an end what is nearest to that."""
+    along = (end - start).normalized()
+    if 0 <= (middle - start).dot(along) <= (end - start).length:
+        return middle - start
+    tip = start if (middle - start).dot(along) < 0 else end
+    near = pymunk.Vec2d(*shapely.shortest_line(far.boundary, shapely.Point(tip)).coords[0])
+    way = (tip - near if far.contains(shapely.Point(tip)) else near - tip).normalized()
+    return way if abs(along.cross(way)) > math.sqrt(0.02) else middle - start
+
+
 def true_regions(a: pymunk.Shape, b: pymunk.Shape) -> np.ndarray:
-    """All, the largest first; of a line the side away from the other's middle is solid."""
+    """All, the largest first; of a line the side away from the other is solid: from its middle, or past the line's ends
+    from what is nearest to the end."""
     found = []
     one, other = (ra.Outline.from_pymunk(shape) for shape in (a, b))
     sides = []
@@ -62,8 +75,11 @@ def true_regions(a: pymunk.Shape, b: pymunk.Shape) -> np.ndarray:
         end, start = (shape.body.local_to_world(p.tolist()) for p in own.rings[0][:2])
         lower, upper = np.reshape(far.bounds, (2, 2))
         middle = partner.body.local_to_world(tuple((lower + upper) / 2))
+        rings = [far.polygon.exterior, *far.polygon.interiors]
+        there, *holes = ([partner.body.local_to_world(p) for p in ring.coords] for ring in rings)
+        way = _way(start, end, middle, shapely.Polygon(there, holes))
         # the outline is on the right of start -> end, the mirror on its left
-        sides.append(own if (end - start).cross(middle - start) > 0 else own.mirror)
+        sides.append(own if (end - start).cross(way) > 0 else own.mirror)
     found = ra.overlap(sides[0], place(a.body), sides[1], place(b.body))
     return found[np.argsort(-found["area"])]
 
