@@ -7,12 +7,15 @@ its sweeps, so that an arbiter that is asked has an answer. `advance` is several
 
 from __future__ import annotations
 
+import math
+from typing import Any
+
 import numpy as np
 
 from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at
 from ..contact.space_record import load_tables
-from ..contact.tables import COUNTED, TOLD, find_pair
+from ..contact.tables import COUNTED, TOLD, Tables, find_pair
 from .awake import look_again
 from .begin import begin, listened
 from .frame import whole_frame
@@ -20,6 +23,9 @@ from .joints import give_back, hide, joints_of
 from .phases import REPORTING, lap, start
 from .record import floats, members, row_of_shape, state_of, time_step, timestamp, user_data, words
 from .structs import function
+
+#: Two directions are of one contact up to the angle with this cosine, 60 degrees.
+ALIKE = 0.5
 
 _step = function("cpSpaceStep", "void(uintp, float64)")
 
@@ -76,6 +82,26 @@ def solve(constraint: int, coefficient: float) -> None:
         hide(s)
 
 
+@kernel
+def _turn_normal(tables: Tables, pair: Any, n: np.ndarray, sign: float) -> None:
+    """Chipmunk finds any normal of two corners that touch: where no region has it, it is that of what bears most."""
+    most = 0.0
+    nx = n[0]
+    ny = n[1]
+    r = pair.head
+    while r >= 0:
+        region = tables.regions[r]
+        if sign * (n[0] * region.nx + n[1] * region.ny) > ALIKE:
+            return
+        if region.force > most:
+            most = region.force
+            nx = sign * region.nx
+            ny = sign * region.ny
+        r = region.next
+    n[0] = nx
+    n[1] = ny
+
+
 @callback("void(uintp, uintp)")
 def report(constraint: int, space: int) -> None:
     """After Chipmunk's sweeps: arbiters get their contact points again, with the impulse of the frame."""
@@ -102,6 +128,8 @@ def report(constraint: int, space: int) -> None:
             continue
         n = floats(arbiter + s.arbiter_normal, 2)
         sign = -1.0 if pair.swapped else 1.0
+        if sign * (pair.jx * n[0] + pair.jy * n[1]) < ALIKE * math.hypot(pair.jx, pair.jy):
+            _turn_normal(tables, pair, n, sign)
         normal = sign * (pair.jx * n[0] + pair.jy * n[1]) / pair.points
         tangent = sign * (pair.jy * n[0] - pair.jx * n[1]) / pair.points
         point = words(arbiter + s.arbiter_contacts, 1)[0]

@@ -247,3 +247,23 @@ def test_contact_points_are_drawn_where_pymunk_draws_them(seed):
     assert len(drawn[0]) == len(drawn[1]) > 0
     for native, own in zip(*drawn):
         assert own == pytest.approx(native, abs=1e-6)
+
+
+@pytest.mark.parametrize("height, slopes", [(10.4, (3, -7)), (5.7, (-2, 4)), (14.5, (9, 9)), (0.0, (-6, -1))])
+def test_who_stands_on_a_corner_has_a_normal_that_says_so(height, slopes):
+    """An upright capsule exactly above a chain's corner: Chipmunk finds (1, 0), of 300 in 32. Up or across: up."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    for side, slope in zip((-60, 60), slopes):
+        space.add(pymunk.Segment(space.static_body, (0, height), (side, height - abs(slope)), 2))
+    body = pymunk.Body(1, float("inf"))
+    body.position = 0, height + 30
+    space.add(body, pymunk.Segment(body, (0, -10), (0, 10), 10))
+    ra.attach(space)
+    for _ in range(60):
+        space.step(1 / 60)
+    normals = []
+    body.each_arbiter(lambda arbiter: normals.append(arbiter.normal))
+    # into what it stands on
+    assert normals
+    assert any(n.y < -0.9 for n in normals)
