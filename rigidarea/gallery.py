@@ -167,9 +167,7 @@ def decompose(space: pymunk.Space) -> int:
             continue
         if outline not in known:
             rings = [np.asarray(ring) for ring in outline.polygon_rings]
-            known[outline] = (
-                rings[:1] if outline.convex else convex_pieces((rings[0], tuple(rings[1:])), most=12)
-            )
+            known[outline] = rings[:1] if outline.convex else convex_pieces(rings, most=12)
         space.remove(shape)
         for piece in known[outline]:
             poly = pymunk.Poly(shape.body, piece.tolist())

@@ -7,7 +7,7 @@ import os
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
-from functools import partial
+from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,7 @@ from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
 from .records import Row
 from .scene import Scene, check_known
-from .timing import median_times, one_core, spent
+from .timing import exponent, median_times, one_core, spent
 
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
 
@@ -66,16 +66,13 @@ def frame_row(scene: Scene, peer: str, settings: dict[str, Any]) -> Row:
     times: list[float] = []
     with one_core():
         run.advance(WARM)
-        started = time.perf_counter()
-        while len(times) < scene.frames - WARM and (
-            time.perf_counter() - started < BUDGET_S or len(times) < 20
-        ):
+        end = time.perf_counter() + BUDGET_S
+        while len(times) < scene.frames - WARM and (time.perf_counter() < end or len(times) < 20):
             before = time.perf_counter()
             run.advance(1)
             times.append(1e3 * (time.perf_counter() - before))
-    done = WARM + len(times)
     again = get_peer(peer).build(scene, settings)
-    trace = record(again, scene, min(done, scene.frames))
+    trace = record(again, scene, min(WARM + len(times), scene.frames))
     return {
         "scene": scene.name,
         "bodies": moving,
@@ -99,8 +96,7 @@ def growth(rows: Sequence[Row]) -> list[Row]:
     found = []
     for (scene, peer, _), group in groups.items():
         if len(group) > 1:
-            logs = np.log([(row["bodies"], row["frame_ms_median"]) for row in group])
-            slope = float(np.polyfit(logs[:, 0], logs[:, 1], 1)[0])
+            slope = exponent([row["bodies"] for row in group], [row["frame_ms_median"] for row in group])
             found.append({"scene": scene, "peer": peer, "settings": group[0]["settings"], "exponent": slope})
     return found
 
@@ -251,47 +247,42 @@ class Query:
         self.pool, self.pose = pack([a, b]), pose
         points, rings = sum(len(r) for r in (*a.rings, *b.rings)), len(a.rings) + len(b.rings)
         self.work = new_work()
-        self.regions = -1 if not fits(self.work, points, rings) else _loop(self.pool, *pose, self.work, 1)
+        self.regions = int(_loop()(self.pool, *pose, self.work, 1)) if fits(self.work, points, rings) else -1
         while self.regions < 0 and len(self.work.cross) < 10**6:
             self.work = enlarged(self.work, points, rings)
-            self.regions = _loop(self.pool, *pose, self.work, 1)
+            self.regions = int(_loop()(self.pool, *pose, self.work, 1))
         self.area = float(sum(self.work.loops["area"][: self.regions]))
         self.count = 1
         while self._seconds() < 0.005:
             self.count *= 2
 
     def _seconds(self) -> float:
-        return spent(_loop, self.pool, *self.pose, self.work, self.count)
+        return spent(_loop(), self.pool, *self.pose, self.work, self.count)
 
     def time_us(self) -> float:
         """Mean time of a query (µs)."""
         return 1e6 * self._seconds() / self.count
 
 
-def _loop(pool: Any, x: float, y: float, angle: float, work: Any, count: int) -> int:
+@cache
+def _loop() -> Any:
     """Compiled on first use: `count` queries, the loops found by the last."""
-    global _compiled
-    if _compiled is None:
-        from ..compile.jit import entry
-        from ..geometry.overlap import overlap_kernel
-        from ..geometry.work import relative
+    from ..compile.jit import entry
+    from ..geometry.overlap import overlap_kernel
+    from ..geometry.work import relative
 
-        @entry
-        def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
-            found = 0
-            for i in range(count):
-                a, b = pool.heads[0], pool.heads[1]
-                c, s = math.cos(angle), math.sin(angle)
-                bx = x + 1e-13 * (i % 7)
-                rel = relative(0.0, 0.0, 1.0, 0.0, bx, y, c, s, a["x"], a["y"], b["x"], b["y"])
-                found = overlap_kernel(pool, 0, pool, 1, rel, work)
-            return found
+    @entry
+    def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
+        found = 0
+        for i in range(count):
+            a, b = pool.heads[0], pool.heads[1]
+            c, s = math.cos(angle), math.sin(angle)
+            bx = x + 1e-13 * (i % 7)
+            rel = relative(0.0, 0.0, 1.0, 0.0, bx, y, c, s, a["x"], a["y"], b["x"], b["y"])
+            found = overlap_kernel(pool, 0, pool, 1, rel, work)
+        return found
 
-        _compiled = loop
-    return int(_compiled(pool, x, y, angle, work, count))
-
-
-_compiled: Any = None
+    return loop
 
 
 # Memory

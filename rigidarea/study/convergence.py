@@ -16,6 +16,7 @@ import numpy as np
 
 from .records import Row
 from .scene import Array, full_circle
+from .timing import exponent
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,7 @@ class Study:
     @property
     def order(self) -> float:
         """Slope of log error over log knob, by least squares."""
-        return float(np.polyfit(np.log(self.x), np.log(self.error), 1)[0])
+        return exponent(self.x, self.error)
 
     def row(self) -> Row:
         """The study as it is written to files."""

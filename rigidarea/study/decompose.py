@@ -15,7 +15,7 @@ def triangles(rings: Rings) -> list[Array]:
     """Counter-clockwise triangles (3, 2) that tile an outline with holes exactly; no vertices are added."""
     import shapely
 
-    outer, holes = rings
+    outer, *holes = rings
     parts = shapely.constrained_delaunay_triangles(shapely.Polygon(outer, holes)).geoms
     return [np.asarray(shapely.orient_polygons(part).exterior.coords)[:-1] for part in parts]
 

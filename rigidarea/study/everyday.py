@@ -8,7 +8,6 @@ time: what slows the machine slows them alike, and nobody's memory is cold. Nobo
 from __future__ import annotations
 
 import statistics
-import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -20,7 +19,7 @@ from .everyday_scenes import EVERYDAY, Everyday, metre_pyramid
 from .peers import Run, Settings, get_peer
 from .records import Row
 from .scene import VX, VY, Array, Scene, Trace, X, check_known
-from .timing import one_core
+from .timing import one_core, spent
 
 OURS = "rigidarea"
 SLOP = 0.1 / 30
@@ -99,9 +98,7 @@ def race(scene: Scene, engines: Mapping[str, tuple[str, Settings]]) -> dict[str,
         for first in range(0, scene.frames, BLOCK):
             for course in courses.values():
                 for frame in range(first + 1, min(first + BLOCK, scene.frames) + 1):
-                    before = time.thread_time()
-                    course.run.advance(1)
-                    course.frame_ms.append(1e3 * (time.thread_time() - before))
+                    course.frame_ms.append(1e3 * spent(course.run.advance, 1))
                     if frame > last and frame % LOOK_EVERY == 0:
                         course.speed_left = max(course.speed_left, fastest(course.run.state()[moving]))
                     if frame % second == 0 and hasattr(course.run, "contacts"):
@@ -290,9 +287,4 @@ def _sleeps(body: Any) -> bool:
 
 
 def _frames_ms(run: Run, count: int) -> list[float]:
-    times = []
-    for _ in range(count):
-        before = time.thread_time()
-        run.advance(1)
-        times.append(1e3 * (time.thread_time() - before))
-    return times
+    return [1e3 * spent(run.advance, 1) for _ in range(count)]

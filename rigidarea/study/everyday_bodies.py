@@ -21,10 +21,10 @@ WALL_PX = 5.0
 """Radius of floors and walls (px)."""
 
 
-def walls(*points: tuple[float, float], name: str = "walls") -> Body:
+def walls(*points: tuple[float, float], radius: float = WALL_PX, name: str = "walls") -> Body:
     """A static body of segments from point to point."""
-    pairs = itertools.pairwise(points)
-    return Body(name, tuple(Segment(a, b, WALL_PX) for a, b in pairs), kind="static")
+    segments = tuple(Segment(a, b, radius) for a, b in itertools.pairwise(points))
+    return Body(name, segments, kind="static")
 
 
 def open_box(width: float, height: float) -> Body:

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 import numpy as np
 
-from .scene import Body, Circle, Polygon, Segment, box, box_moment
-
-SIDE = 30.0
-"""Of a box, and a disc's diameter (px)."""
-
-GRAVITY = 900.0
-
-FRAME = 1 / 60
-
-BLOCK = 10
-"""Frames of one engine before it is the next one's turn."""
-
-BURST = 5
-"""Bodies that come, and go, in each frame of `come`."""
+from .everyday_bodies import SIDE_PX as SIDE
+from .everyday_bodies import ground, walls
+from .scene import Body, block, box, disc
 
 
 @dataclass(frozen=True)
@@ -40,45 +28,26 @@ class Growing:
     sizes: tuple[int, ...]
     settle: int = 120
     frames: int = 120
-    elasticity: float = 0.0
     changes: bool = False
     asleep: bool = False
     seeds: tuple[int, ...] = ()
 
 
-def _box(name: str, x: float, y: float, **more: Any) -> Body:
-    return Body(name, (box(SIDE, SIDE),), (x, y), mass=1.0, moment=box_moment(1.0, SIDE, SIDE), **more)
-
-
-def _disc(name: str, x: float, y: float, radius: float = SIDE / 2, **more: Any) -> Body:
-    return Body(name, (Circle(radius),), (x, y), mass=1.0, moment=0.5 * radius**2, **more)
-
-
-def _pile(n: int = 100, x: float = 0.0, y: float = 0.0) -> list[Body]:
-    """n boxes in columns of ten, apart."""
-    return [
-        _box(f"box {i}", x + (i // 10 - n / 20) * 1.5 * SIDE, y + (i % 10 + 0.5) * SIDE) for i in range(n)
-    ]
-
-
-def _tile(x: float, y: float) -> Polygon:
-    h = SIDE / 2
-    return Polygon(((x - h, y - h), (x + h, y - h), (x + h, y + h), (x - h, y + h)))
+def _boxes(places: Iterable[tuple[float, float]]) -> list[Body]:
+    return [block(f"box {i}", SIDE, SIDE, place) for i, place in enumerate(places)]
 
 
 def _level(n: int, top: float = 0.0) -> Body:
     """n tiles, 100 to a row, the upper side of the first row at `top`; none: one slab instead."""
-    if n == 0:
-        slab = 50 * SIDE
-        corners = ((-slab, top - SIDE), (slab, top - SIDE), (slab, top), (-slab, top))
-        return Body("level", (Polygon(corners),), kind="static")
-    tiles = tuple(_tile((i % 100 - 49.5) * SIDE, top - (i // 100 + 0.5) * SIDE) for i in range(n))
-    return Body("level", tiles, kind="static")
+    places = [((i % 100 - 49.5) * SIDE, top - (i // 100 + 0.5) * SIDE) for i in range(n)]
+    slab = box(100 * SIDE, SIDE, (0.0, top - SIDE / 2))
+    return Body("level", tuple(box(SIDE, SIDE, place) for place in places) or (slab,), kind="static")
 
 
 def tiles(n: int, height: float = 0.0) -> list[Body]:
     """100 boxes on a level, or so far above it (length)."""
-    return [_level(n), *_pile(y=height)]
+    columns = [((i // 10 - 5.0) * 1.5 * SIDE, height + (i % 10 + 0.5) * SIDE) for i in range(100)]
+    return [_level(n), *_boxes(columns)]
 
 
 def _terrain(n: int, radius: float) -> tuple[Body, Callable[[float], float]]:
@@ -88,24 +57,19 @@ def _terrain(n: int, radius: float) -> tuple[Body, Callable[[float], float]]:
         return 12.0 * math.sin(x / 60.0) + 0.1 * abs(x)
 
     xs = [20.0 * (i - n / 2) for i in range(n + 1)]
-    shapes = tuple(Segment((a, height(a)), (b, height(b)), radius) for a, b in itertools.pairwise(xs))
-    return Body("terrain", shapes, kind="static"), height
+    return walls(*((x, height(x)) for x in xs), radius=radius, name="terrain"), height
 
 
 def rolling(n: int, radius: float, boxes: bool) -> list[Body]:
     """100 discs or boxes let go on a terrain, as far apart as it is long."""
-    ground, height = _terrain(n, radius)
+    terrain, height = _terrain(n, radius)
     apart = 20.0 * n * 0.9 / 100
-    made: list[Body] = [ground]
+    size = min(SIDE, 0.8 * apart)
+    made = [terrain]
     for i in range(100):
         x = (i - 49.5) * apart
-        size = min(SIDE, 0.8 * apart)
-        y = height(x) + radius + 0.9 * size
-        if boxes:
-            shape, moment = (box(size, size),), box_moment(1.0, size, size)
-            made.append(Body(f"body {i}", shape, (x, y), mass=1.0, moment=moment))
-        else:
-            made.append(_disc(f"body {i}", x, y, size / 2))
+        name, place = f"body {i}", (x, height(x) + radius + 0.9 * size)
+        made.append(block(name, size, size, place) if boxes else disc(name, size / 2, place))
     return made
 
 
@@ -114,47 +78,44 @@ def pit(n: int, radius: float, boxes: bool, seed: int) -> list[Body]:
     wide = 1.2 * SIDE * math.sqrt(n)
     rng = np.random.default_rng([n, seed])
     corners = [(-wide / 2, 4 * wide), (-wide / 2, 0.0), (wide / 2, 0.0), (wide / 2, 4 * wide)]
-    walls = tuple(Segment(a, b, radius) for a, b in itertools.pairwise(corners))
-    made = [Body("pit", walls, kind="static")]
+    made = [walls(*corners, radius=radius, name="pit")]
     across = int(wide / SIDE / 1.35)
     for i in range(n):
         x = (i % across - (across - 1) / 2) * 1.3 * SIDE + rng.uniform(-2, 2)
-        y = (i // across + 1) * 1.5 * SIDE
-        make = _box if boxes else _disc
-        made.append(make(f"body {i}", x, y, angle=float(rng.uniform(0, 6)) if boxes else 0.0))
+        name, place = f"body {i}", (x, (i // across + 1) * 1.5 * SIDE)
+        if boxes:
+            made.append(block(name, SIDE, SIDE, place, angle=float(rng.uniform(0, 6))))
+        else:
+            made.append(disc(name, SIDE / 2, place))
     return made
 
 
 def sleepers(n: int) -> list[Body]:
     """n boxes in columns of two on one floor."""
-    floor = Segment((-n * SIDE, -5.0), (n * SIDE, -5.0), 5.0)
-    made = [Body("floor", (floor,), kind="static")]
-    return made + [_box(f"box {i}", (i // 2 - n / 4) * 1.5 * SIDE, (i % 2 + 0.5) * SIDE) for i in range(n)]
+    return [
+        ground(n * SIDE),
+        *_boxes(((i // 2 - n / 4) * 1.5 * SIDE, (i % 2 + 0.5) * SIDE) for i in range(n)),
+    ]
 
 
 def come(n: int) -> list[Body]:
     """n discs side by side on one floor; in each frame some go, and others come where they were."""
-    floor = Segment((-n * SIDE, -5.0), (n * SIDE, -5.0), 5.0)
-    made = [Body("floor", (floor,), kind="static")]
-    return made + [_disc(f"disc {i}", (i - n / 2) * 1.2 * SIDE, SIDE / 2) for i in range(n)]
+    places = [((i - n / 2) * 1.2 * SIDE, SIDE / 2) for i in range(n)]
+    return [ground(n * SIDE), *(disc(f"disc {i}", SIDE / 2, place) for i, place in enumerate(places))]
 
 
 def lift(n: int) -> list[Body]:
     """20 boxes on a plate that rises, n tiles elsewhere."""
     plate = Body("lift", (box(12 * SIDE, SIDE),), (0.0, 2 * SIDE), kind="kinematic", velocity=(0.0, 20.0))
-    boxes = [
-        _box(f"box {i}", (i % 5 - 2) * 1.5 * SIDE, 2.5 * SIDE + (i // 5 + 0.5) * SIDE) for i in range(20)
-    ]
-    return [_level(n, -10 * SIDE), plate, *boxes]
+    places = [((i % 5 - 2) * 1.5 * SIDE, 2.5 * SIDE + (i // 5 + 0.5) * SIDE) for i in range(20)]
+    return [_level(n, -10 * SIDE), plate, *_boxes(places)]
 
 
 def flight(n: int) -> list[Body]:
     """n discs thrown, none near another."""
     across = int(math.sqrt(n)) + 1
-    return [
-        _disc(f"disc {i}", 3 * SIDE * (i % across), 3 * SIDE * (i // across), velocity=(100.0, 900.0))
-        for i in range(n)
-    ]
+    places = [(3 * SIDE * (i % across), 3 * SIDE * (i // across)) for i in range(n)]
+    return [disc(f"disc {i}", SIDE / 2, place, velocity=(100.0, 900.0)) for i, place in enumerate(places)]
 
 
 def _families() -> dict[str, Growing]:
@@ -170,21 +131,16 @@ def _families() -> dict[str, Growing]:
         "lift": Growing("20 boxes on a lift, tiles elsewhere", lift, (0, 1000, 10000)),
         "flight": Growing("discs in flight", flight, (200, 2000), settle=5, frames=60),
     }
-    for boxes in (False, True):
-        who = "boxes" if boxes else "discs"
+    for who, boxes in (("discs", False), ("boxes", True)):
         for radius in (0.0, 3.0):
-            title, make = (
-                f"100 {who} on terrain of radius {radius:g}",
-                partial(rolling, radius=radius, boxes=boxes),
-            )
+            make = partial(rolling, radius=radius, boxes=boxes)
+            title = f"100 {who} on terrain of radius {radius:g}"
             found[f"rolling {who} {radius:g}"] = Growing(title, make, (200, 1000), settle=30)
         for radius in (0.0, 5.0):
-            title, make = (
-                f"{who} fall into a pit, walls of radius {radius:g}",
-                partial(pit, radius=radius, boxes=boxes),
-            )
-            seeds = tuple(range(6))
-            found[f"pit {who} {radius:g}"] = Growing(title, make, (100,), settle=0, frames=240, seeds=seeds)
+            make = partial(pit, radius=radius, boxes=boxes)
+            title = f"{who} fall into a pit, walls of radius {radius:g}"
+            timed: dict[str, Any] = {"settle": 0, "frames": 240, "seeds": tuple(range(6))}
+            found[f"pit {who} {radius:g}"] = Growing(title, make, (100,), **timed)
     return found
 
 

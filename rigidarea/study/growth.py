@@ -7,8 +7,7 @@ steps its space: `space.step(1 / 60)`. In pixels; bodies of 30.
 from __future__ import annotations
 
 import math
-import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,86 +16,96 @@ import pymunk
 import rigidarea
 
 from ..report import Progress, envelope
-from .growing_scenes import BLOCK, BURST, FRAME, GRAVITY, GROWING, SIDE, Growing
-from .peers import get_peer
+from .everyday import BLOCK
+from .everyday_bodies import GRAVITY_PX as GRAVITY
+from .everyday_bodies import SIDE_PX as SIDE
+from .growing_scenes import GROWING, Growing
+from .peers import drive, get_peer
 from .peers.pymunk_peer import make_space, plain_shapes
 from .records import Row
-from .scene import Scene, check_known, set_up
-from .timing import one_core
+from .scene import Body, Scene, check_known, set_up
+from .timing import exponent, one_core, spent
 
+FRAME = 1 / 60
+BURST = 5
+"""Bodies that come, and go, in each frame of `come`."""
 BOX2D = {"steps": 1, "substeps": 4, "stiff": False, "length": 1}
 
 
-class _Space:
+class _Course:
+    """A scene in an engine: `advance` is its step, `renewed` what is put in place of one of `moving`."""
+
+    moving: list[Any]
+    advance: Callable[[], None]
+    renewed: Callable[..., tuple[Any, Any]]
+
+    def __init__(self, growing: Growing, scene: Scene) -> None:
+        self.growing, self.scene, self.gone, self.start_s = growing, scene, 0, math.nan
+
+    def frame(self) -> None:
+        for _ in range(BURST if self.growing.changes else 0):
+            k = 7 * self.gone % len(self.moving)
+            self.moving[k] = self.renewed(*self.moving[k])
+            self.gone += 1
+        self.advance()
+
+
+class _Space(_Course):
     """A scene in a pymunk space, attached or not."""
 
     def __init__(self, growing: Growing, scene: Scene, ours: bool) -> None:
-        self.growing, self.scene = growing, scene
+        super().__init__(growing, scene)
         self.space, bodies = make_space(scene, plain_shapes)
         self.moving = [(b, next(iter(b.shapes))) for b in bodies if b.body_type == pymunk.Body.DYNAMIC]
         if growing.asleep:
             self.space.sleep_time_threshold = 0.2
             while any(not body.is_sleeping for body, _ in self.moving):
-                self.space.step(FRAME)
-        self.gone = 0
-        before = time.thread_time()
+                self.advance()
+        self.start_s = spent(self._begin, ours)
+
+    def _begin(self, ours: bool) -> None:
         if ours:
             rigidarea.attach(self.space)
-        self.space.step(FRAME)
-        self.start_s = time.thread_time() - before
+        self.advance()
 
-    def frame(self) -> None:
-        if self.growing.changes:
-            for _ in range(BURST):
-                k = 7 * self.gone % len(self.moving)
-                body, shape = self.moving[k]
-                new = pymunk.Body(1.0, 0.5 * (SIDE / 2) ** 2)
-                new.position = body.position
-                disc = pymunk.Circle(new, SIDE / 2)
-                disc.friction = shape.friction
-                self.space.remove(body, shape)
-                self.space.add(new, disc)
-                self.moving[k] = new, disc
-                self.gone += 1
+    def advance(self) -> None:
         self.space.step(FRAME)
 
+    def renewed(self, body: pymunk.Body, shape: pymunk.Shape) -> tuple[pymunk.Body, pymunk.Shape]:
+        new = pymunk.Body(1.0, 0.5 * (SIDE / 2) ** 2)
+        new.position = body.position
+        disc = pymunk.Circle(new, SIDE / 2)
+        disc.friction = shape.friction
+        self.space.remove(body, shape)
+        self.space.add(new, disc)
+        return new, disc
 
-class _World:
+
+class _World(_Course):
     """The same in Box2D."""
 
-    start_s = math.nan
-
     def __init__(self, growing: Growing, scene: Scene, ours: bool) -> None:
-        self.growing, self.scene = growing, scene
+        super().__init__(growing, scene)
         run: Any = get_peer("box2d").build(scene, BOX2D)
+        pairs = zip(run.bodies, scene.bodies)
+        self.moving = [(made, body) for made, body in pairs if body.kind == "dynamic"]
         self.run = run
-        moves = [body.kind == "dynamic" for body in scene.bodies]
-        self.moving = [(made, body) for made, body, moving in zip(run.bodies, scene.bodies, moves) if moving]
-        self.gone = 0
         if growing.asleep:
             run.world.sleeping_enabled = True
             while any(made.awake for made, _ in self.moving):
-                self.run.advance(10)
+                run.advance(10)
 
-    def frame(self) -> None:
-        if self.growing.changes:
-            import pyb2d3
-
-            for _ in range(BURST):
-                k = 7 * self.gone % len(self.moving)
-                made, body = self.moving[k]
-                made.destroy()
-                self.moving[k] = self.run._add(pyb2d3, self.scene, body, 1e-3), body
-                self.gone += 1
+    def advance(self) -> None:
         self.run.advance(1)
+
+    def renewed(self, made: Any, body: Body) -> tuple[Any, Body]:
+        made.destroy()
+        return self.run.add(self.scene, body, 1e-3), body
 
 
 def _scene(growing: Growing, name: str, size: int, course: int = 0) -> Scene:
     made = growing.make(size, seed=growing.seeds[course]) if growing.seeds else growing.make(size)
-    return set_up(
-        name, made, 1.0, gravity=(0.0, -GRAVITY), friction=0.5, elasticity=growing.elasticity, size=SIDE,
-        pressure=GRAVITY / SIDE,
-    )  # fmt: skip
+    return set_up(name, made, 1.0, gravity=(0.0, -GRAVITY), friction=0.5, size=SIDE, pressure=GRAVITY / SIDE)
 
 
 def measured(name: str, size: int, engines: Sequence[str]) -> Row:
@@ -110,25 +119,19 @@ def measured(name: str, size: int, engines: Sequence[str]) -> Row:
         with one_core():
             for first in range(-growing.settle, growing.frames, BLOCK):
                 for engine, run in runs.items():
-                    for _ in range(BLOCK):
-                        before = time.thread_time()
-                        run.frame()
-                        if first >= 0:
-                            times[engine].append(1e6 * (time.thread_time() - before))
+                    found = [1e6 * spent(run.frame) for _ in range(BLOCK)]
+                    times[engine] += found if first >= 0 else []
     shapes = sum(len(body.shapes) for body in scene.bodies)
     row: Row = {"scene": name, "size": size, "shapes": shapes}
     for engine in kinds:
         found = sorted(times.get(engine, []))
-        mean = float(np.mean(found)) if found else None
-        worst = float(np.mean(found[-max(1, len(found) // 10) :])) if found else None
-        if engine == "frame":
-            row |= {"frame_us_mean": mean, "frame_us_worst_tenth": worst}
-        else:
-            row |= {f"{engine}_us": mean, f"{engine}_us_worst_tenth": worst}
-    ours, theirs = row["frame_us_mean"], row["native_1_us"]
-    row["ratio_mean"] = ours / theirs if ours and theirs else None
-    both = row["frame_us_worst_tenth"], row["native_1_us_worst_tenth"]
-    row["ratio_worst_tenth"] = both[0] / both[1] if all(both) else None
+        mean = "frame_us_mean" if engine == "frame" else f"{engine}_us"
+        worst = f"{mean.removesuffix('_mean')}_worst_tenth"
+        row[mean] = float(np.mean(found)) if found else None
+        row[worst] = float(np.mean(found[-max(1, len(found) // 10) :])) if found else None
+    for ratio, key in (("ratio_mean", "us_mean"), ("ratio_worst_tenth", "us_worst_tenth")):
+        ours, theirs = row[f"frame_{key}"], row[f"native_1_{key.removesuffix('_mean')}"]
+        row[ratio] = ours / theirs if ours and theirs else None
     if "frame" in runs:
         row["start_ms"] = 1e3 * runs["frame"].start_s
         row["start_us_per_shape"] = 1e6 * runs["frame"].start_s / shapes
@@ -148,10 +151,7 @@ def small_spaces(count: int = 30, bodies: int = 20) -> Row:
                 body.position = 1.5 * SIDE * i, 0
                 space.add(body, pymunk.Poly.create_box(body, (SIDE, SIDE)))
             space.add(pymunk.Segment(space.static_body, (-SIDE, -20), (2 * SIDE * bodies, -20), 5))
-            before = time.thread_time()
-            rigidarea.attach(space)
-            space.step(FRAME)
-            times.append(1e3 * (time.thread_time() - before))
+            times.append(1e3 * spent(lambda space=space: (rigidarea.attach(space), space.step(FRAME))))
         row[key] = float(np.median(times[1:]))
     row["start_us_per_shape"] = 1e3 * row["start_ms"] / (bodies + 1)
     return row
@@ -180,10 +180,7 @@ def phases(chosen: dict[str, tuple[str, int]] | None = None) -> list[Row]:
             for _ in range(growing.settle):
                 run.frame()
             contact._state["phases_at"] = times.ctypes.data
-            before = time.thread_time()
-            for _ in range(growing.frames):
-                run.frame()
-            whole = time.thread_time() - before
+            whole = spent(drive, run.frame, growing.frames)
             contact._state["phases_at"] = 0
         own = 1e6 * times[:-1] / growing.frames
         frame = 1e6 * whole / growing.frames
@@ -206,9 +203,8 @@ def growth(names: Sequence[str] = (), sizes: Sequence[int] = (), peer_names: Seq
     engines = [engine for engine in ("native_1", "frame", "box2d") if not peer_names or engine in peer_names]
     if "box2d" in engines and get_peer("box2d").refuses(_scene(GROWING["lift"], "lift", 0)):
         engines.remove("box2d")
-    chosen = [
-        (name, size) for name in names or GROWING if name in GROWING for size in sizes or GROWING[name].sizes
-    ]
+    families = [name for name in names or GROWING if name in GROWING]
+    chosen = [(name, size) for name in families for size in sizes or GROWING[name].sizes]
     progress = Progress("growth", len(chosen) + 1)
     if "frame" in engines:
         measured("falling", 1000, ["frame"])  # what a process loads once is no frame's
@@ -225,13 +221,8 @@ def exponents(rows: Sequence[Row]) -> list[Row]:
     found = []
     for name in dict.fromkeys(row["scene"] for row in rows):
         for key in ("native_1_us", "frame_us_mean", "box2d_us"):
-            logs = [
-                (math.log(row["size"]), math.log(row[key]))
-                for row in rows
-                if row["scene"] == name and row["size"] > 0 and row.get(key)
-            ]
-            if len(logs) > 1:
-                sizes, costs = np.array(logs).T
-                slope = float(np.polyfit(sizes, costs, 1)[0])
+            own = [row for row in rows if row["scene"] == name and row["size"] > 0 and row.get(key)]
+            if len(own) > 1:
+                slope = exponent([row["size"] for row in own], [row[key] for row in own])
                 found.append({"scene": name, "engine": key, "exponent": slope})
     return found

@@ -10,7 +10,7 @@ from __future__ import annotations
 import importlib
 import math
 import pkgutil
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from types import ModuleType
@@ -23,7 +23,8 @@ from ..geometry.arcs import arc_points, circle_points, circle_ring
 from ..geometry.outline import Outline
 
 Array = NDArray[np.float64]
-Rings = tuple[Array, tuple[Array, ...]]
+Rings = Sequence[Array]
+"""An outer ring (n, 2) and holes, none closed."""
 
 G = 9.81
 """Acceleration of gravity in every scene (length/time²)."""
@@ -63,9 +64,9 @@ class Segment:
 class Curve:
     """An outline that may be curved, concave, holed.
 
-    `rings(tolerance)` gives (outer ring (n, 2), hole rings), none closed, chords within `tolerance` (length)
-    of the true curve. `convex` says that the outer ring is convex and there are no holes. `exact()` gives the same
-    with its arcs, for whoever takes them; None where there are other curves than arcs.
+    `rings(tolerance)` gives its rings, chords within `tolerance` (length) of the true curve. `convex` says that the
+    outer ring is convex and there are no holes. `exact()` gives the same with its arcs, for whoever takes them; None
+    where there are other curves than arcs.
     """
 
     rings: Callable[[float], Rings]
@@ -161,8 +162,8 @@ class Scene:
     `friction` and `elasticity` are the values of every pair (engines combine the two bodies' values
     differently, so a scene states the result). `size` (length) is that of a typical moving body: peers
     choose their slop, sampling and units of length by it. `pressure` (force/length²) is the typical load on
-    that size; area stiffnesses are multiples of it. `deforms` says that the exact answer is that of elastic
-    bodies: rigid ones give back the restitution that is put in, and need not try.
+    that size (unless said, the weight of a unit mass); area stiffnesses are multiples of it. `deforms` says that the
+    exact answer is that of elastic bodies: rigid ones give back the restitution that is put in, and need not try.
     """
 
     name: str
@@ -178,10 +179,14 @@ class Scene:
     pivots: tuple[Pivot, ...] = ()
     hinges: tuple[Hinge, ...] = ()
     size: float = 1.0
-    pressure: float = G
+    pressure: float = math.nan
     frame: float = 1 / 60
     tags: frozenset[str] = frozenset()
     deforms: bool = False
+
+    def __post_init__(self) -> None:
+        if math.isnan(self.pressure):
+            object.__setattr__(self, "pressure", G / self.size**2)
 
     @property
     def frames(self) -> int:
@@ -199,10 +204,10 @@ class Scene:
 # Small builders ---------------------------------------------------------------------------------------------
 
 
-def box(width: float, height: float) -> Polygon:
-    """A rectangle about the origin (lengths)."""
-    x, y = width / 2, height / 2
-    return Polygon(((-x, -y), (x, -y), (x, y), (-x, y)))
+def box(width: float, height: float, center: tuple[float, float] = (0.0, 0.0)) -> Polygon:
+    """A rectangle about a point (lengths)."""
+    (x, y), w, h = center, width / 2, height / 2
+    return Polygon(((x - w, y - h), (x + w, y - h), (x + w, y + h), (x - w, y + h)))
 
 
 def box_moment(mass: float, width: float, height: float) -> float:
@@ -245,14 +250,36 @@ def full_circle(radius: float, tolerance: float) -> Array:
     return circle_points((0.0, 0.0), radius, tolerance)
 
 
+def oriented(rings: Rings) -> list[Array]:
+    """Rings with the material on their left: the outer one counter-clockwise, holes clockwise."""
+
+    def turned(ring: Array, sense: float) -> Array:
+        x, y = ring.T
+        area = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
+        return ring if area * sense > 0 else ring[::-1]
+
+    outer, *holes = rings
+    return [turned(outer, 1.0), *(turned(hole, -1.0) for hole in holes)]
+
+
 def slab_with_hole(radius: float, half: float) -> Curve:
     """A square of half-side `half` with a circular hole of `radius` about the origin."""
     outer = np.array([(-half, -half), (half, -half), (half, half), (-half, half)], dtype=float)
     straight, (hole, round_) = np.zeros((4, 3)), circle_ring((0.0, 0.0), radius)
     return Curve(
-        lambda tolerance: (outer, (full_circle(radius, tolerance),)),
+        lambda tolerance: (outer, full_circle(radius, tolerance)),
         exact=lambda: Outline.from_curve([outer, hole], arcs=[straight, round_]),
     )
+
+
+def relative_error(found: Array, exact: Array) -> float:
+    """The largest error of values (n,) along a run, relative to the exact last one."""
+    return float(np.max(np.abs(found - exact)) / exact[-1])
+
+
+def place_error(states: Array, exact: Array, scale: float) -> float:
+    """The largest distance of places from exact ones (n, 2), relative to `scale` (length)."""
+    return float(np.max(np.linalg.norm(states[:, :2] - exact, axis=1)) / scale)
 
 
 def rest_error(trace: Trace, names: Iterable[str], size: float, last: float = 1.0) -> float:

@@ -14,6 +14,8 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 
+import numpy as np
+
 from .peers import Run, Settings, get_peer
 from .scene import Array, Scene
 
@@ -64,6 +66,11 @@ def spent(call: Callable[..., object], *arguments: object) -> float:
     started = time.thread_time()
     call(*arguments)
     return time.thread_time() - started
+
+
+def exponent(sizes: Sequence[float], values: Sequence[float]) -> float:
+    """Slope of log(value) over log(size), by least squares: value ∝ size^exponent."""
+    return float(np.polyfit(np.log(sizes), np.log(values), 1)[0])
 
 
 def median_times(jobs: Sequence[Callable[[], float]], repeats: int, patience_s: float = 1.0) -> list[float]:

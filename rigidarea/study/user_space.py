@@ -14,7 +14,7 @@ from .scene import Curve, Scene, Shape
 @cache
 def _outline(curve: Curve, tolerance: float) -> Outline:
     """A curve's outline, which knows how to be sampled anew."""
-    outer, holes = curve.rings(tolerance)
+    outer, *holes = curve.rings(tolerance)
     return Outline(outer, holes).with_curve(partial(_outline, curve))
 
 

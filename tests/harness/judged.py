@@ -98,13 +98,12 @@ def rack_on_a_pinion() -> Scene:
     outer = np.array([(-10.0 * pitch, -0.1), (10.0 * pitch, -0.1), *top])
 
     def pinion(tolerance: float) -> Rings:
-        ring, *_ = involute_gear(module, teeth, backlash=0.01 * module, tolerance=tolerance).rings
-        return np.asarray(ring), ()
+        return involute_gear(module, teeth, backlash=0.01 * module, tolerance=tolerance).rings[:1]
 
     radius = 0.5 * module * teeth
     bodies = [
         Body("pinion", (Curve(pinion),), angle=-math.pi / 2, angular_velocity=speed, kind="kinematic"),
-        Body("rack", (Curve(lambda _: (outer, ())),), (0.0, -radius - 0.1), velocity=(speed * radius, 0.0), mass=2.0,
+        Body("rack", (Curve(lambda _: (outer,)),), (0.0, -radius - 0.1), velocity=(speed * radius, 0.0), mass=2.0,
              moment=math.inf),
     ]  # fmt: skip
 

@@ -32,8 +32,7 @@ def vary(scene: Scene, seed: int) -> Scene:
             return Segment(a, b, shape.radius * size)
 
         def rings(tolerance: float, known: Callable[[float], Rings] = shape.rings) -> Rings:
-            outer, holes = known(tolerance / size)
-            return outer * size, tuple(hole * size for hole in holes)
+            return [ring * size for ring in known(tolerance / size)]
 
         def exact(known: Callable[[], Outline] = shape.exact) -> Outline:
             found = known()

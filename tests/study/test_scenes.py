@@ -58,7 +58,7 @@ def test_exact_outlines_are_the_sampled_ones(name):
     for body in scenes()[name].bodies:
         for shape in body.shapes:
             if isinstance(shape, Curve) and shape.exact is not None:
-                outer, holes = shape.rings(1e-6)
+                outer, *holes = shape.rings(1e-6)
                 exact = shape.exact().sample(1e-6).polygon
                 apart = exact.symmetric_difference(Polygon(outer, holes)).area
                 assert apart < 5e-6 * exact.length

@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..atlas import PASS, Axis, Map, Outcome, Variant, engines, run_scene
-from ..scene import ANGLE, Body, X, Y, block, box, set_up
+from ..scene import ANGLE, Body, G, X, Y, block, box, set_up
 
 LENGTH, THICK = 2.0, 0.3
 
@@ -13,7 +13,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     plate = Body("plate", (box(10.0, THICK),), (0.0, 0.0), kind="static")
     # lower end of the bar at depth x · THICK below the plate's upper face
     bar = block("bar", y * THICK, LENGTH, (0.0, THICK / 2 - x * THICK + LENGTH / 2))
-    scene = set_up(name="crossed", bodies=(plate, bar), gravity=(0.0, 0.0), duration=0.1, size=THICK)
+    scene = set_up("crossed", (plate, bar), 0.1, gravity=(0.0, 0.0), size=THICK, pressure=G)
     settings = {"stiffness": 10.0} if variant.area else {}
     path = run_scene(variant, scene, **settings)["bar"]
     moved = path[-1, :3] - path[0, :3]  # places, not velocities: engines that push apart do it without speed

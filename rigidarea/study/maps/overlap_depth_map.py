@@ -25,8 +25,8 @@ def _shape(index: int) -> tuple[Shape, float]:
         (box(2.0, 0.3), 0.15),
         (Circle(0.5), 0.5),
         (Polygon(triangle), r / 2),
-        (Curve(lambda tolerance: (full_circle(0.5, 1e-3), (full_circle(0.4, 1e-3),))), 0.5),
-        (Curve(lambda tolerance: (corner - centroid, ())), float(centroid[1])),
+        (Curve(lambda tolerance: (full_circle(0.5, 1e-3), full_circle(0.4, 1e-3))), 0.5),
+        (Curve(lambda tolerance: (corner - centroid,)), float(centroid[1])),
     )
     return shapes[index]
 

@@ -34,7 +34,7 @@ def area_shapes(body: Body, made: pymunk.Body, tolerance: float | None) -> list[
         elif tolerance is None and shape.exact is not None:
             shapes.append(shape.exact().add_to(made))
         else:
-            outer, holes = shape.rings(1e-3 if tolerance is None else tolerance)
+            outer, *holes = shape.rings(1e-3 if tolerance is None else tolerance)
             shapes.append(rigidarea.Outline(outer, holes).add_to(made))
     return shapes
 

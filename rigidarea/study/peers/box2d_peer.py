@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..decompose import convex_pieces
-from ..scene import Array, Body, Circle, Polygon, Scene, Segment
+from ..scene import Array, Body, Circle, Polygon, Scene, Segment, oriented
 from .base import Run, Settings, combined, drive, rigid_only, samplings
 
 MOST_VERTICES = 8
@@ -42,10 +42,13 @@ class WorldRun:
         self.world = pyb2d3.World(gravity=gravity, contact_hertz=hertz, restitution_threshold=0.01)
         self.world.sleeping_enabled = False  # a sleeping scene would cost nothing and prove nothing
         tolerance = settings.get("sampling", 1e-3) * scene.size
-        self.bodies = [self._add(pyb2d3, scene, body, tolerance) for body in scene.bodies]
+        self.bodies = [self.add(scene, body, tolerance) for body in scene.bodies]
         self._joints(scene)
 
-    def _add(self, b2: Any, scene: Scene, body: Body, tolerance: float) -> Any:
+    def add(self, scene: Scene, body: Body, tolerance: float) -> Any:
+        """Box2D's body of one of the scene's; curves are sampled to the tolerance (length)."""
+        import pyb2d3 as b2
+
         made = getattr(self.world, f"create_{body.kind}_body")(
             position=self._scaled(body.position),
             rotation=_rotation(b2, body.angle),
@@ -63,18 +66,17 @@ class WorldRun:
             if isinstance(shape, Circle):
                 made.create_shape(definition, b2.circle(self._scaled(shape.center), self.unit * shape.radius))
             elif isinstance(shape, Polygon):
-                made.create_shape(definition, self._polygon(b2, shape))
+                corners, round_ = self.unit * np.array(shape.points), self.unit * shape.radius
+                made.create_shape(definition, b2.polygon(corners, **({"radius": round_} if round_ else {})))
             elif isinstance(shape, Segment):
                 ends = self._scaled(shape.a), self._scaled(shape.b)
                 thick = self.unit * shape.radius
                 made.create_shape(definition, b2.capsule(*ends, thick) if thick else b2.segment(*ends))
             elif body.kind == "static":
-                outer, holes = shape.rings(tolerance)
-                for ring in (outer, *holes):
-                    # Box2D collides with the right-hand side of a chain; our rings have the solid on their left.
-                    made.create_chain(
-                        b2.chain_def(self._ccw(ring, hole=ring is not outer), material=material, is_loop=True)
-                    )
+                # Box2D collides with the right-hand side of a chain; these rings have the solid on their left.
+                for ring in oriented(shape.rings(tolerance)):
+                    points = np.ascontiguousarray(self.unit * ring, dtype=np.float32)
+                    made.create_chain(b2.chain_def(points, material=material, is_loop=True))
             else:
                 for piece in convex_pieces(shape.rings(tolerance), MOST_VERTICES):
                     made.create_shape(definition, b2.polygon(self.unit * piece))
@@ -86,19 +88,8 @@ class WorldRun:
             made.mass_data = data
         return made
 
-    def _polygon(self, b2: Any, shape: Polygon) -> Any:
-        points = self.unit * np.array(shape.points)
-        return b2.polygon(points, radius=self.unit * shape.radius) if shape.radius else b2.polygon(points)
-
     def _scaled(self, point: tuple[float, float]) -> tuple[float, float]:
         return self.unit * point[0], self.unit * point[1]
-
-    def _ccw(self, ring: Array, hole: bool) -> Array:
-        """Outer rings counter-clockwise, holes clockwise."""
-        x, y = ring.T
-        area = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-        turned = ring if (area > 0) != hole else ring[::-1]
-        return np.ascontiguousarray(self.unit * turned, dtype=np.float32)
 
     def _joints(self, scene: Scene) -> None:
         if not scene.pivots and not scene.hinges:

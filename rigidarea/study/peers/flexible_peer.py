@@ -13,7 +13,19 @@ from typing import Any
 import numpy as np
 
 from ...geometry.outline import Outline
-from ..scene import ANGLE, Array, Body, Circle, Polygon, Scene, Segment, Shape, full_circle, get_scene
+from ..scene import (
+    ANGLE,
+    Array,
+    Body,
+    Circle,
+    Polygon,
+    Scene,
+    Segment,
+    Shape,
+    full_circle,
+    get_scene,
+    oriented,
+)
 from .base import Run, Settings, combined, has_curves, knob
 
 MARGIN = 0.05
@@ -28,14 +40,7 @@ def shape_rings(shape: Shape, tolerance: float) -> list[Array]:
         return [np.array(shape.points, dtype=np.float64)]
     if isinstance(shape, Segment):
         raise ValueError("expected a shape with an outline of its own, got a Segment")
-    outer, holes = shape.rings(tolerance)
-    return [_turned(outer, 1.0), *(_turned(hole, -1.0) for hole in holes)]
-
-
-def _turned(ring: Array, sense: float) -> Array:
-    x, y = ring.T
-    area = float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1)))
-    return ring if area * sense > 0 else ring[::-1]
+    return oriented(shape.rings(tolerance))
 
 
 def _placed(ring: Array, body: Body) -> Array:

@@ -49,13 +49,10 @@ def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymun
         elif shape.convex:
             shapes.append(pymunk.Poly(made, shape.rings(tolerance)[0].tolist()))
         elif body.kind == "static":
-            outer, holes = shape.rings(tolerance)
-            for ring in (outer, *holes):
-                shapes.extend(_chain(made, ring))
+            for ring in shape.rings(tolerance):
+                shapes += _chain(made, ring)
         else:
-            shapes.extend(
-                pymunk.Poly(made, piece.tolist()) for piece in convex_pieces(shape.rings(tolerance))
-            )
+            shapes += [pymunk.Poly(made, piece.tolist()) for piece in convex_pieces(shape.rings(tolerance))]
     return shapes
 
 

@@ -2,7 +2,7 @@
 
 import math
 
-from ..scene import G, Scene, disc
+from ..scene import Scene, disc
 from .bowl_slide_scene import BOWL, RADIUS, RHO, bowl, path_error, period, swing
 
 START, MU = math.radians(45), 0.8
@@ -21,6 +21,5 @@ def scene() -> Scene:
         error=lambda trace: path_error(trace, "disc", RHO, swing(trace.times, 1.5 * RHO, START)),
         source="rolling adds I/(m r²) = 1/2 to the inertia: a pendulum of length (3/2) ρ",
         size=2 * RADIUS,
-        pressure=G / (2 * RADIUS) ** 2,
         tags=frozenset({"curved", "concave", "friction", "rolling"}),
     )

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...geometry.outline import Outline
-from ..scene import Body, Curve, G, Rings, Scene, Trace, arc, disc
+from ..scene import Body, Curve, G, Rings, Scene, Trace, arc, disc, place_error
 
 BOWL, RADIUS, START = 2.0, 0.2, math.radians(60)
 RHO = BOWL - RADIUS
@@ -38,10 +38,10 @@ def bowl_rings(radius: float) -> Curve:
         # clockwise seen from the solid below: right rim to left rim
         inner = arc(radius, 0.0, -math.pi, tolerance)
         outer = np.array([(-wall, 0.0), (-wall, -depth), (wall, -depth), (wall, 0.0)])
-        return np.vstack((outer, inner)), ()
+        return (np.vstack((outer, inner)),)
 
     def exact() -> Outline:
-        outer, _ = rings(radius)
+        (outer,) = rings(radius)
         corners = [(*point, 0.0) for point in outer[:4]]
         return Outline.from_bulges([*corners, (radius, 0.0, -1.0), (-radius, 0.0, 0.0)])
 
@@ -56,7 +56,7 @@ def bowl(radius: float) -> Body:
 def path_error(trace: Trace, name: str, rho: float, angle: np.ndarray) -> float:
     """Largest distance from the exact place rho (sin θ, −cos θ), relative to the arc rho θ₀."""
     exact = rho * np.column_stack((np.sin(angle), -np.cos(angle)))
-    return float(np.max(np.linalg.norm(trace[name][:, :2] - exact, axis=1)) / (rho * abs(angle[0])))
+    return place_error(trace[name], exact, rho * abs(angle[0]))
 
 
 def scene() -> Scene:
@@ -71,6 +71,5 @@ def scene() -> Scene:
         error=lambda trace: path_error(trace, "disc", RHO, swing(trace.times, RHO, START)),
         source="pendulum of length ρ = R − r: T = 4 sqrt(ρ/g) K(sin²(θ₀/2))",
         size=2 * RADIUS,
-        pressure=G / (2 * RADIUS) ** 2,
         tags=frozenset({"curved", "concave"}),
     )

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..scene import G, Scene, Trace, X, block, floor
+from ..scene import G, Scene, X, block, floor, relative_error
 
 MU, U = 0.25, 2.0
 
@@ -11,12 +11,6 @@ def position(t: np.ndarray) -> np.ndarray:
     """Distance at times `t`: μ g t²/2 until u/(μ g), then with the belt."""
     sliding = np.minimum(t, U / (MU * G))
     return MU * G * sliding**2 / 2 + U * (t - sliding)
-
-
-def error(trace: Trace) -> float:
-    """Largest error of the distance, relative to the whole distance."""
-    exact = position(trace.times)
-    return float(np.max(np.abs(trace["block"][:, X] - exact)) / exact[-1])
 
 
 def scene() -> Scene:
@@ -28,7 +22,7 @@ def scene() -> Scene:
         friction=MU,
         duration=2.0,
         error_name="distance, relative",
-        error=error,
+        error=lambda trace: relative_error(trace["block"][:, X], position(trace.times)),
         source="Coulomb and Newton: a = μ g until the speeds agree",
         tags=frozenset({"friction", "flat"}),
     )

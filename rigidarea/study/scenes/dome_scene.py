@@ -2,9 +2,7 @@
 
 import math
 
-import numpy as np
-
-from ..scene import Array, Body, Circle, G, Scene, Trace, disc
+from ..scene import Array, Body, Circle, Scene, disc, place_error
 from ._motion import slide_and_fly
 
 DOME, RADIUS, START = 1.0, 0.2, 0.3
@@ -14,14 +12,7 @@ RHO = DOME + RADIUS
 def motion(t: Array) -> tuple[Array, float]:
     """Places (n, 2) at times `t`, and the time of leaving, where m v²/ρ = m g cos θ, θ from the top."""
     leaving = math.pi - math.acos(2 / 3 * math.cos(START))  # from the lowest point, as is the start
-    place, left = slide_and_fly(RHO, math.pi - START, 0.0, leaving, t)
-    return place, left
-
-
-def error(trace: Trace) -> float:
-    """Largest distance from the exact place, relative to ρ."""
-    exact, _ = motion(trace.times)
-    return float(np.max(np.linalg.norm(trace["disc"][:, :2] - exact, axis=1)) / RHO)
+    return slide_and_fly(RHO, math.pi - START, 0.0, leaving, t)
 
 
 def scene() -> Scene:
@@ -34,9 +25,8 @@ def scene() -> Scene:
         bodies=(dome, disc("disc", RADIUS, start)),
         duration=1.1,
         error_name="position / path radius",
-        error=error,
+        error=lambda trace: place_error(trace["disc"], motion(trace.times)[0], RHO),
         source="energy and N = 0: cos θ = (2/3) cos θ₀",
         size=2 * RADIUS,
-        pressure=G / (2 * RADIUS) ** 2,
         tags=frozenset({"curved"}),
     )

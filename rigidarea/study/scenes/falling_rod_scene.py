@@ -45,6 +45,5 @@ def scene() -> Scene:
         error=error,
         source="energy with y = h sin θ: (I + m h² cos² θ) θ'² = 2 m g h (sin θ₀ − sin θ)",
         size=LENGTH,
-        pressure=G / LENGTH**2,
         tags=frozenset({"corner"}),
     )

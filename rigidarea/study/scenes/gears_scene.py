@@ -8,7 +8,7 @@ import numpy as np
 
 from ...geometry.outline import Outline
 from ...shapes import involute_gear
-from ..scene import OMEGA, Body, Curve, Elastic, Pivot, Rings, Scene, Trace
+from ..scene import OMEGA, Body, Curve, Elastic, Pivot, Scene, Trace
 
 TEETH, MODULE, BACKLASH = (20, 30), 0.05, 0.02
 """Backlash in modules, half of it cut from each gear."""
@@ -25,11 +25,7 @@ def gear(teeth: int, tolerance: float | None = None) -> Outline:
 
 
 def _curve(teeth: int) -> Curve:
-    def rings(tolerance: float) -> Rings:
-        outer, *holes = gear(teeth, tolerance).rings
-        return np.asarray(outer), tuple(np.asarray(hole) for hole in holes)
-
-    return Curve(rings)
+    return Curve(lambda tolerance: gear(teeth, tolerance).rings)
 
 
 def error(trace: Trace) -> float:

@@ -6,10 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from ...geometry.outline import Outline
 from ...shapes.geneva_wheel import Geneva
 from ...shapes.geneva_wheel import geneva as make
-from ..scene import ANGLE, Body, Circle, Curve, Elastic, Pivot, Rings, Scene, Trace
+from ..scene import ANGLE, Body, Circle, Curve, Elastic, Pivot, Scene, Trace
 
 SLOTS, CENTRES, PIN = 6, 0.05, 0.008
 SPEED, LEAD, MASS, BRAKE = math.pi, 0.3, 0.1, 2e-3
@@ -22,12 +21,6 @@ STEEL = Elastic(207e9, 0.29, 0.005, 0.002)
 def drive(tolerance: float | None = None) -> Geneva:
     """The paper's drive (Table 3): six slots, centres 50 mm, pin 8 mm, clearance 0.01 mm."""
     return make(SLOTS, CENTRES, PIN, tolerance=tolerance)
-
-
-def _rings(outline: Outline) -> Rings:
-    """Rings as the scenes know them."""
-    outer, *holes = outline.rings
-    return np.asarray(outer), tuple(np.asarray(hole) for hole in holes)
 
 
 def crank(t: np.ndarray) -> np.ndarray:
@@ -54,8 +47,8 @@ def scene() -> Scene:
     """Half a turn a second, from locked to locked; a brake keeps the wheel on the pin."""
     parts = drive()
     start = -parts.entry_angle - LEAD
-    lock = Curve(lambda tolerance: _rings(drive(tolerance).locking_disc), exact=lambda: drive().locking_disc)
-    wheel = Curve(lambda tolerance: _rings(drive(tolerance).wheel), exact=lambda: drive().wheel)
+    lock = Curve(lambda tolerance: drive(tolerance).locking_disc.rings, exact=lambda: drive().locking_disc)
+    wheel = Curve(lambda tolerance: drive(tolerance).wheel.rings, exact=lambda: drive().wheel)
     pin, angle = Circle(PIN / 2, (parts.crank_radius, 0.0)), parts.wheel_angle(start)
     inertia: dict[str, Any] = {"mass": MASS, "moment": parts.wheel.moment(MASS), "elastic": STEEL}
     bodies = (

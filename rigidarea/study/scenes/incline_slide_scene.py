@@ -2,19 +2,11 @@
 
 import math
 
-import numpy as np
-
-from ..scene import G, Scene, Trace, X, block, floor
+from ..scene import G, Scene, X, block, floor, relative_error
 
 MU = 0.3
 THETA = math.atan(0.6)
 ACCELERATION = G * (math.sin(THETA) - MU * math.cos(THETA))
-
-
-def error(trace: Trace) -> float:
-    """Largest error of the distance, relative to the whole distance."""
-    exact = ACCELERATION * trace.times**2 / 2
-    return float(np.max(np.abs(trace["block"][:, X] - exact)) / exact[-1])
 
 
 def scene() -> Scene:
@@ -27,7 +19,7 @@ def scene() -> Scene:
         friction=MU,
         duration=2.0,
         error_name="distance, relative",
-        error=error,
+        error=lambda trace: relative_error(trace["block"][:, X], ACCELERATION * trace.times**2 / 2),
         source="Coulomb and Newton: a = g (sin θ − μ cos θ)",
         tags=frozenset({"friction", "flat"}),
     )

@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..scene import G, Scene, Trace, X, block, floor
+from ..scene import G, Scene, X, block, floor, relative_error
 
 MU, V = 0.5, 4.0
 THETA = math.atan(0.3)
@@ -17,12 +17,6 @@ def position(t: np.ndarray) -> np.ndarray:
     return V * t - DECELERATION * t**2 / 2
 
 
-def error(trace: Trace) -> float:
-    """Largest error of the distance, relative to the whole distance."""
-    exact = position(trace.times)
-    return float(np.max(np.abs(trace["block"][:, X] - exact)) / exact[-1])
-
-
 def scene() -> Scene:
     """4 m/s up a slope of tan θ = 0.3 with μ = 0.5 (it must not slide back); gravity is turned, not the floor."""
     return Scene(
@@ -33,7 +27,7 @@ def scene() -> Scene:
         friction=MU,
         duration=2.0,
         error_name="distance, relative",
-        error=error,
+        error=lambda trace: relative_error(trace["block"][:, X], position(trace.times)),
         source="Coulomb and Newton: deceleration g (sin θ + μ cos θ), then rest because tan θ < μ",
         tags=frozenset({"friction", "flat"}),
     )

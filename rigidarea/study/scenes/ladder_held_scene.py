@@ -2,7 +2,7 @@
 
 import math
 
-from ..scene import G, Scene, floor, rest_error
+from ..scene import Scene, floor, rest_error
 from .ladder_scene import LENGTH, leaning
 
 STEEP, MARGIN = math.radians(60), 1.05
@@ -30,6 +30,5 @@ def scene() -> Scene:
         error=lambda trace: rest_error(trace, ["ladder"], LENGTH),
         source="statics: tan θ = (1 − μ²)/(2 μ)",
         size=LENGTH,
-        pressure=G / LENGTH**2,
         tags=frozenset({"rest", "corner", "friction"}),
     )

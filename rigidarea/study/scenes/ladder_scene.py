@@ -72,6 +72,5 @@ def scene() -> Scene:
         error=error,
         source="energy: θ'² = 2 g' (sin θ₀ − sin θ); leaves at sin θ = (2/3) sin θ₀",
         size=LENGTH,
-        pressure=G / LENGTH**2,
         tags=frozenset({"corner"}),
     )

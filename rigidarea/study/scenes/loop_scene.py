@@ -2,9 +2,7 @@
 
 import math
 
-import numpy as np
-
-from ..scene import Array, Body, G, Scene, Trace, disc, slab_with_hole
+from ..scene import Array, Body, G, Scene, disc, place_error, slab_with_hole
 from ._motion import slide_and_fly
 
 HOLE, RADIUS = 1.0, 0.1
@@ -27,12 +25,6 @@ def motion(t: Array) -> tuple[Array, float]:
     return slide_and_fly(RHO, 0.0, SPEED, leaving_angle(), t)
 
 
-def error(trace: Trace) -> float:
-    """Largest distance from the exact place, relative to ρ."""
-    exact, _ = motion(trace.times)
-    return float(np.max(np.linalg.norm(trace["disc"][:, :2] - exact, axis=1)) / RHO)
-
-
 def scene() -> Scene:
     """v₀² = 3.5 g ρ: leaves the wall 120 degrees from the bottom; stops before the disc lands again."""
     ring = Body("ring", (slab_with_hole(HOLE, 1.5),), kind="static")
@@ -42,7 +34,7 @@ def scene() -> Scene:
         bodies=(ring, disc("disc", RADIUS, (0.0, -RHO), velocity=(SPEED, 0.0))),
         duration=0.85,
         error_name="position / path radius",
-        error=error,
+        error=lambda trace: place_error(trace["disc"], motion(trace.times)[0], RHO),
         source="energy and N = 0: cos θ = (2 − v₀²/(g ρ))/3",
         size=2 * RADIUS,
         pressure=THROW * G / (2 * RADIUS) ** 2,

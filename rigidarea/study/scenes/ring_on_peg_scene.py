@@ -3,7 +3,7 @@
 import math
 
 from ...shapes import ring as annulus
-from ..scene import Body, Circle, Curve, G, Rings, Scene, full_circle
+from ..scene import Body, Circle, Curve, Scene, full_circle
 from .bowl_slide_scene import path_error, period, swing
 
 INNER, OUTER, PEG, START, MU = 0.5, 0.6, 0.3, math.radians(30), 0.8
@@ -16,11 +16,10 @@ LENGTH = RHO * (1 + GYRATION2 / INNER**2)
 
 def ring() -> Curve:
     """The annulus."""
-
-    def rings(tolerance: float) -> Rings:
-        return full_circle(OUTER, tolerance), (full_circle(INNER, tolerance),)
-
-    return Curve(rings, exact=lambda: annulus(INNER, OUTER))
+    return Curve(
+        lambda tolerance: (full_circle(OUTER, tolerance), full_circle(INNER, tolerance)),
+        exact=lambda: annulus(INNER, OUTER),
+    )
 
 
 def scene() -> Scene:
@@ -37,6 +36,5 @@ def scene() -> Scene:
         error=lambda trace: path_error(trace, "ring", RHO, swing(trace.times, LENGTH, START)),
         source="rolling pendulum of length ρ (1 + I/(m R²)), ρ = R − r",
         size=2 * OUTER,
-        pressure=G / (2 * OUTER) ** 2,
         tags=frozenset({"curved", "concave", "friction", "rolling"}),
     )

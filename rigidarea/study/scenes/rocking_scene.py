@@ -58,6 +58,5 @@ def scene() -> Scene:
         error=error,
         source="Housner 1963, Bull. Seism. Soc. Am. 53, 403; here without the small-angle assumption",
         size=WIDTH,
-        pressure=G / WIDTH**2,
         tags=frozenset({"corner"}),
     )

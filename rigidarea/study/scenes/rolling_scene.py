@@ -2,9 +2,7 @@
 
 import math
 
-import numpy as np
-
-from ..scene import ANGLE, G, Scene, Trace, X, disc, floor
+from ..scene import ANGLE, G, Scene, Trace, X, disc, floor, relative_error
 
 RADIUS, MU, THETA = 0.5, 0.5, math.radians(30)
 ACCELERATION = 2 / 3 * G * math.sin(THETA)
@@ -14,8 +12,7 @@ def error(trace: Trace) -> float:
     """Largest error of distance travelled or rim distance turned, relative to the whole distance."""
     exact = ACCELERATION * trace.times**2 / 2
     ball = trace["disc"]
-    worst = max(np.max(np.abs(ball[:, X] - exact)), np.max(np.abs(-RADIUS * ball[:, ANGLE] - exact)))
-    return float(worst / exact[-1])
+    return max(relative_error(way, exact) for way in (ball[:, X], -RADIUS * ball[:, ANGLE]))
 
 
 def scene() -> Scene:

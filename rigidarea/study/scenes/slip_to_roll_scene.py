@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..scene import OMEGA, G, Scene, Trace, X, disc, floor
+from ..scene import OMEGA, G, Scene, Trace, X, disc, floor, relative_error
 
 RADIUS, MU, V = 0.5, 0.3, 5.0
 
@@ -21,9 +21,7 @@ def error(trace: Trace) -> float:
     """Largest error of distance (relative to the whole) or rim speed (relative to its final value)."""
     x, rim = motion(trace.times)
     ball = trace["disc"]
-    far = np.max(np.abs(ball[:, X] - x)) / x[-1]
-    spin = np.max(np.abs(-RADIUS * ball[:, OMEGA] - rim)) / rim[-1]
-    return float(max(far, spin))
+    return max(relative_error(ball[:, X], x), relative_error(-RADIUS * ball[:, OMEGA], rim))
 
 
 def scene() -> Scene:

@@ -21,6 +21,5 @@ def scene() -> Scene:
         error=lambda trace: rest_error(trace, ["block"], WIDTH),
         source="statics: stands if and only if tan θ <= w/h",
         size=WIDTH,
-        pressure=G / WIDTH**2,
         tags=frozenset({"rest", "corner", "flat"}),
     )

@@ -30,6 +30,5 @@ def scene() -> Scene:
         error=error,
         source="Newton's first law",
         size=SIDE,
-        pressure=9.81 / SIDE**2,
         tags=frozenset({"flat", "seams"}),
     )

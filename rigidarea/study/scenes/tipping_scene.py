@@ -2,9 +2,7 @@
 
 import math
 
-import numpy as np
-
-from ..scene import ANGLE, Array, G, Scene, Trace, block, floor
+from ..scene import ANGLE, Array, G, Scene, block, floor, relative_error
 from ._motion import angle
 
 WIDTH, HEIGHT, MU = 0.5, 1.0, 2.0
@@ -22,12 +20,6 @@ def rotation(t: Array) -> Array:
     return angle(lambda _, y: (y[1], P2 * math.sin(y[0] + THETA - ALPHA)), 0.0, t)
 
 
-def error(trace: Trace) -> float:
-    """Largest error of the angle, relative to the final angle."""
-    exact = rotation(trace.times)
-    return float(np.max(np.abs(-trace["block"][:, ANGLE] - exact)) / exact[-1])
-
-
 def scene() -> Scene:
     """tan θ = 1.2 w/h; gravity is turned instead of the floor."""
     return Scene(
@@ -38,9 +30,8 @@ def scene() -> Scene:
         friction=MU,
         duration=DURATION,
         error_name="angle, relative",
-        error=error,
+        error=lambda trace: relative_error(-trace["block"][:, ANGLE], rotation(trace.times)),
         source="rotation about a corner, I = (4/3) m R²; tips when tan θ > w/h",
         size=WIDTH,
-        pressure=G / WIDTH**2,
         tags=frozenset({"corner"}),
     )

@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ...geometry.outline import Outline
-from ..scene import OMEGA, Body, Curve, G, Rings, Scene, Trace, disc
+from ..scene import OMEGA, Body, Curve, G, Scene, Trace, disc
 
 RADIUS, MU, SPIN, PHI = 0.5, 0.2, 20.0, math.radians(45)
 """PHI: each wall's normal is that far from the vertical."""
@@ -38,11 +38,7 @@ def groove(half: float, depth: float) -> Curve:
     """A block with a V-shaped notch whose bottom is the origin; walls along the normals (±sin φ, cos φ)."""
     rise = half * math.tan(PHI)
     points = np.array([(0.0, 0.0), (-half, rise), (-half, -depth), (half, -depth), (half, rise)])
-
-    def rings(tolerance: float) -> Rings:
-        return points, ()
-
-    return Curve(rings, exact=lambda: Outline(points))
+    return Curve(lambda tolerance: (points,), exact=lambda: Outline(points))
 
 
 def scene() -> Scene:

@@ -63,6 +63,5 @@ def scene() -> Scene:
         error=error,
         source="Lagrange: A = m g sin θ cos θ/(M + m sin² θ)",
         size=SIDE,
-        pressure=G / SIDE**2,
         tags=frozenset({"flat"}),
     )
