@@ -96,8 +96,10 @@ def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:
     return found
 
 
-def run_scene(variant: Variant, scene: Scene, **settings: Any) -> Trace:
-    """The trace of a scene with a variant's settings and more."""
+def run_scene(variant: Variant, scene: Scene, k: float | None = None, **settings: Any) -> Trace:
+    """The trace of a scene with a variant's settings and more; k: the stiffness, where it is for the map to give."""
+    if k is not None and variant.given:
+        settings["stiffness"] = k
     return record(get_peer(variant.peer).build(scene, {**variant.settings, **settings}), scene)
 
 

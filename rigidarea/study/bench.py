@@ -342,10 +342,9 @@ def memory_row(name: str, size: int, peer: str) -> Row:
         "python_bytes_per_body": python / bodies,
     }
     if contact := getattr(run, "contact", None):
-        sizes = {name: size / bodies for name, size in contact._store.sizes().items()}
-        largest = sorted(sizes, key=lambda name: -sizes[name])[:8]
+        sizes = {table: size / bodies for table, size in contact._store.sizes().items()}
         row["tables_bytes_per_body"] = sum(sizes.values())
-        row["largest_tables_bytes_per_body"] = {name: sizes[name] for name in largest}
+        row["largest_tables_bytes_per_body"] = dict(sorted(sizes.items(), key=lambda item: -item[1])[:8])
     return row
 
 

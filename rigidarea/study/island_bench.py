@@ -32,18 +32,11 @@ SPEED = 10.0 * gears_scene.SPEED
 DROP, RADIUS, RESTITUTION = 2.0, 0.5, 0.8
 ROUNDS = 5
 
-Error = Callable[[], float]
+Error = Callable[[float], float]
+"""At a time."""
 
 
-class Counted(pymunk.Space):
-    """A space that knows how many frames it has run."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.step_count = 0
-
-
-def _pile(space: Counted) -> Error:
+def _pile(space: pymunk.Space) -> Error:
     """500 boxes, each on two, narrower row by row. Error: how far one is from where it was put, over its side."""
     placed = []
     for row in range(HIGH):
@@ -54,10 +47,10 @@ def _pile(space: Counted) -> Error:
             box.friction = 0.8
             space.add(body, box)
             placed.append((body, body.position))
-    return lambda: max(abs(body.position - at) for body, at in placed)
+    return lambda _: max(abs(body.position - at) for body, at in placed)
 
 
-def _gears(space: Counted) -> Error:
+def _gears(space: pymunk.Space) -> Error:
     """The study's pair, ten times as fast. Error: root mean square of the driven speed's, as the study has it."""
     scene = gears_scene.scene()
     wide, narrow = (gears_scene.gear(teeth, 1e-4 * scene.size) for teeth in gears_scene.TEETH)
@@ -74,7 +67,7 @@ def _gears(space: Counted) -> Error:
     exact = -SPEED * gears_scene.TEETH[0] / gears_scene.TEETH[1]
     seen: list[float] = []
 
-    def error() -> float:
+    def error(_: float) -> float:
         seen.append(driven.angular_velocity / exact - 1.0)
         return float(np.sqrt(np.mean(np.square(seen[len(seen) // 4 :]))))
 
@@ -94,7 +87,7 @@ def height(time: float, drop: float) -> float:
         since -= 2.0 * speed / G
 
 
-def _balls(space: Counted) -> Error:
+def _balls(space: pymunk.Space) -> Error:
     """Twenty balls, each dropped from another height. Error: how far one is from its parabola, over its drop."""
     dropped = []
     for i in range(BALLS):
@@ -106,11 +99,9 @@ def _balls(space: Counted) -> Error:
         space.add(body, ball)
         dropped.append((body, drop))
 
-    def error() -> float:
-        time = space.step_count * FRAME
-        return max(abs(body.position.y - RADIUS - height(time, drop)) / drop for body, drop in dropped)
-
-    return error
+    return lambda time: max(
+        abs(body.position.y - RADIUS - height(time, drop)) / drop for body, drop in dropped
+    )
 
 
 PARTS = {"pile": _pile, "gears": _gears, "balls": _balls}
@@ -120,7 +111,7 @@ class Level:
     """A space with what is named in it, planned."""
 
     def __init__(self, names: Sequence[str], steps: int | None = None) -> None:
-        self.space = Counted()
+        self.space = pymunk.Space()
         self.space.gravity = 0.0, -G
         ground = pymunk.Segment(self.space.static_body, (-100.0, 0.0), (200.0, 0.0), 0.0)
         ground.friction, ground.elasticity = 0.8, 1.0
@@ -136,18 +127,14 @@ class Level:
         """Substeps of the most delicate."""
         return max(self.plan.finer.values(), default=self.plan.steps)
 
-    def advance(self, frames: int) -> None:
-        """So many frames in one call."""
-        self.plan.step(FRAME, frames)
-        self.space.step_count += frames
-
     def worst(self) -> dict[str, float]:
         """The largest error of each part over the time that is planned for, looked at once a frame."""
         found = dict.fromkeys(self.errors, 0.0)
-        for _ in range(round(SECONDS / FRAME)):
-            self.advance(1)
+        for frame in range(1, round(SECONDS / FRAME) + 1):
+            self.plan.step(FRAME)
             for name, error in self.errors.items():
-                found[name] = error() if name == "gears" else max(found[name], error())
+                now = error(frame * FRAME)
+                found[name] = now if name == "gears" else max(found[name], now)
         return found
 
 
@@ -163,7 +150,7 @@ def islands() -> Row:
     with one_core():
         for _ in range(ROUNDS):  # in turn: a drift of the machine hits all alike
             for what, level in levels.items():
-                times[what].append(spent(level.advance, frames) / frames)
+                times[what].append(spent(level.plan.step, FRAME, frames) / frames)
     alone = sum(statistics.median(times[name]) for name in NAMES)
     for what, build in builds.items():
         level = build()

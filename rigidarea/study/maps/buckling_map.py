@@ -22,16 +22,13 @@ def tallest(sinking: float) -> int:
     Box j tilts by θ_j. Between neighbours the bed's moment k s³/12 (θ_j − θ_(j−1)); the weight of everything
     above, m g s (n − j − 1/2) θ_j²/2 for j = 0 … n − 1, lowers the stack.
     """
-    n = 1
-    while n < 1000:
-        stiffness = np.zeros((n, n))
-        for j in range(n):
-            stiffness[j, j] = (2.0 if j < n - 1 else 1.0) / (12 * sinking) - (n - j - 0.5)
-            if j:
-                stiffness[j, j - 1] = stiffness[j - 1, j] = -1 / (12 * sinking)
+    for n in range(1, 1000):
+        bed, weight = np.full(n, 2.0), np.arange(n, 0, -1) - 0.5
+        bed[-1] = 1.0
+        beside = np.full(n - 1, -1 / (12 * sinking))
+        stiffness = np.diag(bed / (12 * sinking) - weight) + np.diag(beside, 1) + np.diag(beside, -1)
         if np.linalg.eigvalsh(stiffness)[0] <= 0:
             return n - 1
-        n += 1
     return n
 
 

@@ -22,8 +22,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         return path_error(trace, "pin", rho, swing(trace.times, rho, START))
 
     scene = set_up("clearance", (body, pin), whole, error, frame=whole / 40, pressure=G / y)
-    settings = {"sampling": x, **({"stiffness": 1e3} if variant.given else {})}
-    return judge(scene.measure(run_scene(variant, scene, **settings)), LIMIT, "wrong path")
+    return judge(scene.measure(run_scene(variant, scene, 1e3, sampling=x)), LIMIT, "wrong path")
 
 
 def theory() -> list[tuple[str, Array, Array]]:

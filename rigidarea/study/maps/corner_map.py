@@ -13,9 +13,7 @@ LIMIT = 0.1
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """How deep the lowest corner gets below the floor within two seconds (sides)."""
-    scene = dropped("corner", x, y, 0.2)
-    settings = {"stiffness": 1e4} if variant.given else {}
-    path = run_scene(variant, scene, **settings)["box"]
+    path = run_scene(variant, dropped("corner", x, y, 0.2), 1e4)["box"]
     turn = np.mod(path[:, ANGLE], math.pi / 2)
     lowest = path[:, Y] - math.sqrt(0.5) * np.cos(math.pi / 4 - turn)
     return judge(float(np.max(-lowest)), LIMIT, "fell through")

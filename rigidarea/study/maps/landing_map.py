@@ -16,8 +16,7 @@ OMEGA_FLAT = math.sqrt(K * G)
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """Largest energy after the first touch over the energy before; `x` is ω h lying flat, `y` the tilt."""
     scene = dropped("landing", y, DROP, 0.5, 8 * x / OMEGA_FLAT)
-    knob = {"stiffness": K} if variant.given else {}
-    path = run_scene(variant, scene, steps=8, **knob)["box"]
+    path = run_scene(variant, scene, K, steps=8)["box"]
     if not np.all(np.isfinite(path)):
         return "not finite", math.inf
     moving = path[:, VX] ** 2 + path[:, VY] ** 2 + box_moment(1.0, 1.0, 1.0) * path[:, OMEGA] ** 2

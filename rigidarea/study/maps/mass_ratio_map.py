@@ -1,9 +1,11 @@
 """A heavy box on a light one: how many steps a frame that takes."""
 
+from functools import partial
+
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import Array, G, Scene, Trace, block, floor, rest_error, set_up
+from ..scene import Array, G, Scene, block, floor, rest_error, set_up
 
 SINKING, LIMIT = 1e-3, 0.02
 """Allowed sinking under the heavy box (sides), from which rigidarea's stiffness; displacement that counts."""
@@ -13,20 +15,15 @@ def scene(ratio: float) -> Scene:
     """Unit boxes, masses 1 below and `ratio` above."""
     light, heavy = block("light", 1.0, 1.0, (0.0, 0.5)), block("heavy", 1.0, 1.0, (0.0, 1.5), mass=ratio)
     bodies = (floor(10.0), light, heavy)
-
-    def error(trace: Trace) -> float:
-        return rest_error(trace, ["light", "heavy"], 1.0)
-
+    error = partial(rest_error, names=("light", "heavy"), size=1.0)
     return set_up("mass_ratio", bodies, 3.0, error, friction=0.5, pressure=ratio * G)
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """Displacement at the end of three seconds."""
     described = scene(x)
-    settings: dict[str, float] = {"steps": round(y)}
-    if variant.given:
-        settings["stiffness"] = 1 / SINKING
-    return judge(described.measure(run_scene(variant, described, **settings)), LIMIT, "sank or fell")
+    trace = run_scene(variant, described, 1 / SINKING, steps=round(y))
+    return judge(described.measure(trace), LIMIT, "sank or fell")
 
 
 def theory() -> list[tuple[str, Array, Array]]:

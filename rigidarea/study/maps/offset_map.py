@@ -17,8 +17,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
         for body in plain.bodies
     )
     moved = dataclasses.replace(plain, bodies=bodies)
-    settings = {"sampling": 1e-4, **({"stiffness": 1e4} if variant.given else {})}
-    trace = run_scene(variant, moved, **settings)
+    trace = run_scene(variant, moved, 1e4, sampling=1e-4)
     states = trace.states.copy()
     states[:, :, :2] -= x
     return judge(plain.measure(Trace(trace.names, trace.times, states)), LIMIT, "wrong")

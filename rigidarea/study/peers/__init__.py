@@ -1,4 +1,4 @@
-"""The engines that the studies hold side by side; each module here with a `PEER` or `PEERS` is one.
+"""The engines that the studies hold side by side; `PEERS` of each module here.
 
 How they are set, so that each does what it can:
 
@@ -34,12 +34,9 @@ from .base import Peer, Run, Settings, drive, record
 @cache
 def peers() -> dict[str, Peer]:
     """Every peer by name, in alphabetical order of its module."""
-    found: dict[str, Peer] = {}
-    for info in sorted(pkgutil.iter_modules(__path__), key=lambda info: info.name):
-        module = importlib.import_module(f"{__name__}.{info.name}")
-        for peer in getattr(module, "PEERS", ()) or ([module.PEER] if hasattr(module, "PEER") else []):
-            found[peer.name] = peer
-    return found
+    modules = sorted(info.name for info in pkgutil.iter_modules(__path__))
+    found = (getattr(importlib.import_module(f"{__name__}.{name}"), "PEERS", ()) for name in modules)
+    return {peer.name: peer for its in found for peer in its}
 
 
 def get_peer(name: str) -> Peer:

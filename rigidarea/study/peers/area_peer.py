@@ -74,12 +74,10 @@ class FrameRun(SpaceRun):
 
     def advance(self, frames: int) -> None:
         """Frames of the scene's length; once a contact has failed, none any more."""
-        if self.failed:
-            return
-        drive(lib.cpSpaceStep, frames, self.space._space, self.frame)
-        if self.contact._error is not None:
-            self.failed = True
-        self.steps = int(self.contact._state["taken"])
+        if not self.failed:
+            drive(lib.cpSpaceStep, frames, self.space._space, self.frame)
+            self.failed = self.contact._error is not None
+            self.steps = int(self.contact._state["taken"])
 
     def state(self) -> Array:
         """States (n_body, 6); no numbers once a contact has failed."""
@@ -216,31 +214,23 @@ class AreaExplicit(Area):
 
     def build(self, scene: Scene, settings: Settings) -> Run:
         """An attached space, stepped by Chipmunk's own function."""
-        return explicit_run(scene, settings, {})
+        return explicit_run(scene, settings)
 
 
 PHASE = 0.5
 """w h of explicit steps for which no phase is set."""
 
 
-class StepRun(SpaceRun):
-    """Equal steps straight through Chipmunk's step function, as for pymunk's own solver."""
-
-    def __init__(
-        self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], contact: Any, steps: int
-    ) -> None:
-        super().__init__(scene, space, bodies, steps)
-        self.contact = contact
-
-
-def explicit_run(scene: Scene, settings: Settings, more: Settings) -> StepRun:
-    """Explicit steps with `settings`; `more` goes to `rigidarea.attach`."""
-    space, bodies, contact = area_space(scene, {"integration": "explicit", **settings, **more})
+def explicit_run(scene: Scene, settings: Settings) -> SpaceRun:
+    """Explicit steps, straight through Chipmunk's step function, as for pymunk's own solver."""
+    space, bodies, contact = area_space(scene, {"integration": "explicit", **settings})
     steps = settings.get("steps")
     if steps is None:
         k = settings["stiffness"] * scene.pressure if "stiffness" in settings else contact.stiffness
         steps = explicit_steps(scene, space, k, settings.get("phase", PHASE))
-    return StepRun(scene, space, bodies, contact, steps)
+    run = SpaceRun(scene, space, bodies, steps)
+    run.contact = contact
+    return run
 
 
 PEERS = (Area(), AreaDefault(), AreaExplicit())

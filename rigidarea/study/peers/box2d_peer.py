@@ -159,4 +159,4 @@ class Box2D:
         return WorldRun(scene, settings)
 
 
-PEER = Box2D()
+PEERS = (Box2D(),)

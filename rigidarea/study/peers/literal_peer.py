@@ -64,7 +64,7 @@ class Literal(AreaExplicit):
         """An attached space whose contacts have to pass the gate."""
         more = {k: v for k, v in settings.items() if k != "spacing"}
         spacing = settings.get("spacing", math.inf) * scene.size
-        made = explicit_run(scene, more, {"direction": "nodal", "exponent": EXPONENT})
+        made = explicit_run(scene, {**more, "direction": "nodal", "exponent": EXPONENT})
         for shape in made.space.shapes:
             outline = Outline.from_pymunk(shape)
             if math.isfinite(spacing):
@@ -79,4 +79,4 @@ class Literal(AreaExplicit):
         return made
 
 
-PEER = Literal()
+PEERS = (Literal(),)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 import pymunk
@@ -89,6 +90,9 @@ def add_joints(scene: Scene, space: pymunk.Space, bodies: dict[str, pymunk.Body]
 class SpaceRun:
     """A pymunk space and its bodies; steps of equal length, taken by Chipmunk's own step function."""
 
+    contact: Any = None
+    """What is attached to the space."""
+
     def __init__(self, scene: Scene, space: pymunk.Space, bodies: list[pymunk.Body], steps: int) -> None:
         self.space, self.bodies, self.steps = space, bodies, steps
         self.h = scene.frame / steps
@@ -173,4 +177,4 @@ class Chipmunk:
         return SpaceRun(scene, space, bodies, settings["steps"])
 
 
-PEER = Chipmunk()
+PEERS = (Chipmunk(),)
