@@ -68,6 +68,22 @@ def pyplot() -> Any:
     return plt
 
 
+def panels(count: int, across: int, tall: float, head: float = 0.0, **more: Any) -> tuple[Figure, Any]:
+    """A figure of `count` panels, `across` on a line of `tall` inches, and its axes (lines, across)."""
+    lines = -(-count // across)
+    size = (10, head + tall * lines)
+    figure, axes = pyplot().subplots(lines, across, figsize=size, squeeze=False, layout="constrained", **more)
+    for ax in axes.flat[count:]:
+        ax.set_axis_off()
+    return figure, axes
+
+
+def mark(peer: str, label: str = "", **look: Any) -> Any:
+    """A legend's handle: the peer's mark."""
+    look = {"color": colour(peer), "marker": marker(peer), "label": label or peer, "ls": "", **look}
+    return pyplot().Line2D([], [], **look)
+
+
 def colour(peer: str) -> str:
     """The colour of a peer, the same in every picture."""
     return COLOURS.get(peer) or OTHER_COLOURS[sum(map(ord, peer)) % len(OTHER_COLOURS)]
@@ -102,13 +118,8 @@ def chart_pages(report: Row, out: Path) -> list[Path]:
             _panel(ax, rows, scene, names)
         for ax in axes.flat[len(here) :]:
             ax.set_axis_off()
-        handles = [
-            plt.Line2D([], [], color=colour(name), marker=marker(name), markersize=5, label=name)
-            for name in names
-        ]
-        handles.append(
-            plt.Line2D([], [], ls="", color="#111111", marker="o", mfc="none", ms=9, label="at the defaults")
-        )
+        handles = [mark(name, ls="-", ms=5) for name in names]
+        handles.append(mark("", "at the defaults", color="#111111", marker="o", mfc="none", ms=9))
         figure.legend(handles=handles, loc="outside upper center", ncols=min(len(handles), 5))
         figure.supxlabel("cost: computing time on one core / simulated time", fontsize=10)
         figure.supylabel("error (dimensionless; what it is stands in each panel)", fontsize=10)
@@ -141,7 +152,7 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
     ax.set_ylim(floor / 4, most)
     ax.axhspan(floor / 4, floor, color="#f3f3f3", zorder=0)
     ax.set_title(scene["title"], loc="left")
-    words: dict[str, Any] = {
+    look: dict[str, Any] = {
         "fontsize": 7.5,
         "color": "#444444",
         "ha": "right",
@@ -149,7 +160,7 @@ def _panel(ax: Axes, rows: Sequence[Row], scene: Row, names: Sequence[str]) -> N
         "transform": ax.transAxes,
     }
     paper = {"fc": "white", "ec": "none", "pad": 1, "alpha": 0.75}
-    ax.text(0.98, 0.97, scene["error_name"], **words, bbox=paper)
+    ax.text(0.98, 0.97, scene["error_name"], **look, bbox=paper)
 
 
 def _ratio_axes(report: Row, summary: Sequence[Row], key: str, labels: Sequence[str], **size: Any) -> Any:
@@ -192,13 +203,9 @@ def _mark(ax: Axes, ratio: float, y: float, peer: str, **look: Any) -> None:
 
 def _marks_legend(figure: Figure, summary: Sequence[Row], *kinds: tuple[str, dict[str, Any]]) -> None:
     """A legend of each peer's mark, in each of the kinds (label with {}, look), and of what is beyond RANGE."""
-    line, peers = pyplot().Line2D, dict.fromkeys(row["peer"] for row in summary)
-    handles = [
-        line([], [], ls="", color=colour(peer), marker=marker(peer), label=label.format(peer), **look)
-        for label, look in kinds
-        for peer in peers
-    ]
-    handles.append(line([], [], ls="", color="#666666", marker=5, label="beyond the edge"))
+    peers = dict.fromkeys(row["peer"] for row in summary)
+    handles = [mark(peer, label.format(peer), **look) for label, look in kinds for peer in peers]
+    handles.append(mark("", "beyond the edge", color="#666666", marker=5))
     figure.legend(handles=handles, loc="outside upper center", ncols=len(handles))
 
 
@@ -211,10 +218,8 @@ def chart_summary(report: Row, out: Path) -> list[Path]:
     if not summary:
         return []
     keys = ("cost_ratio_at_matched_error", "error_ratio_at_matched_cost")
-    labels = [
-        f"{label}\nrigidarea / peer"
-        for label in ("cost ratio at matched error (bar: at coarser errors)", "error ratio at matched cost")
-    ]
+    kinds = ("cost ratio at matched error (bar: at coarser errors)", "error ratio at matched cost")
+    labels = [f"{kind}\nrigidarea / peer" for kind in kinds]
     figure, axes, height = _ratio_axes(report, summary, keys[0], labels, above=1.7, width_ratios=(1.2, 1))
     low, high = RANGE
     for ax, key in zip(axes, keys, strict=True):
@@ -243,18 +248,18 @@ def chart_defaults(report: Row, out: Path) -> list[Path]:
     key = "default_cost_ratio"
     figure, axes, height = _ratio_axes(report, summary, key, labels, above=1.9, width_ratios=(1, 1.2))
     hollow = {"mfc": "white"}
-    looks: tuple[dict[str, Any], ...] = (
-        {key: {}},
-        {"defaults_cost_ratio": {}, "defaults_error_ratio": hollow},
-    )
-    for ax, kinds in zip(axes, looks, strict=True):
-        for row in summary:
-            for kind, look in kinds.items():
-                value = row.get(kind)
-                if value is None:  # infinite, or no number: in JSON both are null
-                    value = math.inf if row["default_error"] in (None, math.inf) else math.nan
-                if not math.isnan(value):
-                    _mark(ax, value, height(row), row["peer"], **look)
+    looks: dict[str, tuple[Any, dict[str, Any]]] = {
+        key: (axes[0], {}),
+        "defaults_cost_ratio": (axes[1], {}),
+        "defaults_error_ratio": (axes[1], hollow),
+    }
+    for row in summary:
+        for kind, (ax, look) in looks.items():
+            value = row.get(kind)
+            if value is None:  # infinite, or no number: in JSON both are null
+                value = math.inf if row["default_error"] in (None, math.inf) else math.nan
+            if not math.isnan(value):
+                _mark(ax, value, height(row), row["peer"], **look)
     _marks_legend(figure, summary, ("against {}: cost", {}), ("{}: error", hollow))
     return save(figure, out, "chart-defaults")
 
@@ -279,9 +284,9 @@ def kernel_times(report: Row, out: Path) -> list[Path]:
     names = [f"{row['pair']} ({row['points_a']} and {row['points_b']} points)" for row in reversed(rows)]
     ax.set_yticks(range(len(rows)), names)
     ax.set(xscale="log", xlabel="one query: area, centroid (µs)")
-    handles = [
-        plt.Line2D([], [], ls="", marker="o", color=colour("rigidarea"), label="rigidarea"),
-        plt.Line2D([], [], ls="", marker="s", color="#E69F00", label="shapely"),
-    ]
-    figure.legend(handles=handles, loc="outside upper center", ncols=2)
+    figure.legend(
+        handles=[mark("rigidarea"), mark("shapely", marker="s", color="#E69F00")],
+        loc="outside upper center",
+        ncols=2,
+    )
     return save(figure, out, "bench-kernels")

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .atlas import PASS, Axis, Map, get_map
-from .draw import pyplot, save
+from .draw import panels, pyplot, save
 from .records import Row
 from .scene import Array
 
@@ -71,23 +71,18 @@ def atlas_maps(report: Row, out: Path) -> list[Path]:
 
 
 def _one(chart: Map, rows: Sequence[Row], out: Path) -> list[Path]:
-    plt = pyplot()
     names = list(dict.fromkeys(row["peer"] for row in rows))
-    columns = 3 if len(names) > 4 else len(names)
-    lines = -(-len(names) // columns)
-    shared = {"sharex": True, "sharey": True, "squeeze": False, "layout": "constrained"}
-    figure, axes = plt.subplots(lines, columns, figsize=(10, 1.0 + 2.9 * lines), **shared)
+    figure, axes = panels(len(names), 3 if len(names) > 4 else len(names), 2.9, 1.0, sharex=True, sharey=True)
     colours = _colours(rows)
     for ax, name in zip(axes.flat, names, strict=False):
         _cells(ax, chart, rows, name, colours)
         ax.set_title(name)
-    for ax in axes.flat[len(names) :]:
-        ax.set_axis_off()
     handles = _swatches(colours) + _lines(axes)
     figure.legend(handles=handles, loc="outside lower center", ncols=min(len(handles), 5), fontsize=8.5)
     figure.suptitle(chart.title, fontsize=11)
     for ax in axes[-1]:  # constrained layout puts a common label under the legend
-        ax.set_xlabel(chart.x.label.replace(" / ", "\n/ ") if columns > 3 else chart.x.label, fontsize=9)
+        wrapped = chart.x.label.replace(" / ", "\n/ ") if len(axes[0]) > 3 else chart.x.label
+        ax.set_xlabel(wrapped, fontsize=9)
     figure.supylabel(chart.y.label, fontsize=9.5)
     return save(figure, out, f"atlas-{chart.name}")
 

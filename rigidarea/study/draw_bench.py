@@ -4,19 +4,16 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .draw import colour, marker, pyplot, save
+from .draw import colour, marker, panels, pyplot, save
 from .growing_scenes import GROWING
 from .records import Row
 
 
 def frame_times(report: Row, out: Path) -> list[Path]:
     """Median frame time (a line to the 99th percentile) over the number of bodies, one panel a scene."""
-    plt = pyplot()
     rows = report["results"]
     scenes = list(dict.fromkeys(row["scene"] for row in rows))
-    figure, axes = plt.subplots(
-        1, len(scenes), figsize=(10, 4.2), sharey=True, squeeze=False, layout="constrained"
-    )
+    figure, axes = panels(len(scenes), len(scenes), 4.2, sharey=True)
     for ax, scene in zip(axes.flat, scenes, strict=True):
         groups: dict[tuple[str, int], list[Row]] = {}
         for row in rows:
@@ -77,16 +74,11 @@ GROWN = ("tiles", "sleepers", "come", "rolling discs 0", "rolling boxes 0", "fli
 
 def growth(report: Row, out: Path) -> list[Path]:
     """Mean frame time of the three engines over the size of what there is, a panel a family (to the slowest tenth)."""
-    plt = pyplot()
     rows = report["results"]
     grown = [name for name in GROWN if sum(row["scene"] == name and row["size"] > 0 for row in rows) > 1]
     if not grown:
         return []
-    wide = min(3, len(grown))
-    tall = -(-len(grown) // wide)
-    figure, axes = plt.subplots(
-        tall, wide, figsize=(10, 0.8 + 2.8 * tall), sharey=True, squeeze=False, layout="constrained"
-    )
+    figure, axes = panels(len(grown), min(3, len(grown)), 2.8, 0.8, sharey=True)
     engines = (
         ("frame_us_mean", "frame_us_worst_tenth", "rigidarea-default", "rigidarea, the default"),
         ("native_1_us", "native_1_us_worst_tenth", "pymunk", "pymunk, one step a frame"),
@@ -106,8 +98,6 @@ def growth(report: Row, out: Path) -> list[Path]:
         ax.set_xticks(sizes, [f"{size:,}" for size in sizes])
         ax.minorticks_off()
         ax.yaxis.set_major_formatter("{x:,g}")
-    for ax in axes.flat[len(grown) :]:
-        ax.set_visible(False)
     for ax in axes[:, 0]:
         ax.set_ylabel("µs a frame, bar: worst tenth")
     what = "how many: pieces of level or terrain (radius 0: lines without thickness), bodies"

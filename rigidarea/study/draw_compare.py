@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from .draw import pyplot, save
+from .draw import panels, save
 from .records import Row
 
 STYLES = {"rigid": ("#E69F00", "-", 2.6), "compliant": ("#56B4E9", "-", 1.8), "modal": ("#000000", "--", 1.1)}
@@ -20,13 +19,7 @@ COLOURS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#D55E00", "#000000")
 def levels(report: Row, traces: Row, out: Path) -> list[Path]:
     """One panel a scene, whose legend says what each level costs and how far it is from the modal one; a panel of
     error against cost; and, where the report has them, a page of the convergence studies."""
-    plt = pyplot()
-    panels = len(traces) + 1
-    columns = min(2, panels)
-    lines = math.ceil(panels / columns)
-    figure, axes = plt.subplots(
-        lines, columns, figsize=(10, 3.9 * lines), squeeze=False, layout="constrained"
-    )
+    figure, axes = panels(len(traces) + 1, 2, 3.9)
     rows = {(row["scene"], row["level"]): row for row in report["results"]}
     for ax, (name, described) in zip(axes.flat, traces.items(), strict=False):
         low, high = described["window"]
@@ -38,12 +31,10 @@ def levels(report: Row, traces: Row, out: Path) -> list[Path]:
         ax.set(title=described["title"], xlabel="time (ms)", ylabel=described["label"])
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8)
     _cost(axes.flat[len(traces)], traces, rows)
-    for ax in axes.flat[panels:]:
-        ax.set_axis_off()
     last = axes.flat[len(traces)]
-    if panels < axes.size:
+    if len(traces) + 1 < axes.size:
         title = "scene (mark) and level (colour)"
-        axes.flat[panels].legend(*last.get_legend_handles_labels(), loc="center left", title=title)
+        axes.flat[-1].legend(*last.get_legend_handles_labels(), loc="center left", title=title)
     else:
         last.legend(loc="upper center", bbox_to_anchor=(0.5, -0.16), fontsize=8, ncols=2)
     paths = save(figure, out, "compare")
@@ -79,13 +70,8 @@ def _cost(ax: Any, traces: Row, rows: dict[tuple[str, str], Row]) -> None:
 
 def convergence(studies: Sequence[Row], out: Path) -> list[Path]:
     """One panel a study, errors over the knob with the fitted orders in the legend; dotted: the order of theory."""
-    plt = pyplot()
     names = list(dict.fromkeys(row["study"] for row in studies))
-    columns = min(2, len(names))
-    lines = math.ceil(len(names) / columns)
-    figure, axes = plt.subplots(
-        lines, columns, figsize=(10, 4.2 * lines), squeeze=False, layout="constrained"
-    )
+    figure, axes = panels(len(names), min(2, len(names)), 4.2)
     for ax, name in zip(axes.flat, names, strict=False):
         here = [row for row in studies if row["study"] == name]
         knobs = list(dict.fromkeys(row["knob"] for row in here))
@@ -103,7 +89,5 @@ def convergence(studies: Sequence[Row], out: Path) -> list[Path]:
         ax.set_xticks(ticks, [f"{t:.3g}" for t in ticks])
         ax.set_xticks([], minor=True)
         ax.legend(loc="upper center", bbox_to_anchor=(0.5, -0.14), fontsize=8)
-    for ax in axes.flat[len(names) :]:
-        ax.set_axis_off()
     figure.suptitle("marks: measured; dotted: the order that theory gives", fontsize=9)
     return save(figure, out, "convergence")
