@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 import argparse
+import importlib
 import json
 import os
 import sys
@@ -14,7 +15,14 @@ from typing import Any
 
 from ..report import needed, write_json
 
-NAMES = ("hertz", "pin-joint", "patch", "geneva", "gearbox")
+MODULES = {
+    "hertz": "hertz",
+    "pin-joint": "pin_joint",
+    "patch": "patch_case",
+    "geneva": "geneva_run",
+    "gearbox": "gearbox_run",
+}
+NAMES = tuple(MODULES)
 MODES = ("rigid", "compliant", "modal")
 
 
@@ -70,39 +78,24 @@ def run(args: argparse.Namespace) -> dict[str, Any]:
     if wanted:
         from rigidarea.cases import stress_film
 
-        told["film"] = str(
-            stress_film.make(args.name, args.mode, args.mesh, args.contact, Path(out), cache_directory())
-        )
+        given = args.mode, args.mesh, args.contact
+        told["film"] = str(stress_film.make(args.name, *given, Path(out), cache_directory()))
     write_json(told, file)
     return told
 
 
 def _run(args: argparse.Namespace, out: Path | None) -> dict[str, Any]:
-    name, cache = args.name, cache_directory()
+    name, given = args.name, {"mode": args.mode, "mesh_mm": args.mesh}
+    given = {key: value for key, value in given.items() if value is not None}
     if name in ("hertz", "patch"):
-        if args.mode is not None or args.mesh is not None or args.contact != "area":
+        if given or args.contact != "area":
             raise ValueError(
                 f"case {name} runs all its variants at once: expected no --mode, --mesh or --contact"
             )
-        if name == "hertz":
-            from rigidarea.cases import hertz
-
-            return hertz.run(out, cache=cache)
-        from rigidarea.cases import patch_case
-
-        return patch_case.run(out)
+    else:
+        given["contact"] = args.contact
     if args.mesh is not None and not args.mesh > 0:
         raise ValueError(f"--mesh must be positive (millimetres), got {args.mesh}")
-    if name == "pin-joint":
-        from rigidarea.cases import pin_joint
-
-        return pin_joint.run(args.mode or "rigid", args.mesh or 1.0, args.contact, out, cache)
-    if name == "geneva":
-        from rigidarea.cases import geneva_case, geneva_run
-
-        return geneva_run.run(
-            args.mode or "compliant", args.mesh or geneva_case.MESH, args.contact, out, cache
-        )
-    from rigidarea.cases import gearbox_run
-
-    return gearbox_run.run(args.mode or "compliant", args.mesh or 0.6, args.contact, out, cache)
+    case = importlib.import_module(f"rigidarea.cases.{MODULES[name]}")
+    told: dict[str, Any] = case.run(out=out, cache=cache_directory(), **given)
+    return told

@@ -16,16 +16,8 @@ from rigidarea.report import envelope, write_json
 Array = NDArray[np.float64]
 
 # Okabe–Ito, safe for colour-blind readers
-BLACK, ORANGE, SKY, GREEN, YELLOW, BLUE, RED, PURPLE = (
-    "#000000",
-    "#E69F00",
-    "#56B4E9",
-    "#009E73",
-    "#F0E442",
-    "#0072B2",
-    "#D55E00",
-    "#CC79A7",
-)
+BLACK, ORANGE, SKY, GREEN = "#000000", "#E69F00", "#56B4E9", "#009E73"
+YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 
 #: A legend that lies over what is drawn.
 FRAMED: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}

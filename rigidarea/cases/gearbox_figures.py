@@ -32,9 +32,10 @@ NAMES = ("pinion", "wheel")
 
 
 def draw(
-    out: Path, results: dict[str, Any], records: dict[str, Record], mesh_mm: float, cache: Path | None
-) -> None:
-    """All figures; ``results`` and ``records`` are those of ``gearbox_run.run``."""
+    out: Path, results: dict[str, Any], records: dict[str, Record], steps: dict[float, Record], mesh_mm: float,
+    cache: Path | None,
+) -> None:  # fmt: skip
+    """All figures; ``results``, ``records`` and those of its sweep of ``steps`` are ``gearbox_run.run``'s."""
     made = gb.bodies("compliant", mesh_mm, cache=cache)
     sim = gb.simulation("compliant", mesh_mm, cache=cache)
     _configuration(out, sim)
@@ -59,7 +60,7 @@ def draw(
         ("ratio_rmse_percent", "RMSE of the ratio (%)"),
         (0, 0.8),
     )
-    figures.iteration_history(out, "gearbox_fig28", {h: records[f"step {h:g}"] for h in (5e-5, 8e-5)}, 0.5)
+    figures.iteration_history(out, "gearbox_fig28", {h: steps[h] for h in (5e-5, 8e-5)}, 0.5)
 
 
 def _configuration(out: Path, sim: Simulation) -> None:

@@ -7,7 +7,7 @@ from typing import Any
 
 from rigidarea.cases import gearbox as gb
 from rigidarea.cases.case_report import Case, say
-from rigidarea.cases.mechanism import main_run, step_sweep
+from rigidarea.cases.mechanism import kept_steps, main_run
 from rigidarea.flexible.integrate import Record, Simulation
 
 DURATION = 0.5  # s
@@ -73,11 +73,7 @@ def run(
     case.grow(case.results, "variants", (gb.variant(*each, contact, DURATION) for each in gb.VARIANTS))
     dampers = ({"damper": d, **gb.measure(make(damper=d).run(DURATION, gb.STEP))} for d in gb.DAMPERS)
     case.grow(case.results, "dampers", dampers)
-    steps: list[dict[str, Any]] = []
-    for row, record in step_sweep(make, gb.measure, gb.STEPS, DURATION, gb.MESHING):
-        steps.append(row)
-        records[f"step {row['step_s']:g}"] = record
-        case.keep(steps=steps)
+    steps = kept_steps(case, make, gb.measure, gb.STEPS, DURATION, gb.MESHING)
     say("gearbox: mesh stiffness by FE statics")
     case.keep(mesh_stiffness=gear_statics.mesh_stiffness(cache=cache))
     standard["mesh_stiffness"] = gear_statics.mesh_stiffness(gb.STANDARD, cache=cache)
@@ -85,5 +81,5 @@ def run(
     if out is not None:
         from rigidarea.cases import gearbox_figures
 
-        gearbox_figures.draw(out, case.results, records, mesh_mm, cache)
+        gearbox_figures.draw(out, case.results, records, steps, mesh_mm, cache)
     return case.finish()

@@ -34,22 +34,8 @@ DUE = 0.0329  # s, the paper's time of first contact
 MESH = 1.0  # mm
 REFINE = 16  # contact points a mesh edge: on the pin a sagitta of 0.1 µm
 STEPS = (
-    5e-5,
-    1e-4,
-    2e-4,
-    4e-4,
-    5e-4,
-    8e-4,
-    1.6e-3,
-    3.2e-3,
-    6.4e-3,
-    0.0125,
-    0.025,
-    0.03,
-    0.04,
-    0.05,
-    0.1,
-    0.2,
+    *(5e-5, 1e-4, 2e-4, 4e-4, 5e-4, 8e-4, 1.6e-3, 3.2e-3, 6.4e-3),
+    *(0.0125, 0.025, 0.03, 0.04, 0.05, 0.1, 0.2),
 )
 PLAY_S = 6.4e-3  # s, in which the pin crosses the play and touches: the shortest event
 PAPER: dict[str, Any] = {
@@ -111,12 +97,8 @@ def through_hook(duration: float, slots: int = 6) -> Record:
 
     drive = geneva(slots, CENTRES, PIN, CLEARANCE, bore=0.004, tolerance=2e-8)
     start = first_touch(slots) - SPEED * DUE
-    density = STEEL.density * THICKNESS
-    parts, at, angles = (
-        (drive.pin, drive.wheel),
-        (CENTRES, 0.0),
-        (start, drive.wheel_angle(-drive.entry_angle)),
-    )
+    density, angles = STEEL.density * THICKNESS, (start, drive.wheel_angle(-drive.entry_angle))
+    parts, at = (drive.pin, drive.wheel), (CENTRES, 0.0)
     return turn(*parts, at, density, angles, lambda t: SPEED, K, DAMPER, duration, STEP)
 
 
@@ -142,22 +124,17 @@ def measure(r: Record, start: float, slots: int) -> dict[str, Any]:
         "newton_iterations_mean": float(r.iterations.mean()),
     }
     # dwells: from 20 ms after the exit to 20 ms before the next entry
-    revolution = 2 * np.pi / SPEED
-    rests, drifts = [0.0], []
-    n = 0
+    rests, drifts, n = [0.0], [], 0
     while (end := (2 * np.pi * (n + 1) - entry - start) / SPEED - 0.02) < r.t[-1]:
         dwell = (r.t > (2 * np.pi * n + entry - start) / SPEED + 0.02) & (r.t < end)
         rests.append(float(turned[dwell].mean()))
         drifts.append(float(np.ptp(turned[dwell])))
         n += 1
     if drifts:
-        # the first index also takes up the play, once
         steps = np.diff(rests)
-        out["index_angle_error_deg"] = float(
-            np.degrees(np.abs((steps[1:] if len(steps) > 1 else steps) - index).max())
-        )
+        later = steps[1:] if len(steps) > 1 else steps  # the first index also takes up the play, once
+        out["index_angle_error_deg"] = float(np.degrees(np.abs(later - index).max()))
         out["first_index_error_deg"] = float(np.degrees(steps[0] - index))
         out["dwell_drift_deg"] = float(np.degrees(max(drifts)))
         out["dwells"] = len(drifts)
-    out["revolution_s"] = revolution
-    return out
+    return out | {"revolution_s": 2 * np.pi / SPEED}

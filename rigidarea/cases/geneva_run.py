@@ -9,7 +9,7 @@ import numpy as np
 
 from rigidarea.cases import geneva_case as gv
 from rigidarea.cases.case_report import Case, say
-from rigidarea.cases.mechanism import main_run, step_sweep
+from rigidarea.cases.mechanism import kept_steps, main_run
 from rigidarea.flexible.integrate import Simulation
 
 DURATION = 10.0  # s
@@ -54,14 +54,7 @@ def run(
     case.grow(case.results, "slot_numbers", (measured(4.4, n) for n in (4, 5, 6, 8)))
     say("geneva: stiffness, steps")
     case.grow(case.results, "stiffness", ({"k": k, **measured(1.0, k=k)} for k in (gv.K / 4, gv.K, 4 * gv.K)))
-    records = {}
-    steps: list[dict[str, Any]] = []
-    for row, record in step_sweep(
-        lambda: make()[0], lambda r: gv.measure(r, start, 6), gv.STEPS, 1.0, gv.PLAY_S
-    ):
-        steps.append(row)
-        records[row["step_s"]] = record
-        case.keep(steps=steps)
+    records = kept_steps(case, lambda: make()[0], lambda r: gv.measure(r, start, 6), gv.STEPS, 1.0, gv.PLAY_S)
     if out is not None:
         from rigidarea.cases import geneva_figures
 

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
+from rigidarea.cases.case_report import Case
 from rigidarea.flexible.integrate import Record, Simulation
 
 RESOLVING = 10  # steps that the shortest event of a contact must last to count as resolved
@@ -66,3 +67,14 @@ def step_sweep(
             "steps_halved": int(r.halved.sum()),
         }
         yield row | ({"failed": failed} if failed else measure(r)), r
+
+
+def kept_steps(case: Case, *sweep: Any) -> dict[float, Record]:
+    """The records of a `step_sweep`, by step; its rows are the case's results ``steps``, kept as they come."""
+    records: dict[float, Record] = {}
+    rows: list[dict[str, Any]] = []
+    for row, record in step_sweep(*sweep):
+        rows.append(row)
+        records[row["step_s"]] = record
+        case.keep(steps=rows)
+    return records

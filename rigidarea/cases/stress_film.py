@@ -38,8 +38,7 @@ def _record(
     name: str, sim: Any, until: float, h: float, duration: float, every: int, bodies: tuple[str, str],
     window: tuple[float, float, float, float],
 ) -> Scene:  # fmt: skip
-    if until > 0:
-        sim.run(until, h)
+    sim.run(until, h)
     start = sim.time
     r = sim.run(duration, h, every, shapes=True)
     rows = range(len(r.t))
@@ -96,21 +95,14 @@ def make(
 ) -> Path:
     """Draws the still (``NAME_stress.png``) and the film of a case into ``out``; returns the film's path.
 
-    Raises ValueError for the rigid mode, which has no stress, and for ``patch``, which does not move.
+    mode: compliant (also for None) or modal. mesh_mm: None for the case's own.
     """
-    if mode == "rigid":
-        raise ValueError("--film draws stresses: expected --mode compliant or modal, got rigid")
-    level = mode or "compliant"
     if name == "hertz":
         scene = hertz(cache)
-    elif name == "pin-joint":
-        scene = pin_joint(level, mesh_mm or 1.0, contact, cache)
-    elif name == "geneva":
-        scene = geneva(level, mesh_mm or 1.0, contact, cache)
-    elif name == "gearbox":
-        scene = gearbox(level, mesh_mm or 0.6, contact, cache)
     else:
-        raise ValueError("--film: expected a case that moves, got patch, one even stress at rest")
+        made = {"pin-joint": (pin_joint, 1.0), "geneva": (geneva, 1.0), "gearbox": (gearbox, 0.6)}
+        moving, mesh = made[name]
+        scene = moving(mode or "compliant", mesh_mm or mesh, contact, cache)
     still(scene, out)
     return film(scene, out)
 
