@@ -62,7 +62,6 @@ Outcome = tuple[str, float]
 class Map:
     """A map: `run(variant, x, y)` gives the outcome of one point; `theory` lists boundaries (label, x, y)."""
 
-    name: str
     title: str
     x: Axis
     y: Axis
@@ -74,6 +73,8 @@ class Map:
     theory: Callable[[], list[tuple[str, Array, Array]]] = field(default=lambda: [])
     theory_of: tuple[str, ...] = ()
     """The variants that theory speaks of; none: all."""
+    name: str = ""
+    """That of its module."""
 
 
 def engines(**changes: Mapping[str, Any] | None) -> dict[str, Variant]:

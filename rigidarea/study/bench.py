@@ -178,7 +178,6 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
     the ends of edges and arcs; shapely gets arcs sampled to a thousandth of half the extent (a disc: 72 points), as
     its users sample them.
     """
-    import shapely
     from shapely.affinity import affine_transform
 
     if backend() == LIBRARY:
@@ -192,41 +191,29 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
     queries, areas = [], []
     jobs: list[Callable[[], float]] = []
     for name in chosen:
-        a, b, (x, y, angle) = pairs[name]
-        query = Query(a, b, (x, y, angle))
+        a, b, pose = pairs[name]
+        query, (x, y, angle) = Query(a, b, pose), pose
         c, s = math.cos(angle), math.sin(angle)
-        mine, placed = (_sampled(outline) for outline in (a, b))
-        placed = affine_transform(placed, (c, -s, s, c, x, y))
-
-        def theirs(one: Any = mine, other: Any = placed) -> tuple[float, float, float]:
-            both = shapely.intersection(one, other)
-            return both.area, *both.centroid.coords[0]
-
-        def asked(
-            one: Outline = a, other: Outline = b, place: tuple[float, float, float] = (x, y, angle)
-        ) -> Any:
-            return overlap(one, (0.0, 0.0, 0.0), other, place)
-
+        theirs = partial(_intersection, _sampled(a), affine_transform(_sampled(b), (c, -s, s, c, x, y)))
+        asked = partial(overlap, a, (0.0, 0.0, 0.0), b, pose)
         asked()  # its scratch memory is made once
         queries.append(query)
         areas.append(theirs()[0])
         jobs += [query.time_us, partial(_us, asked, 1000), partial(_us, theirs, 100)]
         progress.step(name)
-    times = median_times(jobs, repeats, patience_s=math.inf)
+    times = iter(median_times(jobs, repeats, patience_s=math.inf))
     rows = [
         {
             "pair": name,
             "points_a": sum(map(len, pairs[name][0].rings)),
             "points_b": sum(map(len, pairs[name][1].rings)),
             "regions": query.regions,
-            "query_us": ours_us,
-            "call_us": call_us,
-            "shapely_us": shapely_us,
+            "query_us": next(times),
+            "call_us": next(times),
+            "shapely_us": next(times),
             "area_error": abs(query.area / area - 1),
         }
-        for name, query, area, ours_us, call_us, shapely_us in zip(
-            chosen, queries, areas, times[::3], times[1::3], times[2::3]
-        )
+        for name, query, area in zip(chosen, queries, areas)
     ]
     return envelope("bench kernels", {"pairs": chosen, "repeats": repeats}, rows)
 
@@ -235,6 +222,11 @@ def _sampled(outline: Outline) -> Any:
     xmin, ymin, xmax, ymax = outline.bounds
     coarse = outline.sample(1e-3 * min(xmax - xmin, ymax - ymin) / 2) if outline.arcs else outline
     return coarse.polygon
+
+
+def _intersection(one: Any, other: Any) -> tuple[float, float, float]:
+    both = one.intersection(other)
+    return both.area, *both.centroid.coords[0]
 
 
 class Query:

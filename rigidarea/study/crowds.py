@@ -7,6 +7,7 @@ from collections.abc import Callable
 
 import numpy as np
 
+from .everyday_scenes import pile
 from .scene import OMEGA, VX, VY, Body, Scene, Trace, block, box, disc, floor, rest_error
 
 TOWER = 5
@@ -17,26 +18,18 @@ SEED = 20
 def towers(bodies: int) -> Scene:
     """Towers of five unit boxes side by side on one floor; exact: nothing moves."""
     count = max(bodies // TOWER, 1)
-    ground = floor(2.0 * count + 20.0)
-    boxes = tuple(
-        block(f"box{i}_{j}", 1.0, 1.0, (2.0 * i - count, j + 0.5)) for i in range(count) for j in range(TOWER)
-    )
-    return _standing("towers", ground, boxes)
+    places = [(i, j) for i in range(count) for j in range(TOWER)]
+    boxes = [block(f"box{i}_{j}", 1.0, 1.0, (2.0 * i - count, j + 0.5)) for i, j in places]
+    return _standing("towers", floor(2.0 * count + 20.0), boxes)
 
 
 def pyramid(bodies: int) -> Scene:
     """Unit boxes in a pyramid, each on two; exact: nothing moves."""
     base = max(round((math.sqrt(8 * bodies + 1) - 1) / 2), 1)
-    ground = floor(2.0 * base + 20.0)
-    boxes = tuple(
-        block(f"box{i}_{j}", 1.0, 1.0, (1.05 * (j - (base - 1 - i) / 2), i + 0.5))
-        for i in range(base)
-        for j in range(base - i)
-    )
-    return _standing("pyramid", ground, boxes)
+    return _standing("pyramid", floor(2.0 * base + 20.0), pile(base, 1.0, 0.05, 0.0, SEED))
 
 
-def _standing(name: str, ground: Body, boxes: tuple[Body, ...]) -> Scene:
+def _standing(name: str, ground: Body, boxes: list[Body]) -> Scene:
     names = [body.name for body in boxes]
     return Scene(
         name=name,
@@ -58,13 +51,10 @@ def gas(bodies: int) -> Scene:
     side = columns * pitch / 2
     generator = np.random.default_rng(SEED)
     velocities = generator.normal(0.0, 2.0, (bodies, 2))
-    places = [
-        ((i % columns + 0.5) * pitch - side, (i // columns + 0.5) * pitch - side) for i in range(bodies)
-    ]
-    discs = tuple(
-        disc(f"disc{i}", radius, place, velocity=(float(v[0]), float(v[1])))
-        for i, (place, v) in enumerate(zip(places, velocities, strict=True))
-    )
+    discs = []
+    for i, (vx, vy) in enumerate(velocities.tolist()):
+        place = (i % columns + 0.5) * pitch - side, (i // columns + 0.5) * pitch - side
+        discs.append(disc(f"disc{i}", radius, place, velocity=(vx, vy)))
     wall = side + 1.0
     lying, upright = (2 * wall + 2, 2.0), (2.0, 2 * wall + 2)
     sides = ((lying, (0.0, -wall)), (lying, (0.0, wall)), (upright, (-wall, 0.0)), (upright, (wall, 0.0)))

@@ -30,7 +30,7 @@ from .everyday_bodies import (
     open_box,
     walls,
 )
-from .scene import Body, G, Hinge, Polygon, Scene, Segment, Trace, X, Y, block, box, disc
+from .scene import Body, G, Hinge, Polygon, Scene, Segment, Trace, X, Y, block, box, disc, set_up
 
 SECONDS = 7.0
 """Simulated time; whether a scene has come to rest is asked of the last second."""
@@ -60,11 +60,10 @@ def _scene(
     *,
     metres: bool = False,
     friction: float = 0.6,
-    elasticity: float = 0.0,
-    hinges: Sequence[Hinge] = (),
     seconds: float = SECONDS,
+    **more: Any,
 ) -> Scene:
-    """`room`: left, bottom, right, top, outside of which nothing should ever be found."""
+    """`room`: left, bottom, right, top, outside of which nothing should ever be found. more: fields of `Scene`."""
     moving = [i for i, body in enumerate(bodies) if body.kind == "dynamic"]
 
     def outside(trace: Trace) -> float:
@@ -74,21 +73,9 @@ def _scene(
         within = (place[:, X] > left) & (place[:, X] < right) & (place[:, Y] > bottom) & (place[:, Y] < top)
         return float(1 - np.mean(within))
 
-    return Scene(
-        name=name,
-        title=name,
-        bodies=tuple(bodies),
-        gravity=(0.0, -G if metres else -GRAVITY_PX),
-        friction=friction,
-        elasticity=elasticity,
-        hinges=tuple(hinges),
-        duration=seconds,
-        error_name="share of bodies outside",
-        error=outside,
-        source="",
-        size=1.0 if metres else SIDE_PX,
-        pressure=G if metres else GRAVITY_PX / SIDE_PX**2,
-    )
+    gravity, size = (G, 1.0) if metres else (GRAVITY_PX, SIDE_PX)
+    units: dict[str, Any] = {"gravity": (0.0, -gravity), "size": size, "pressure": gravity / size**2}
+    return set_up(name, bodies, seconds, outside, friction=friction, **units, **more)
 
 
 # Scenes -----------------------------------------------------------------------------------------------------
@@ -116,7 +103,7 @@ def pit_of_discs(count: int) -> Scene:
     return pit("discs", a_disc, count, 600.0 * math.sqrt(count / 150))(0)
 
 
-def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list[Body]:
+def pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list[Body]:
     """Squares in a pyramid, each on two, moved sideways by up to `scatter`."""
     chance = random.Random(seed)
     boxes = []
@@ -129,7 +116,7 @@ def _pile(rows: int, side: float, gap: float, scatter: float, seed: int) -> list
 
 def pyramid(seed: int) -> Scene:
     """15 rows of boxes, a tenth of a side between them."""
-    boxes = _pile(15, SIDE_PX, 0.1, 0.01 * SIDE_PX, seed)
+    boxes = pile(15, SIDE_PX, 0.1, 0.01 * SIDE_PX, seed)
     return _scene("pyramid", [ground(), *boxes], (-1000.0, 0.0, 1000.0, 1000.0))
 
 
@@ -220,7 +207,7 @@ def rope_bridge(seed: int) -> Scene:
         place = 40.0 * (i % 5 - 2) + chance.uniform(-4, 4), top + 40.0 * (i // 5)
         crates.append(block(f"crate{i}", 20.0, 20.0, place, 0.5, angle=chance.uniform(-0.3, 0.3)))
     room = (-1000.0, 0.0, 1000.0, 1000.0)
-    return _scene("rope_bridge", [banks, *planks, *crates], room, hinges=hinges)
+    return _scene("rope_bridge", [banks, *planks, *crates], room, hinges=tuple(hinges))
 
 
 def bouncing(seed: int) -> Scene:
@@ -293,7 +280,7 @@ def metre_pyramid(rows: int) -> Callable[[int], Scene]:
     """Unit boxes in a pyramid, a twentieth of a side between them, in metres."""
 
     def make(seed: int) -> Scene:
-        boxes = _pile(rows, 1.0, 0.05, 1e-3, seed)
+        boxes = pile(rows, 1.0, 0.05, 1e-3, seed)
         half, name = 2.0 * rows, f"pyramid_{len(boxes)}"
         return _scene(name, [metre_floor(half), *boxes], (-half, 0.0, half, half), metres=True)
 

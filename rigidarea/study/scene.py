@@ -11,7 +11,7 @@ import importlib
 import math
 import pkgutil
 from collections.abc import Callable, Collection, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from types import ModuleType
 from typing import Any, Literal
@@ -159,20 +159,20 @@ class Trace:
 class Scene:
     """A set-up with an exact answer.
 
-    `friction` and `elasticity` are the values of every pair (engines combine the two bodies' values
-    differently, so a scene states the result). `size` (length) is that of a typical moving body: peers
-    choose their slop, sampling and units of length by it. `pressure` (force/length²) is the typical load on
-    that size (unless said, the weight of a unit mass); area stiffnesses are multiples of it. `deforms` says that the
-    exact answer is that of elastic bodies: rigid ones give back the restitution that is put in, and need not try.
+    One of `scenes()` is called as its module. `friction` and `elasticity` are the values of every pair (engines combine
+    the two bodies' values differently, so a scene states the result). `size` (length) is that of a typical moving body:
+    peers choose their slop, sampling and units of length by it. `pressure` (force/length²) is the typical load on that
+    size (unless said, the weight of a unit mass); area stiffnesses are multiples of it. `deforms` says that the exact
+    answer is that of elastic bodies: rigid ones give back the restitution that is put in, and need not try.
     """
 
-    name: str
     title: str
     bodies: tuple[Body, ...]
     duration: float
     error_name: str
     error: Callable[[Trace], float]
     source: str
+    name: str = ""
     gravity: tuple[float, float] = (0.0, -G)
     friction: float = 0.0
     elasticity: float = 0.0
@@ -305,7 +305,7 @@ def set_up(
     **more: Any,
 ) -> Scene:
     """A scene that is measured by whoever made it: no title, source, name of the error. more: fields of `Scene`."""
-    return Scene(name, "", tuple(bodies), duration, "", error, "", **more)
+    return Scene("", tuple(bodies), duration, "", error, "", name, **more)
 
 
 # Registry ---------------------------------------------------------------------------------------------------
@@ -321,15 +321,14 @@ def check_known(names: Iterable[str], known: Collection[str], what: str) -> None
 def registered(package: ModuleType, function: str) -> dict[str, Any]:
     """What each module of a package makes by its `function()`, by name: `rest` is made in `rest_scene`, and so on.
 
-    Modules whose names begin with _ make nothing. Raises ValueError for what is not called as its module.
+    Modules whose names begin with _ make nothing.
     """
     found: dict[str, Any] = {}
-    for name in sorted(info.name for info in pkgutil.iter_modules(package.__path__)):
-        if not name.startswith("_"):
-            made = getattr(importlib.import_module(f"{package.__name__}.{name}"), function)()
-            if made.name != name.rpartition("_")[0]:
-                raise ValueError(f"module {name!r} defines one called {made.name!r}")
-            found[made.name] = made
+    for module in sorted(info.name for info in pkgutil.iter_modules(package.__path__)):
+        if not module.startswith("_"):
+            made = getattr(importlib.import_module(f"{package.__name__}.{module}"), function)()
+            name = module.rpartition("_")[0]
+            found[name] = replace(made, name=name)
     return found
 
 

@@ -20,7 +20,7 @@ def _none(_: Trace) -> float:
 def scene_of(name: str, title: str, bodies: Sequence[Body], duration: float = LONGEST, **more: Any) -> Scene:
     """A scene without an exact answer."""
     return Scene(
-        name, title, tuple(bodies), duration, "departure from the finest setting", _none, "none", **more
+        title, tuple(bodies), duration, "departure from the finest setting", _none, "none", name, **more
     )
 
 

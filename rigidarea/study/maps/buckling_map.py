@@ -73,7 +73,6 @@ def atlas_map() -> Map:
     """Sinking of one box × boxes."""
     sinkings = tuple(float(f"{10**p:.3g}") for p in np.arange(-3.6, -2.3, 0.2))
     return Map(
-        name="buckling",
         title="buckling: a stack on soft contacts",
         x=Axis("sinking of one box δ₀ (box sides)", sinkings, (3e-4, 1e-3, 3e-3), log=True),
         y=Axis("boxes", tuple(range(2, 17)), (3, 5, 7, 9, 12)),

@@ -34,7 +34,6 @@ def theory() -> list[tuple[str, Array, Array]]:
 def atlas_map() -> Map:
     """Chord tolerance × clearance."""
     return Map(
-        name="clearance",
         title="sampling against clearance: a pin in a journal",
         x=Axis("sagitta / hole radius", (1e-6, 1e-5, 1e-4, 1e-3, 1e-2), (1e-5, 1e-4, 1e-3), log=True),
         y=Axis("clearance / hole radius", (1e-3, 3e-3, 1e-2, 3e-2, 0.1, 0.3), (3e-3, 3e-2, 0.3), log=True),

@@ -31,7 +31,6 @@ def atlas_map() -> Map:
     variants = engines(explicit={"phase": 0.1}, literal={"phase": 0.1})
     variants["explicit, energy law"] = Variant("rigidarea-explicit", {"phase": 0.1, "law": "energy"})
     return Map(
-        name="corner_corner",
         title="corner on corner: energy of an elastic impact",
         x=Axis("offset of the corners / side", (0.0, 0.01, 0.03, 0.1, 0.2, 0.3, 0.4), (0.0, 0.03, 0.2)),
         y=Axis("turn of one square (degrees)", (-40, -20, -5, 0, 5, 20, 40), (-20, 0, 20)),

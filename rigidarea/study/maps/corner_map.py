@@ -24,7 +24,6 @@ def atlas_map() -> Map:
     variants = engines()
     variants["literal, corners"] = Variant("literal", {"phase": 0.5})
     return Map(
-        name="corner",
         title="one corner inside: a box dropped on a floor",
         x=Axis("tilt (degrees)", (0, 1, 5, 15, 30, 44, 45), (0, 5, 30, 45)),
         y=Axis("drop (sides)", (0.01, 0.1, 0.3, 1.0, 3.0), (0.1, 1.0), log=True),

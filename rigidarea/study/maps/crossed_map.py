@@ -26,7 +26,6 @@ def atlas_map() -> Map:
     variants = engines()
     variants["literal, corners"] = Variant("literal", {"phase": 0.5})
     return Map(
-        name="crossed",
         title="no node inside: a bar across a plate",
         x=Axis("depth of the bar's end / thickness", (0.1, 0.5, 0.9, 1.1, 1.5, 2.0, 3.0), (0.5, 1.1, 2.0)),
         y=Axis("width of the bar / thickness", (0.1, 0.3, 1.0, 3.0), (0.3, 1.0), log=True),

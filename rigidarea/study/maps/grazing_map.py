@@ -30,7 +30,6 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 def atlas_map() -> Map:
     """Overlap of the paths × speed."""
     return Map(
-        name="grazing",
         title="grazing: an elastic disc on a corner",
         x=Axis("cut of the path / radius", (1e-3, 3e-3, 0.01, 0.03, 0.1, 0.3), (0.01, 0.1, 0.3), log=True),
         y=Axis("speed (m/s)", (0.3, 1, 3, 10, 30), (1, 10), log=True),

@@ -35,7 +35,6 @@ def theory() -> list[tuple[str, Array, Array]]:
 def atlas_map() -> Map:
     """ω h of the flat box × tilt at landing."""
     return Map(
-        name="landing",
         title="contact length: a box lands on a corner, then flat",
         x=Axis(
             "ω h of the box lying flat",

@@ -37,7 +37,6 @@ def atlas_map() -> Map:
     """Mass ratio × steps a frame."""
     steps = (1, 2, 4, 8, 16, 32, 64, 128, 256)
     return Map(
-        name="mass_ratio",
         title="mass ratio: a heavy box on a light one",
         x=Axis(
             "mass ratio",

@@ -27,7 +27,6 @@ def atlas_map() -> Map:
     """Distance from the origin × scene."""
     distances = tuple(float(10**p) for p in range(0, 9))
     return Map(
-        name="offset",
         title="far from the origin",
         x=Axis("distance from the origin (m)", distances, (1.0, 1e3, 1e5, 1e7), log=True),
         y=Axis(

@@ -54,7 +54,6 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 def atlas_map() -> Map:
     """Depth of overlap at the start × shape."""
     return Map(
-        name="overlap_depth",
         title="starting inside a slab",
         x=Axis(
             "depth of overlap at the start / height",

@@ -26,7 +26,6 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
 def atlas_map() -> Map:
     """Speed × length of a tile."""
     return Map(
-        name="seams",
         title="seams: a smooth box over butted tiles",
         x=Axis("speed (m/s)", (0.5, 1, 2, 4, 8, 16), (1, 4, 16), log=True),
         y=Axis("length of a tile / side", (0.2, 0.5, 0.9, 1.1, 2.0, 5.0), (0.5, 1.1, 5.0), log=True),

@@ -69,7 +69,6 @@ def theory() -> list[tuple[str, Array, Array]]:
 def atlas_map() -> Map:
     """ω h × elasticity (e = 1: no damping)."""
     return Map(
-        name="step_size",
         title="step size: a box resting on a floor",
         x=Axis(
             "ω h",

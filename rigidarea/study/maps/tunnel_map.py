@@ -40,7 +40,6 @@ def theory() -> list[tuple[str, Array, Array]]:
 def atlas_map() -> Map:
     """Speed × thickness."""
     return Map(
-        name="tunnel",
         title="tunnelling: a fast box against a thin wall",
         x=Axis(
             "speed (m/s), box of 0.5 m", (1, 3, 10, 30, 60, 100, 200, 300, 600), (3, 30, 100, 300), log=True

@@ -6,7 +6,6 @@ from ..scene import VX, Array, Scene, Trace, disc
 
 
 def row(
-    name: str,
     title: str,
     source: str,
     radius: float,
@@ -32,7 +31,6 @@ def row(
         return float(np.max(np.abs(found - exact)) / np.max(exact))
 
     return Scene(
-        name=name,
         title=title,
         bodies=tuple(discs),
         gravity=(0.0, 0.0),

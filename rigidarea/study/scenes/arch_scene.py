@@ -90,7 +90,6 @@ def scene() -> Scene:
     names = [stone.name for stone in stones]
     half = sum(stone.mass for stone in stones) / 2 * G
     return Scene(
-        name="arch",
         title="arch of voussoirs at 1.1 of the least thickness",
         bodies=(floor(), *stones),
         friction=MU,

@@ -30,7 +30,6 @@ def scene() -> Scene:
     """A bar of 2 m lies on both prongs; merging the two contacts would put the force into the void."""
     body = Body("u", (u_shape(),), kind="static")
     return Scene(
-        name="bar_on_u",
         title="bar across a U",
         bodies=(body, block("bar", 2.0, 0.2, (0.2, 0.1))),
         friction=0.5,

@@ -41,7 +41,6 @@ def scene() -> Scene:
         shape = (box(length, height),)
         bodies.append(Body(name, shape, (x, 0.0), velocity=(v, 0.0), mass=mass, moment=moment, elastic=made))
     return Scene(
-        name="bars",
         title="elastic bars, end to end",
         bodies=tuple(bodies),
         gravity=(0.0, 0.0),

@@ -34,7 +34,6 @@ def scene() -> Scene:
     """Drop 1 m, e = 0.7, three bounces."""
     start, stop = flight(BOUNCES)
     return Scene(
-        name="bounce",
         title="ball bouncing, e = 0.7",
         bodies=(floor(), disc("ball", RADIUS, (0.0, RADIUS + DROP))),
         elasticity=E,

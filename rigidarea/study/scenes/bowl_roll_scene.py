@@ -12,7 +12,6 @@ def scene() -> Scene:
     """As `bowl_slide` from 45 degrees, with μ = 0.8 (rolling needs tan θ₀/3 = 0.33)."""
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     return Scene(
-        name="bowl_roll",
         title="disc rolling in a bowl",
         bodies=(bowl(BOWL), disc("disc", RADIUS, start)),
         friction=MU,

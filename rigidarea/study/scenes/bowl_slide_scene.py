@@ -63,7 +63,6 @@ def scene() -> Scene:
     """R = 2 m, r = 0.2 m, released at 60 degrees, two periods, no friction."""
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     return Scene(
-        name="bowl_slide",
         title="smooth disc in a bowl",
         bodies=(bowl(BOWL), disc("disc", RADIUS, start)),
         duration=2 * period(RHO, START),

@@ -35,7 +35,6 @@ def scene() -> Scene:
     """Equal unit boxes, the lower on the floor, the upper falls 3 m onto it."""
     bodies = (floor(), block("lower", 1.0, 1.0, (0.0, 0.5)), block("upper", 1.0, 1.0, (0.0, 1.5 + DROP)))
     return Scene(
-        name="box_on_box",
         title="box dropped on a box, e = 0",
         bodies=bodies,
         friction=0.5,

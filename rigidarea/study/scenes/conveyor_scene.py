@@ -16,7 +16,6 @@ def position(t: np.ndarray) -> np.ndarray:
 def scene() -> Scene:
     """Belt 2 m/s, μ = 0.25."""
     return Scene(
-        name="conveyor",
         title="block on a conveyor belt",
         bodies=(floor(name="belt", surface_speed=U), block("block", 1.0, 0.5, (0.0, 0.25))),
         friction=MU,

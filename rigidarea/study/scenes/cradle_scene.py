@@ -12,4 +12,4 @@ def scene() -> Scene:
     """Five discs, gaps of 0.02 m, e = 1, no gravity: equal masses exchange velocities pair by pair."""
     source = "equal masses, e = 1: velocities are exchanged at each impact"
     masses, exact = (1.0,) * COUNT, V * np.eye(COUNT)[-1]
-    return row("cradle", "Newton's cradle with gaps", source, RADIUS, GAP, 0.3, masses, V, exact)
+    return row("Newton's cradle with gaps", source, RADIUS, GAP, 0.3, masses, V, exact)

@@ -20,7 +20,6 @@ def scene() -> Scene:
     dome = Body("dome", (Circle(DOME),), kind="static")
     start = (RHO * math.sin(START), RHO * math.cos(START))
     return Scene(
-        name="dome",
         title="smooth disc sliding off a dome",
         bodies=(dome, disc("disc", RADIUS, start)),
         duration=1.1,

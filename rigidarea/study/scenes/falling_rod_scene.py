@@ -37,7 +37,6 @@ def scene() -> Scene:
     shape = Polygon(((-H, 0.0), (0.0, -THICK / 2), (H, 0.0), (0.0, THICK / 2)))
     rod = Body("rod", (shape,), (0.0, H * math.sin(START)), START, moment=moment(1.0))
     return Scene(
-        name="falling_rod",
         title="rod falling on a smooth floor",
         bodies=(floor(), rod),
         duration=0.5,

@@ -46,7 +46,6 @@ def scene() -> Scene:
     place, speed = (RADII[0] + RADII[1], 0.0), -SPEED * TEETH[0] / TEETH[1]
     driven = Body("driven", (curves[1],), place, touching, angular_velocity=speed, **inertia)
     return Scene(
-        name="gears",
         title="involute gears, 20 : 30",
         bodies=(driver, driven),
         gravity=(0.0, 0.0),

@@ -56,7 +56,6 @@ def scene() -> Scene:
         Body("wheel", (wheel,), (CENTRES, 0.0), angle, **inertia),
     )
     return Scene(
-        name="geneva",
         title="Geneva drive, six slots",
         bodies=bodies,
         gravity=(0.0, 0.0),

@@ -30,7 +30,6 @@ def scene() -> Scene:
     """No gravity; approach (1, −3) m/s, e = 0.5, μ = 0.8."""
     ball = disc("ball", RADIUS, (0.0, RADIUS + 0.5), velocity=(V_T, -V_N))
     return Scene(
-        name="gripping_bounce",
         title="slanted bounce that grips",
         bodies=(floor(), ball),
         gravity=(0.0, 0.0),

@@ -26,7 +26,6 @@ def scene() -> Scene:
         block("heavy", 2.5, 1.0, (OFF, 1.5), RATIO),
     )
     return Scene(
-        name="heavy_on_light",
         title="crate of 1,000 on two of 1",
         bodies=bodies,
         friction=0.5,

@@ -11,7 +11,6 @@ THETA = math.atan(0.9 * MU)
 def scene() -> Scene:
     """tan θ = 0.9 μ, five seconds; gravity is turned instead of the floor."""
     return Scene(
-        name="incline_hold",
         title="block held by friction",
         bodies=(floor(), block("block", 1.0, 0.5, (0.0, 0.25))),
         gravity=(G * math.sin(THETA), -G * math.cos(THETA)),

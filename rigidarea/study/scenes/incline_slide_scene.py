@@ -12,7 +12,6 @@ ACCELERATION = G * (math.sin(THETA) - MU * math.cos(THETA))
 def scene() -> Scene:
     """tan θ = 0.6, μ = 0.3, two seconds from rest; gravity is turned instead of the floor."""
     return Scene(
-        name="incline_slide",
         title="block sliding down an incline",
         bodies=(floor(), block("block", 1.0, 0.5, (0.0, 0.25))),
         gravity=(G * math.sin(THETA), -G * math.cos(THETA)),

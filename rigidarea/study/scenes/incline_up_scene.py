@@ -20,7 +20,6 @@ def position(t: np.ndarray) -> np.ndarray:
 def scene() -> Scene:
     """4 m/s up a slope of tan θ = 0.3 with μ = 0.5 (it must not slide back); gravity is turned, not the floor."""
     return Scene(
-        name="incline_up",
         title="block pushed up an incline",
         bodies=(floor(), block("block", 1.0, 0.5, (0.0, 0.25), velocity=(V, 0.0))),
         gravity=(-G * math.sin(THETA), -G * math.cos(THETA)),

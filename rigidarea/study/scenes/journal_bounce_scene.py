@@ -35,7 +35,6 @@ def scene() -> Scene:
     """
     journal = Body("journal", (slab_with_hole(HOLE, 1.5),), kind="static")
     return Scene(
-        name="journal_bounce",
         title="elastic pin in a journal",
         bodies=(journal, disc("pin", PIN, (0.0, DROP - CLEARANCE), elastic=STEEL)),
         elasticity=1.0,

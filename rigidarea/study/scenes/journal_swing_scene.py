@@ -16,7 +16,6 @@ def scene() -> Scene:
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     journal = Body("journal", (slab_with_hole(HOLE, 1.5),), kind="static")
     return Scene(
-        name="journal_swing",
         title="smooth pin in a journal",
         bodies=(journal, disc("pin", PIN, start, elastic=STEEL)),
         duration=2 * period(RHO, START),

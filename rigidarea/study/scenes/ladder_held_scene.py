@@ -21,7 +21,6 @@ def least_friction(steep: float) -> float:
 def scene() -> Scene:
     """2 m, 60 degrees, 1.05 of the least friction at both ends: nothing moves."""
     return Scene(
-        name="ladder_held",
         title="ladder held by friction at 1.05 of the limit",
         bodies=(floor(), *leaning(STEEP)),
         friction=MARGIN * least_friction(STEEP),

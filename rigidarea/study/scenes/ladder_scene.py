@@ -64,7 +64,6 @@ def leaning(steep: float) -> tuple[Body, Body]:
 def scene() -> Scene:
     """2 m, released at 60 degrees."""
     return Scene(
-        name="ladder",
         title="ladder sliding down a wall",
         bodies=(floor(), *leaning(START)),
         duration=0.75,

@@ -29,7 +29,6 @@ def scene() -> Scene:
     """v₀² = 3.5 g ρ: leaves the wall 120 degrees from the bottom; stops before the disc lands again."""
     ring = Body("ring", (slab_with_hole(HOLE, 1.5),), kind="static")
     return Scene(
-        name="loop",
         title="smooth disc in a loop, leaving the wall",
         bodies=(ring, disc("disc", RADIUS, (0.0, -RHO), velocity=(SPEED, 0.0))),
         duration=0.85,

@@ -23,4 +23,4 @@ def after() -> Array:
 def scene() -> Scene:
     """Masses halve three times, e = 1, no gravity."""
     source = "Huygens' chain: v Π 2 m_i/(m_i + m_(i+1))"
-    return row("mass_chain", "impact along a chain of masses", source, RADIUS, GAP, 0.2, MASSES, V, after())
+    return row("impact along a chain of masses", source, RADIUS, GAP, 0.2, MASSES, V, after())

@@ -29,7 +29,6 @@ def scene() -> Scene:
     """No gravity; approach (4, −3) m/s, e = 0.5, μ = 0.2."""
     ball = disc("ball", RADIUS, (0.0, RADIUS + 0.5), velocity=(V_T, -V_N))
     return Scene(
-        name="oblique_bounce",
         title="slanted bounce with sliding friction",
         bodies=(floor(), ball),
         gravity=(0.0, 0.0),

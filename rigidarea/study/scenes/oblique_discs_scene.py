@@ -28,7 +28,6 @@ def scene() -> Scene:
     a = disc("a", RADIUS, (-0.5, 0.0), velocity=(V, 0.0))
     b = disc("b", RADIUS, (float(touch[0]), float(touch[1])))
     return Scene(
-        name="oblique_discs",
         title="oblique impact of two discs",
         bodies=(a, b),
         gravity=(0.0, 0.0),

@@ -28,7 +28,6 @@ def scene() -> Scene:
         disc("disc", RADIUS, (ARM, start), M_DISC, velocity=(0.0, -V)),
     )
     return Scene(
-        name="off_centre_hit",
         title="disc hits a free bar off centre",
         bodies=bodies,
         gravity=(0.0, 0.0),

@@ -24,7 +24,6 @@ def scene() -> Scene:
         block(f"book{i}", LENGTH, HEIGHT, (float(x), (i + 0.5) * HEIGHT)) for i, x in enumerate(centres())
     )
     return Scene(
-        name="overhang",
         title="overhanging books",
         bodies=(table, *books),
         friction=0.5,

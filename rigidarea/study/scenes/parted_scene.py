@@ -32,7 +32,6 @@ def scene() -> Scene:
         block("right", 1.0, 1.0, (apart, 0.0), velocity=(0.0, V)),
     )
     return Scene(
-        name="parted",
         title="two free boxes, overlapped at the start",
         bodies=bodies,
         gravity=(0.0, 0.0),

@@ -6,7 +6,6 @@ from ..scene import Scene, block, floor, rest_error
 def scene() -> Scene:
     """Unit box placed exactly on the floor; the rigid answer is no motion at all (sinking counts as error)."""
     return Scene(
-        name="rest",
         title="box at rest",
         bodies=(floor(), block("box", 1.0, 1.0, (0.0, 0.5))),
         friction=0.5,

@@ -27,7 +27,6 @@ def scene() -> Scene:
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     peg = Body("peg", (Circle(PEG),), kind="static")
     return Scene(
-        name="ring_on_peg",
         title="ring rolling on a peg",
         bodies=(peg, Body("ring", (ring(),), start, moment=GYRATION2)),
         friction=MU,

@@ -49,7 +49,6 @@ def scene() -> Scene:
     centre = (R * math.cos(at), R * math.sin(at))
     body = Body("block", (box(WIDTH, HEIGHT),), centre, TILT, moment=box_moment(1.0, WIDTH, HEIGHT))
     return Scene(
-        name="rocking",
         title="rocking block (Housner)",
         bodies=(floor(), body),
         friction=MU,

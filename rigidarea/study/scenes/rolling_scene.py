@@ -18,7 +18,6 @@ def error(trace: Trace) -> float:
 def scene() -> Scene:
     """30 degrees, μ = 0.5 (tan θ/3 = 0.19), two seconds; gravity is turned instead of the floor."""
     return Scene(
-        name="rolling",
         title="disc rolling down an incline",
         bodies=(floor(), disc("disc", RADIUS, (0.0, RADIUS))),
         gravity=(G * math.sin(THETA), -G * math.cos(THETA)),

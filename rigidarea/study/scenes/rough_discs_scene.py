@@ -57,7 +57,6 @@ def scene() -> Scene:
     a = disc("a", RADII[0], (-0.5, 0.0), MASSES[0], velocity=(V, 0.0))
     b = disc("b", RADII[1], (float(touch[0]), float(touch[1])), MASSES[1])
     return Scene(
-        name="rough_discs",
         title="two free discs, hitting and rubbing",
         bodies=(a, b),
         gravity=(0.0, 0.0),

@@ -21,7 +21,6 @@ def error(trace: Trace) -> float:
 def scene() -> Scene:
     """3 m/s, μ = 0.4."""
     return Scene(
-        name="sliding_stop",
         title="block sliding to a stop",
         bodies=(floor(), block("block", 1.0, 0.5, (0.0, 0.25), velocity=(V, 0.0))),
         friction=MU,

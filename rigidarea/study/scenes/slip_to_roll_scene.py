@@ -27,7 +27,6 @@ def error(trace: Trace) -> float:
 def scene() -> Scene:
     """5 m/s, μ = 0.3."""
     return Scene(
-        name="slip_to_roll",
         title="disc: sliding turns to rolling",
         bodies=(floor(), disc("disc", RADIUS, (0.0, RADIUS), velocity=(V, 0.0))),
         friction=MU,

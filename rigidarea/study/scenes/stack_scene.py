@@ -9,7 +9,6 @@ def scene() -> Scene:
     """Unit boxes placed exactly on each other; interface i carries (N − i) m g and nothing moves."""
     boxes = tuple(block(f"box{i}", 1.0, 1.0, (0.0, i + 0.5)) for i in range(COUNT))
     return Scene(
-        name="stack",
         title="stack of ten boxes",
         bodies=(floor(), *boxes),
         friction=0.5,

@@ -11,7 +11,6 @@ THETA = math.atan(0.9 * WIDTH / HEIGHT)
 def scene() -> Scene:
     """tan θ = 0.9 w/h, five seconds; gravity is turned instead of the floor."""
     return Scene(
-        name="standing",
         title="block standing on an incline",
         bodies=(floor(), block("block", WIDTH, HEIGHT, (0.0, HEIGHT / 2))),
         gravity=(G * math.sin(THETA), -G * math.cos(THETA)),

@@ -17,7 +17,6 @@ def scene() -> Scene:
     """Drop 0.5 m, e = 1, ten bounces."""
     start, stop = flight(BOUNCES, DROP, 1.0)
     return Scene(
-        name="superball",
         title="elastic ball, ten bounces",
         bodies=(floor(), disc("ball", RADIUS, (0.0, RADIUS + DROP), elastic=STEEL)),
         elasticity=1.0,

@@ -22,7 +22,6 @@ def scene() -> Scene:
     )
     sliding = block("box", SIDE, SIDE, (0.0, SIDE / 2), velocity=(V, 0.0))
     return Scene(
-        name="tiles",
         title="box sliding over butted tiles",
         bodies=(*tiles, sliding),
         duration=2.5,

@@ -23,7 +23,6 @@ def rotation(t: Array) -> Array:
 def scene() -> Scene:
     """tan θ = 1.2 w/h; gravity is turned instead of the floor."""
     return Scene(
-        name="tipping",
         title="block tipping over",
         bodies=(floor(), block("block", WIDTH, HEIGHT, (0.0, HEIGHT / 2))),
         gravity=(G * math.sin(THETA), -G * math.cos(THETA)),

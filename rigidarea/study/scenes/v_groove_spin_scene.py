@@ -45,7 +45,6 @@ def scene() -> Scene:
     """90-degree groove, μ = 0.2, from 20 rad/s; ends before the disc stops."""
     body = Body("groove", (groove(2.0, 1.0),), kind="static")
     return Scene(
-        name="v_groove_spin",
         title="disc spinning in a V-groove",
         bodies=(body, disc("disc", RADIUS, (0.0, RADIUS / math.cos(PHI)), angular_velocity=SPIN)),
         friction=MU,

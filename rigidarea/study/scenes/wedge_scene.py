@@ -55,7 +55,6 @@ def scene() -> Scene:
         block("block", SIDE, SIDE, (float(start[X]), float(start[1])), M_BLOCK, angle=-SLOPE),
     )
     return Scene(
-        name="wedge",
         title="block on a free wedge",
         bodies=bodies,
         duration=0.6,
