@@ -23,22 +23,6 @@ YELLOW, BLUE, RED, PURPLE = "#F0E442", "#0072B2", "#D55E00", "#CC79A7"
 FRAMED: dict[str, Any] = {"frameon": True, "framealpha": 0.9, "edgecolor": "none"}
 
 
-class Clock:
-    """Wall time since construction; ``setup`` marks the end of the set-up."""
-
-    def __init__(self) -> None:
-        self.start = time.perf_counter()
-        self.setup_s = 0.0
-
-    def setup(self) -> None:
-        """Set-up ends now."""
-        self.setup_s = self.wall()
-
-    def wall(self) -> float:
-        """Seconds since construction."""
-        return time.perf_counter() - self.start
-
-
 def say(text: str) -> None:
     """Progress, on standard error (standard output may be JSON)."""
     print(text, file=sys.stderr, flush=True)
@@ -55,9 +39,13 @@ class Case:
     ) -> None:
         self.name, self.settings, self.paper, self.simulated_s = name, settings, paper, simulated_s
         self.out = out
-        self.clock = Clock()
+        self.start, self.setup_s = time.perf_counter(), 0.0
         self.results: Any = {}
         """A mapping, or, put there at once, rows."""
+
+    def set_up(self) -> None:
+        """Set-up ends now."""
+        self.setup_s = time.perf_counter() - self.start
 
     def keep(self, **parts: Any) -> None:
         """Adds results, or replaces those of the same name, and writes the file."""
@@ -81,8 +69,8 @@ class Case:
             self.settings,
             self.results,
             paper=self.paper,
-            wall_s=self.clock.wall(),
-            setup_s=self.clock.setup_s,
+            wall_s=time.perf_counter() - self.start,
+            setup_s=self.setup_s,
             simulated_s=self.simulated_s,
             complete=complete,
         )
@@ -113,11 +101,10 @@ def figure(
     return plt.subplots(rows, columns, figsize=(width, height), layout="constrained", **keys)
 
 
-def save(fig: Any, out: Path | None, name: str) -> None:
-    """Writes ``name``.png into ``out`` (nothing if None) at 150 dots an inch and closes the figure."""
+def save(fig: Any, out: Path, name: str) -> None:
+    """Writes ``name``.png into ``out`` at 150 dots an inch and closes the figure."""
     import matplotlib.pyplot as plt
 
-    if out is not None:
-        out.mkdir(parents=True, exist_ok=True)
-        fig.savefig(out / f"{name}.png", dpi=150)
+    out.mkdir(parents=True, exist_ok=True)
+    fig.savefig(out / f"{name}.png", dpi=150)
     plt.close(fig)

@@ -57,7 +57,7 @@ def run(
         }
 
     make()
-    case.clock.setup()
+    case.set_up()
     r, results = one(gb.ADDENDUM)
     case.keep(**results)
     records = {"main": r}

@@ -41,7 +41,7 @@ def run(
     }
     case = Case("geneva", settings, gv.PAPER, DURATION, out)
     make()
-    case.clock.setup()
+    case.set_up()
     hook = gv.through_hook if mode == "rigid" and contact == "area" else None
     r, seconds = main_run(lambda: make()[0], hook, DURATION, gv.STEP)
     case.keep(**gv.measure(r, start, 6), **seconds)

@@ -214,7 +214,7 @@ def run(
         curves |= {(name, n): c for n, c in found.items()}
     at = readings["equations"]["meshes"][COUNTS.index(5000)]
     case.keep(**{key: at[key] for key in at if key != "element_m"}, readings=readings)
-    case.clock.setup()
+    case.set_up()
     say("hertz: predicted, full FE statics")
     studies = []
     for d in divisions:

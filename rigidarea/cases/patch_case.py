@@ -148,7 +148,7 @@ def run(out: Path | None = None, cache: Path | None = None) -> dict[str, Any]:
     """All gaps and meshes; figures 11 to 13 redrawn. cache: as other cases have it; nothing is reduced here."""
     settings = {"slave_m": SLAVE, "master_m": MASTER, "k": K, "q": 1.0, "gaps_m": GAPS}
     case = Case("patch", settings, PAPER, 0.0, out)
-    case.clock.setup()
+    case.set_up()
     rows, states = zip(*(press(gap, mesh) for gap in GAPS for mesh in MESHES), strict=True)
     if out is not None:
         _figures(out, rows, states)

@@ -137,8 +137,8 @@ def run_hook(duration: float, tolerance: float | None = None) -> tuple[Array, Ar
     return STEP * np.arange(1.0, steps + 1.0), y, pin.mass * (np.diff(v) / STEP + GRAVITY), level + y
 
 
-def beside_points(tolerance: float = POINTS_TOLERANCE) -> dict[str, Any]:
-    """The rigid level as arcs beside the same as points to `tolerance` (m): errors of the points, ratios of time.
+def beside_points() -> dict[str, Any]:
+    """The rigid level as arcs beside the same as points to `POINTS_TOLERANCE`: errors of the points, ratios of time.
 
     Processor time of a run of 0.3 s, and of its first contact, in machine code; the median of REPEATS ratios, arcs and
     points in turn.
@@ -146,15 +146,15 @@ def beside_points(tolerance: float = POINTS_TOLERANCE) -> dict[str, Any]:
     ratios = []
     for _ in range(REPEATS + 1):
         spent = []
-        for kind in (None, tolerance):
+        for kind in (None, POINTS_TOLERANCE):
             _, _, contact = hook_space(kind)
             spent.append([timed(partial(contact.step, STEP, n))[1]["run_cpu_s"] for n in STRETCHES])
             contact.detach()
         ratios.append((sum(spent[0]) / sum(spent[1]), spent[0][1] / spent[1][1]))
     whole, touching = np.median(ratios[1:], axis=0)
-    measured = measure(*run_hook(0.3, tolerance))
+    measured = measure(*run_hook(0.3, POINTS_TOLERANCE))
     return {
-        "tolerance_m": tolerance,
+        "tolerance_m": POINTS_TOLERANCE,
         "run_ratio": float(whole),
         "contact_phase_ratio": float(touching),
         "points_error_percent": {k: 100 * (measured[k] / v - 1) for k, v in exact().items()},
@@ -262,11 +262,11 @@ def run(
     case = Case("pin-joint", settings, PAPER, duration, out)
     reference = exact()
     if mode == "rigid" and contact == "area":
-        case.clock.setup()
+        case.set_up()
         t, y, force, level = run_hook(duration)
     else:
         sim = simulation(mesh_mm, mode, contact, refine=4, cache=cache)
-        case.clock.setup()
+        case.set_up()
         r = sim.run(duration, STEP)
         t, y, force = r.t, r.x[:, 0, 1], -r.force[:, 1]
         level = y + 0.5 * (r.v[:, 0, :2] ** 2).sum(1) / GRAVITY

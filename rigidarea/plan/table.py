@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pymunk
 
+from ..report import align
 from .probe import Setting
 from .promise import name_of
 
@@ -74,10 +75,7 @@ def text_of(plan: Any) -> str:
         error = f"{line.error:.1e}" if math.isfinite(line.error) else ""
         cost = f"{1e3 * line.cost_s:.3g}" if line.cost_s else ""
         rows.append((line.what, line.choice, line.decided_by, error, cost))
-    widths = [max(len(row[i]) for row in rows) for i in range(5)]
-    table = "\n".join(
-        "  ".join(text.ljust(width) for text, width in zip(row, widths)).rstrip() for row in rows
-    )
+    table = "\n".join(align(rows, left=range(5)))
     if plan.reachable:
         told = f"off by {plan.error:.1e} where it was tried out" if plan.error > 0.0 else "nothing moves"
     else:

@@ -101,12 +101,12 @@ def growth(rows: Sequence[Row]) -> list[Row]:
     return found
 
 
-def call_overhead(count: int = 20000) -> Row:
+def call_overhead() -> Row:
     """What a step of an empty world costs in each engine (µs): the foreign call and the engine's own least work."""
     import pymunk
     from pymunk._chipmunk_cffi import lib
 
-    space = pymunk.Space()
+    space, count = pymunk.Space(), 20000
     found = {
         "pymunk": _us(lib.cpSpaceStep, count, space._space, 1e-3),
         "pymunk_python": _us(space.step, count, 1e-3),

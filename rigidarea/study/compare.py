@@ -34,7 +34,7 @@ class Comparison:
     """A scene at three levels.
 
     `make(level, cache)` builds it; `trace(record)` is the quantity drawn (with `label`), over `window` (s);
-    `exact(record)` is an error against an exact answer called `exact_name`, where there is one.
+    `exact(record)` is an error against an exact answer, or a finer one, called `exact_name`.
     """
 
     name: str
@@ -43,8 +43,8 @@ class Comparison:
     make: Callable[[str, Path | None], Made]
     trace: Callable[[Any], Array]
     window: tuple[float, float]
-    exact_name: str = ""
-    exact: Callable[[Any], float] | None = None
+    exact_name: str
+    exact: Callable[[Any], float]
 
 
 def _pin_joint() -> Comparison:
@@ -247,7 +247,7 @@ def _level(
         "level": level,
         "cost_s_per_s": None if failed else float(np.median(seconds[1:])) / duration,
         "setup_s": setup,
-        "error": described.exact(record) if described.exact and not failed else None,
+        "error": None if failed else described.exact(record),
         "error_name": described.exact_name,
         "failed": failed,
     }

@@ -16,29 +16,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-COLOURS = {
-    "rigidarea": "#0072B2",
-    "rigidarea-default": "#56B4E9",
-    "pymunk": "#D55E00",
-    "box2d": "#009E73",
-    "literal": "#CC79A7",
-    "rigidarea-explicit": "#999999",
-    "rigidarea-implicit": "#000000",
-    "compliant": "#CC79A7",
-    "modal": "#E69F00",
+LOOKS = {
+    "rigidarea": ("#0072B2", "o"),
+    "rigidarea-default": ("#56B4E9", "*"),
+    "rigidarea-explicit": ("#999999", "."),
+    "rigidarea-implicit": ("#000000", "X"),
+    "compliant": ("#CC79A7", "v"),
+    "modal": ("#E69F00", "D"),
+    "pymunk": ("#D55E00", "s"),
+    "box2d": ("#009E73", "^"),
+    "literal": ("#CC79A7", "x"),
 }
-MARKERS = {
-    "rigidarea": "o",
-    "rigidarea-default": "*",
-    "rigidarea-explicit": ".",
-    "rigidarea-implicit": "X",
-    "compliant": "v",
-    "modal": "D",
-    "pymunk": "s",
-    "box2d": "^",
-    "literal": "x",
-}
-OTHER_COLOURS = ("#F0E442", "#666666")
+"""Colour and marker of a peer, the same in every picture."""
 RANGE = (1e-3, 1e3)
 """Ratios that the summary shows; beyond, an arrow at its edge."""
 PAGE = (3, 3)
@@ -79,19 +68,20 @@ def panels(count: int, across: int, tall: float, head: float = 0.0, **more: Any)
 
 
 def mark(peer: str, label: str = "", **look: Any) -> Any:
-    """A legend's handle: the peer's mark."""
-    look = {"color": colour(peer), "marker": marker(peer), "label": label or peer, "ls": "", **look}
-    return pyplot().Line2D([], [], **look)
+    """A legend's handle: the peer's mark; without a peer, as `look` says."""
+    if peer:
+        look = {"color": colour(peer), "marker": marker(peer), **look}
+    return pyplot().Line2D([], [], **{"label": label or peer, "ls": "", **look})
 
 
 def colour(peer: str) -> str:
-    """The colour of a peer, the same in every picture."""
-    return COLOURS.get(peer) or OTHER_COLOURS[sum(map(ord, peer)) % len(OTHER_COLOURS)]
+    """The colour of a peer."""
+    return LOOKS[peer][0]
 
 
 def marker(peer: str) -> str:
-    """The marker of a peer, the same in every picture."""
-    return MARKERS.get(peer, "D")
+    """The marker of a peer."""
+    return LOOKS[peer][1]
 
 
 def save(figure: Figure, out: Path, name: str) -> list[Path]:
@@ -285,7 +275,7 @@ def kernel_times(report: Row, out: Path) -> list[Path]:
     ax.set_yticks(range(len(rows)), names)
     ax.set(xscale="log", xlabel="one query: area, centroid (µs)")
     figure.legend(
-        handles=[mark("rigidarea"), mark("shapely", marker="s", color="#E69F00")],
+        handles=[mark("rigidarea"), mark("", "shapely", marker="s", color="#E69F00")],
         loc="outside upper center",
         ncols=2,
     )

@@ -287,16 +287,16 @@ def metre_pyramid(rows: int) -> Callable[[int], Scene]:
     return make
 
 
-def metre_towers(bodies: int, height: int = 5) -> Callable[[int], Scene]:
+def metre_towers(bodies: int) -> Callable[[int], Scene]:
     """Towers of five unit boxes side by side, each box up to 1e-4 off, in metres."""
 
     def make(seed: int) -> Scene:
         chance = random.Random(seed)
-        count = bodies // height
+        count = bodies // 5
         boxes = [
             block(f"box{i}_{j}", 1.0, 1.0, (2.0 * i - count + chance.uniform(-1e-4, 1e-4), j + 0.5))
             for i in range(count)
-            for j in range(height)
+            for j in range(5)
         ]
         half = count + 10.0
         room = (-half, 0.0, half, 20.0)

@@ -138,12 +138,13 @@ def measured(name: str, size: int, engines: Sequence[str]) -> Row:
     return row
 
 
-def small_spaces(count: int = 30, bodies: int = 20) -> Row:
-    """`attach` and the first frame of the second and later spaces of a process, empty and with some bodies (ms)."""
+def small_spaces() -> Row:
+    """`attach` and the first frame of the second and later of 30 spaces, empty and with 20 bodies (ms)."""
+    bodies = 20
     row: Row = {"scene": "small spaces", "size": bodies, "shapes": bodies + 1}
     for n, key in ((0, "start_empty_ms"), (bodies, "start_ms")):
         times = []
-        for _ in range(count):
+        for _ in range(30):
             space = pymunk.Space()
             space.gravity = 0, -GRAVITY
             made = [pymunk.Body(1, 1) for _ in range(n)]
@@ -161,7 +162,7 @@ PHASED = {"settled": ("tiles", 0), "rolling": ("rolling discs 3", 200), "collaps
 """Scenes whose frames are taken apart (`phases`)."""
 
 
-def phases(chosen: dict[str, tuple[str, int]] | None = None) -> list[Row]:
+def phases() -> list[Row]:
     """Where the time of a frame goes (µs, processor time, means): what Chipmunk itself does, and our own phases.
 
     Rows: scene, frame_us, chipmunk_us (all that is not ours, pymunk's Python too), then each of
@@ -170,7 +171,7 @@ def phases(chosen: dict[str, tuple[str, int]] | None = None) -> list[Row]:
     from ..chipmunk.phases import PHASES
 
     rows = []
-    for title, (name, size) in (chosen or PHASED).items():
+    for title, (name, size) in PHASED.items():
         growing = GROWING[name]
         run = _Space(growing, _scene(growing, name, size), True)
         contact = rigidarea.attached(run.space)

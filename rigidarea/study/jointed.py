@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import math
 import random
-import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -16,28 +15,30 @@ import pymunk
 
 from ..chipmunk import attach
 from ..report import Progress, envelope
+from .peers import drive
 from .records import Row
 from .scene import check_known
+from .timing import spent
 
+Point = tuple[float, float]
 DT = 1 / 60
 FRAMES = 360
 SETTLING = 60
 """Frames before drift counts: scenes are built in mid-air."""
 
 
-def _box(space: pymunk.Space, at: tuple[float, float], size: tuple[float, float], **told: Any) -> pymunk.Body:
-    """A box; told: mass, angle, group (of a filter)."""
-    mass = told.get("mass", 1.0)
+def _box(space: pymunk.Space, at: Point, size: Point, mass: float = 1.0, group: int = 0) -> pymunk.Body:
+    """A box; group: of its filter."""
     body = pymunk.Body(mass, pymunk.moment_for_box(mass, size))
-    body.position, body.angle = at, told.get("angle", 0.0)
+    body.position = at
     shape = pymunk.Poly.create_box(body, size)
     shape.friction = 0.8
-    shape.filter = pymunk.ShapeFilter(group=told.get("group", 0))
+    shape.filter = pymunk.ShapeFilter(group=group)
     space.add(body, shape)
     return body
 
 
-def _pivot(space: pymunk.Space, a: pymunk.Body, b: pymunk.Body, at: tuple[float, float]) -> None:
+def _pivot(space: pymunk.Space, a: pymunk.Body, b: pymunk.Body, at: Point) -> None:
     joint = pymunk.PivotJoint(a, b, at)
     joint.collide_bodies = False
     space.add(joint)
@@ -90,10 +91,10 @@ def ragdolls(space: pymunk.Space) -> None:
     for n in range(10):
         x, y = draw.uniform(-200, 200), 150 + 130 * n
 
-        def limb(at: tuple[float, float], size: tuple[float, float], mass: float = 1.0) -> pymunk.Body:
+        def limb(at: Point, size: Point, mass: float = 1.0) -> pymunk.Body:
             return _box(space, (x + at[0], y + at[1]), size, mass=mass, group=n + 1)  # noqa: B023
 
-        def joint(a: pymunk.Body, b: pymunk.Body, at: tuple[float, float], turn: float) -> None:
+        def joint(a: pymunk.Body, b: pymunk.Body, at: Point, turn: float) -> None:
             _pivot(space, a, b, (x + at[0], y + at[1]))  # noqa: B023
             space.add(pymunk.RotaryLimitJoint(a, b, -turn, turn))
 
@@ -158,10 +159,7 @@ def measured(make: Callable[[pymunk.Space], None], steps: int, attached: bool) -
         attach(space)
     taken, most = 0.0, 0.0
     for frame in range(FRAMES):
-        start = time.process_time()
-        for _ in range(steps):
-            space.step(DT / steps)
-        taken += (time.process_time() - start) * (frame >= 5)
+        taken += spent(drive, space.step, steps, DT / steps) * (frame >= 5)
         most = max(most, drift(space)) if frame >= SETTLING else 0.0
     energy = 0.5 * math.fsum(body.kinetic_energy for body in space.bodies) / len(space.bodies)
     return {"ms": 1e3 * taken / (FRAMES - 5), "drift_px": most, "energy_a_body": energy}

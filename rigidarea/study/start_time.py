@@ -10,7 +10,7 @@ import subprocess
 import sys
 import tempfile
 import time
-from typing import Any
+from collections.abc import Iterable
 
 import pymunk
 
@@ -18,9 +18,8 @@ import rigidarea as ra
 
 from ..report import envelope
 from . import growth
+from .records import Row
 from .timing import one_core
-
-Row = dict[str, Any]
 
 #: Bodies of the columns whose cost per contact is compared.
 COLUMNS = (100, 1000, 10000)
@@ -30,36 +29,29 @@ STEP = 1 / 960
 
 def pyramid(rows: int) -> pymunk.Space:
     """Unit boxes of 1 kg, each on two (rows 40: 820 boxes)."""
-    space = _ground()
-    for row in range(rows):
-        for i in range(rows - row):
-            _box(space, 1.05 * i - 0.525 * (rows - row), 0.5 + row)
-    return space
+    return _boxes(
+        (1.05 * i - 0.525 * (rows - row), 0.5 + row) for row in range(rows) for i in range(rows - row)
+    )
 
 
 def columns(bodies: int) -> pymunk.Space:
     """Columns of ten unit boxes: as many contacts as bodies."""
-    space = _ground()
-    for i in range(bodies):
-        _box(space, 1.2 * (i // 10), 0.5 + i % 10)
-    return space
+    return _boxes((1.2 * (i // 10), 0.5 + i % 10) for i in range(bodies))
 
 
-def _ground() -> pymunk.Space:
+def _boxes(places: Iterable[tuple[float, float]]) -> pymunk.Space:
     space = pymunk.Space()
     space.gravity = 0, -9.81
     floor = pymunk.Segment(space.static_body, (-1e5, 0), (1e5, 0), 0)
     floor.friction = 0.8
     space.add(floor)
+    for place in places:
+        body = pymunk.Body(1.0, 1 / 6)
+        body.position = place
+        box = pymunk.Poly.create_box(body, (1, 1))
+        box.friction = 0.8
+        space.add(body, box)
     return space
-
-
-def _box(space: pymunk.Space, x: float, y: float) -> None:
-    body = pymunk.Body(1.0, 1 / 6)
-    body.position = x, y
-    box = pymunk.Poly.create_box(body, (1, 1))
-    box.friction = 0.8
-    space.add(body, box)
 
 
 def step(repeats: int = 15) -> Row:
@@ -77,10 +69,8 @@ def step(repeats: int = 15) -> Row:
             mine.step(STEP)
             native.step(STEP)
         count = max(1, 2000 // len(mine.bodies))
-        times = []
         with one_core():
-            for _ in range(repeats):
-                times.append((_per_step(mine, count), _per_step(native, count)))
+            times = [(_per_step(mine, count), _per_step(native, count)) for _ in range(repeats)]
         area = statistics.median(a for a, _ in times)
         contacts = len(contact.regions)
         rows.append(
@@ -131,14 +121,6 @@ def start(bodies: int = 10000) -> Row:
             command = [sys.executable, "-c", _START.format(bodies=count)]
             done = subprocess.run(command, env=environment, capture_output=True, text=True, check=True)
             times = [float(word) for word in done.stdout.split()]
-            rows.append(
-                {
-                    "cache": cache,
-                    "bodies": count,
-                    "import_s": times[0],
-                    "attach_s": times[1],
-                    "first_step_s": times[2],
-                    "to_first_step_s": sum(times),
-                }
-            )
+            row = dict(zip(("import_s", "attach_s", "first_step_s"), times, strict=True))
+            rows.append({"cache": cache, "bodies": count, **row, "to_first_step_s": sum(times)})
     return envelope("bench start", {}, rows)

@@ -17,13 +17,10 @@ from .base import Run, Settings, combined, drive, knob, rigid_only, samplings
 
 def make_body(body: Body) -> pymunk.Body:
     """The pymunk body of a scene's body, without shapes."""
-    kind = {"dynamic": pymunk.Body.DYNAMIC, "kinematic": pymunk.Body.KINEMATIC, "static": pymunk.Body.STATIC}
-    made = pymunk.Body(body.mass, body.moment, kind[body.kind])
-    made.position = body.position
-    made.angle = body.angle
+    made = pymunk.Body(body.mass, body.moment, getattr(pymunk.Body, body.kind.upper()))
+    made.position, made.angle = body.position, body.angle
     if body.kind != "static":
-        made.velocity = body.velocity
-        made.angular_velocity = body.angular_velocity
+        made.velocity, made.angular_velocity = body.velocity, body.angular_velocity
     return made
 
 
@@ -59,13 +56,11 @@ def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymun
 
 def _chain(made: pymunk.Body, ring: Array) -> list[pymunk.Segment]:
     """Segments along a closed ring that know their neighbours, so that nothing catches on their joints."""
-    points = [(float(x), float(y)) for x, y in ring]
-    chain = []
+    points, chain = ring.tolist(), []
     for i, point in enumerate(points):
-        following = points[(i + 1) % len(points)]
-        segment = pymunk.Segment(made, point, following, 0.0)
-        segment.set_neighbors(points[i - 1], points[(i + 2) % len(points)])
-        chain.append(segment)
+        following, next_but_one = (points[(i + k) % len(points)] for k in (1, 2))
+        chain.append(pymunk.Segment(made, point, following, 0.0))
+        chain[-1].set_neighbors(points[i - 1], next_but_one)
     return chain
 
 

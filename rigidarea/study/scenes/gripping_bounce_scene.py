@@ -1,6 +1,7 @@
 """A disc hits a rough floor at a slant and grips: its rim has stopped when it leaves."""
 
-from ..scene import OMEGA, VX, VY, Scene, Trace, disc, floor
+from ..scene import Scene
+from ._slant import slanted
 
 RADIUS, E, MU = 1.0, 0.5, 0.8
 V_T, V_N = 1.0, 3.0
@@ -19,27 +20,9 @@ def after() -> tuple[float, float, float]:
     return V_T - grip, E * V_N, -2 * grip / RADIUS
 
 
-def error(trace: Trace) -> float:
-    """Largest velocity error (rim speed for the spin), relative to the tangential speed of the approach."""
-    vx, vy, omega = after()
-    last = trace["ball"][-1]
-    return max(abs(last[VX] - vx), abs(last[VY] - vy), RADIUS * abs(last[OMEGA] - omega)) / V_T
-
-
 def scene() -> Scene:
     """No gravity; approach (1, −3) m/s, e = 0.5, μ = 0.8."""
-    ball = disc("ball", RADIUS, (0.0, RADIUS + 0.5), velocity=(V_T, -V_N))
-    return Scene(
-        title="slanted bounce that grips",
-        bodies=(floor(), ball),
-        gravity=(0.0, 0.0),
-        friction=MU,
-        elasticity=E,
-        duration=0.5,
-        error_name="velocity after impact / tangential approach",
-        error=error,
-        source="Routh, impact with friction, sticking: J_t = v_t/(1/m + r²/I)",
-        size=2 * RADIUS,
-        pressure=V_N**2 / (2 * RADIUS) ** 3,
-        tags=frozenset({"impact", "friction"}),
-    )
+    source = "Routh, impact with friction, sticking: J_t = v_t/(1/m + r²/I)"
+    relative = "velocity after impact / tangential approach"
+    title = "slanted bounce that grips"
+    return slanted(title, source, relative, RADIUS, MU, E, (V_T, V_N), after(), V_T)
