@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -23,7 +23,7 @@ from .peers import get_peer, peers, record
 from .records import Row, append_rows, read_rows
 from .scene import Scene, get_scene, scenes
 from .sweep import Task, key, run_tasks
-from .timing import Stopwatch, median_times, scene_job
+from .timing import Stopwatch, median_times, scene_time
 
 RESOLUTION = 1e-4
 """Errors below it count as equally good, in every scene: a tenth of a pixel on a body drawn 1,000 pixels large, and a
@@ -115,7 +115,7 @@ def costs(
     for name in dict.fromkeys(task["scene"] for task in missing):
         scene: Scene = get_scene(name)
         here = [task for task in missing if task["scene"] == name]
-        timers = [scene_job(scene, task["peer"], task["settings"]) for task in here]
+        timers = [partial(scene_time, scene, task["peer"], task["settings"]) for task in here]
         found = [seconds / scene.duration for seconds in median_times(timers, repeats, patience_s)]
         known.update({key(task): cost for task, cost in zip(here, found, strict=True)})
         if store:

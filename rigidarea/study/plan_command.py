@@ -147,11 +147,6 @@ def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
     """What a program's bodies are made of: `body.material`, or that of one of its shapes, where it gives them one."""
     from ..flexible import Material
 
-    out = {}
-    for body in space.bodies:
-        for thing in (body, *body.shapes):
-            given = getattr(thing, "material", None)
-            if isinstance(given, Material):
-                out[body] = given
-                break
-    return out
+    things = ((body, thing) for body in space.bodies for thing in (*body.shapes, body))  # its own counts
+    given = ((body, getattr(thing, "material", None)) for body, thing in things)
+    return {body: material for body, material in given if isinstance(material, Material)}

@@ -3,7 +3,7 @@
 import math
 
 from ..scene import Scene, disc
-from .bowl_slide_scene import BOWL, RADIUS, RHO, bowl, path_error, period, swing
+from .bowl_slide_scene import RADIUS, RHO, bowl, path_error, period, swing
 
 START, MU = math.radians(45), 0.8
 
@@ -13,7 +13,7 @@ def scene() -> Scene:
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     return Scene(
         title="disc rolling in a bowl",
-        bodies=(bowl(BOWL), disc("disc", RADIUS, start)),
+        bodies=(bowl(), disc("disc", RADIUS, start)),
         friction=MU,
         duration=2 * period(1.5 * RHO, START),
         error_name="position over two periods / arc",

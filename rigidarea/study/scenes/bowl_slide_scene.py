@@ -30,27 +30,20 @@ def swing(t: np.ndarray, length: float, amplitude: float) -> np.ndarray:
     return 2 * np.arcsin(k * cn / dn)
 
 
-def bowl_rings(radius: float) -> Curve:
-    """A half-round trough of `radius` about the origin in a solid block."""
+def bowl() -> Body:
+    """The static bowl: a half-round trough in a solid block, centre of curvature at the origin."""
+    wall = 1.25 * BOWL
+    block = [(-wall, 0.0), (-wall, -wall), (wall, -wall), (wall, 0.0)]
 
     def rings(tolerance: float) -> Rings:
-        wall, depth = 1.25 * radius, 1.25 * radius
         # clockwise seen from the solid below: right rim to left rim
-        inner = arc(radius, 0.0, -math.pi, tolerance)
-        outer = np.array([(-wall, 0.0), (-wall, -depth), (wall, -depth), (wall, 0.0)])
-        return (np.vstack((outer, inner)),)
+        return (np.vstack((block, arc(BOWL, 0.0, -math.pi, tolerance))),)
 
     def exact() -> Outline:
-        (outer,) = rings(radius)
-        corners = [(*point, 0.0) for point in outer[:4]]
-        return Outline.from_bulges([*corners, (radius, 0.0, -1.0), (-radius, 0.0, 0.0)])
+        corners = [(*point, 0.0) for point in block]
+        return Outline.from_bulges([*corners, (BOWL, 0.0, -1.0), (-BOWL, 0.0, 0.0)])
 
-    return Curve(rings, exact=exact)
-
-
-def bowl(radius: float) -> Body:
-    """The static bowl, centre of curvature at the origin."""
-    return Body("bowl", (bowl_rings(radius),), kind="static")
+    return Body("bowl", (Curve(rings, exact=exact),), kind="static")
 
 
 def path_error(trace: Trace, name: str, rho: float, angle: np.ndarray) -> float:
@@ -64,7 +57,7 @@ def scene() -> Scene:
     start = (RHO * math.sin(START), -RHO * math.cos(START))
     return Scene(
         title="smooth disc in a bowl",
-        bodies=(bowl(BOWL), disc("disc", RADIUS, start)),
+        bodies=(bowl(), disc("disc", RADIUS, start)),
         duration=2 * period(RHO, START),
         error_name="position over two periods / arc",
         error=lambda trace: path_error(trace, "disc", RHO, swing(trace.times, RHO, START)),

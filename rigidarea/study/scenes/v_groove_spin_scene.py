@@ -34,19 +34,19 @@ def error(trace: Trace) -> float:
     return float(np.max(np.abs(trace["disc"][:, OMEGA] - exact)) / SPIN)
 
 
-def groove(half: float, depth: float) -> Curve:
-    """A block with a V-shaped notch whose bottom is the origin; walls along the normals (±sin φ, cos φ)."""
+def groove() -> Body:
+    """A static block with a V-shaped notch whose bottom is the origin; walls along the normals (±sin φ, cos φ)."""
+    half, depth = 2.0, 1.0
     rise = half * math.tan(PHI)
     points = np.array([(0.0, 0.0), (-half, rise), (-half, -depth), (half, -depth), (half, rise)])
-    return Curve(lambda tolerance: (points,), exact=lambda: Outline(points))
+    return Body("groove", (Curve(lambda _: (points,), exact=lambda: Outline(points)),), kind="static")
 
 
 def scene() -> Scene:
     """90-degree groove, μ = 0.2, from 20 rad/s; ends before the disc stops."""
-    body = Body("groove", (groove(2.0, 1.0),), kind="static")
     return Scene(
         title="disc spinning in a V-groove",
-        bodies=(body, disc("disc", RADIUS, (0.0, RADIUS / math.cos(PHI)), angular_velocity=SPIN)),
+        bodies=(groove(), disc("disc", RADIUS, (0.0, RADIUS / math.cos(PHI)), angular_velocity=SPIN)),
         friction=MU,
         duration=1.5,
         error_name="spin, relative",
