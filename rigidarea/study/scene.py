@@ -114,28 +114,19 @@ class Body:
 
 
 @dataclass(frozen=True)
-class Pivot:
-    """A revolute joint between a body's origin and the world, there from the start.
-
-    `brake` (force·length) is the largest torque with which the bearing opposes rotation, `turns` the sense in which
-    the body turns (1 counter-clockwise): levels without dry friction brake with that torque all the time.
-    """
-
-    body: str
-    brake: float = 0.0
-    turns: int = 1
-
-
-@dataclass(frozen=True)
 class Hinge:
     """A revolute joint at the world's `point` (length) between two bodies, or one and the world (`b` empty).
 
-    What it joins does not collide with each other.
+    What it joins does not collide with each other. `brake` (force·length) is the largest torque with which the bearing
+    opposes rotation, `turns` the sense in which the body turns (1 counter-clockwise): levels without dry friction brake
+    with that torque all the time.
     """
 
     a: str
     b: str
     point: tuple[float, float]
+    brake: float = 0.0
+    turns: int = 1
 
 
 @dataclass(frozen=True)
@@ -176,7 +167,6 @@ class Scene:
     gravity: tuple[float, float] = (0.0, -G)
     friction: float = 0.0
     elasticity: float = 0.0
-    pivots: tuple[Pivot, ...] = ()
     hinges: tuple[Hinge, ...] = ()
     size: float = 1.0
     pressure: float = math.nan

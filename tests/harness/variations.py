@@ -60,8 +60,10 @@ def vary(scene: Scene, seed: int) -> Scene:
         bodies=tuple(body_of(body) for body in scene.bodies),
         friction=scene.friction * friction,
         elasticity=min(1.0, scene.elasticity * elasticity),
-        pivots=tuple(replace(pivot, brake=pivot.brake * mass * size * size) for pivot in scene.pivots),
-        hinges=tuple(replace(hinge, point=(hinge.point[0] * size, hinge.point[1] * size)) for hinge in scene.hinges),
+        hinges=tuple(
+            replace(hinge, point=(hinge.point[0] * size, hinge.point[1] * size), brake=hinge.brake * mass * size * size)
+            for hinge in scene.hinges
+        ),
         size=scene.size * size,
         duration=min(scene.duration, LONGEST),
     )  # fmt: skip

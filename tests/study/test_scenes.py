@@ -77,7 +77,10 @@ def test_scene_is_consistent(name):
         if body.kind == "dynamic":
             assert body.mass > 0
             assert body.moment > 0
-    assert {pivot.body for pivot in scene.pivots} <= {body.name for body in scene.bodies}
+    assert {end for hinge in scene.hinges for end in (hinge.a, hinge.b)} <= {
+        "",
+        *(b.name for b in scene.bodies),
+    }
     trace = still(scene)
     assert math.isfinite(scene.measure(trace))
     trace.states[-1, -1, 0] = math.nan

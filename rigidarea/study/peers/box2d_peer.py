@@ -92,20 +92,16 @@ class WorldRun:
         return self.unit * point[0], self.unit * point[1]
 
     def _joints(self, scene: Scene) -> None:
-        if not scene.pivots and not scene.hinges:
+        if not scene.hinges:
             return
         ground = self.world.create_static_body(position=(0.0, 0.0))
         index = {body.name: i for i, body in enumerate(scene.bodies)}
-        for pivot in scene.pivots:
-            i = index[pivot.body]
-            brake = {"enable_motor": pivot.brake > 0, "max_motor_torque": pivot.brake * self.unit**2}
-            ends, place = (ground, self.bodies[i]), self._scaled(scene.bodies[i].position)
-            anchors = {"local_anchor_a": place, "local_anchor_b": (0.0, 0.0)}
-            self.world.create_revolute_joint(*ends, **anchors, **brake, motor_speed=0.0)
         for hinge in scene.hinges:
             ends = self.bodies[index[hinge.a]], self.bodies[index[hinge.b]] if hinge.b else ground
             at, on = (body.local_point(self._scaled(hinge.point)) for body in ends)
-            self.world.create_revolute_joint(*ends, local_anchor_a=at, local_anchor_b=on)
+            brake = {"enable_motor": hinge.brake > 0, "max_motor_torque": hinge.brake * self.unit**2}
+            anchors = {"local_anchor_a": at, "local_anchor_b": on}
+            self.world.create_revolute_joint(*ends, **anchors, **brake, motor_speed=0.0)
 
     def advance(self, frames: int) -> None:
         """World steps, called from a C loop."""

@@ -75,7 +75,7 @@ class FlexibleRun:
         from ...flexible.integrate import Simulation
 
         tolerance = settings.get("sampling", 1e-4) * scene.size
-        pivots = {pivot.body: pivot for pivot in scene.pivots}
+        held = {hinge.a: hinge for hinge in scene.hinges}  # by the world, at their origins
         moving = [body for body in scene.bodies if body.kind != "static"]
         made = []
         for body in moving:
@@ -83,9 +83,9 @@ class FlexibleRun:
             keys: dict[str, Any] = {"position": body.position, "angle": body.angle, "velocity": velocity}
             if body.kind == "kinematic":
                 keys |= {"anchor": body.position, "drive": (body.angle, body.angular_velocity, 0.0)}
-            elif body.name in pivots:
-                pivot = pivots[body.name]
-                keys |= {"anchor": body.position, "torque": -pivot.turns * pivot.brake}
+            elif body.name in held:
+                hinge = held[body.name]
+                keys |= {"anchor": body.position, "torque": -hinge.turns * hinge.brake}
             if level != "rigid" and body.elastic is not None:
                 flexible = copy.copy(elastic_body(scene.name, body.name, level, settings.get("modes", 0)))
                 for key, value in keys.items():

@@ -65,20 +65,15 @@ def _chain(made: pymunk.Body, ring: Array) -> list[pymunk.Segment]:
 
 
 def add_joints(scene: Scene, space: pymunk.Space, bodies: dict[str, pymunk.Body]) -> None:
-    """Revolute joints; those of pivots to the world, with a motor at rest as brake."""
+    """Revolute joints, with a motor at rest as brake."""
     for hinge in scene.hinges:
-        other = bodies[hinge.b] if hinge.b else space.static_body
-        joint = pymunk.PivotJoint(bodies[hinge.a], other, hinge.point)
+        ends = bodies[hinge.a], bodies[hinge.b] if hinge.b else space.static_body
+        joint = pymunk.PivotJoint(*ends, hinge.point)
         joint.collide_bodies = False
         space.add(joint)
-    for pivot in scene.pivots:
-        made = bodies[pivot.body]
-        joint = pymunk.PivotJoint(space.static_body, made, made.position)
-        joint.collide_bodies = False
-        space.add(joint)
-        if pivot.brake:
-            motor = pymunk.SimpleMotor(space.static_body, made, 0.0)
-            motor.max_force = pivot.brake
+        if hinge.brake:
+            motor = pymunk.SimpleMotor(*ends, 0.0)
+            motor.max_force = hinge.brake
             space.add(motor)
 
 

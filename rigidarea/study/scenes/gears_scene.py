@@ -8,7 +8,7 @@ import numpy as np
 
 from ...geometry.outline import Outline
 from ...shapes import involute_gear
-from ..scene import OMEGA, Body, Curve, Elastic, Pivot, Scene, Trace
+from ..scene import OMEGA, Body, Curve, Elastic, Hinge, Scene, Trace
 
 TEETH, MODULE, BACKLASH = (20, 30), 0.05, 0.02
 """Backlash in modules, half of it cut from each gear."""
@@ -49,7 +49,7 @@ def scene() -> Scene:
         title="involute gears, 20 : 30",
         bodies=(driver, driven),
         gravity=(0.0, 0.0),
-        pivots=(Pivot("driven", BRAKE, turns=-1),),
+        hinges=(Hinge("driven", "", place, BRAKE, turns=-1),),
         duration=2.0,
         error_name="rms error of ratio, relative",
         error=error,

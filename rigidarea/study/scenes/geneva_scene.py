@@ -8,7 +8,7 @@ import numpy as np
 
 from ...shapes.geneva_wheel import Geneva
 from ...shapes.geneva_wheel import geneva as make
-from ..scene import ANGLE, Body, Circle, Curve, Elastic, Pivot, Scene, Trace
+from ..scene import ANGLE, Body, Circle, Curve, Elastic, Hinge, Scene, Trace
 
 SLOTS, CENTRES, PIN = 6, 0.05, 0.008
 SPEED, LEAD, MASS, BRAKE = math.pi, 0.3, 0.1, 2e-3
@@ -59,7 +59,7 @@ def scene() -> Scene:
         title="Geneva drive, six slots",
         bodies=bodies,
         gravity=(0.0, 0.0),
-        pivots=(Pivot("wheel", BRAKE, turns=-1),),
+        hinges=(Hinge("wheel", "", (CENTRES, 0.0), BRAKE, turns=-1),),
         duration=2 * (parts.entry_angle + LEAD) / SPEED,
         error_name="rms angle error / index angle",
         error=error,
