@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import numpy as np
 
 from .everyday_scenes import pile
-from .scene import OMEGA, VX, VY, Body, Scene, Trace, block, box, disc, floor, rest_error
+from .scene import OMEGA, VX, VY, Body, Scene, Trace, block, box, disc, floor, rest_error, set_up
 
 TOWER = 5
 """Boxes in a tower."""
@@ -30,18 +32,8 @@ def pyramid(bodies: int) -> Scene:
 
 
 def _standing(name: str, ground: Body, boxes: list[Body]) -> Scene:
-    names = [body.name for body in boxes]
-    return Scene(
-        name=name,
-        title=name,
-        bodies=(ground, *boxes),
-        friction=0.5,
-        duration=3.0,
-        error_name="displacement / side",
-        error=lambda trace: rest_error(trace, names, 1.0, last=0.0),
-        source="statics",
-        tags=frozenset({"rest", "flat", "stack"}),
-    )
+    error = partial(rest_error, names=[body.name for body in boxes], size=1.0, last=0.0)
+    return set_up(name, (ground, *boxes), 3.0, error, "displacement / side", friction=0.5)
 
 
 def gas(bodies: int) -> Scene:
@@ -69,19 +61,8 @@ def gas(bodies: int) -> Scene:
         energy += np.sum(moving[:, :, OMEGA] ** 2, axis=1) * radius**2 / 2
         return float(abs(np.median(energy[-10:]) / energy[0] - 1))
 
-    return Scene(
-        name="gas",
-        title="gas of elastic discs",
-        bodies=(*walls, *discs),
-        gravity=(0.0, 0.0),
-        elasticity=1.0,
-        duration=3.0,
-        error_name="relative change of energy",
-        error=error,
-        source="conservation of energy",
-        pressure=8.0,
-        tags=frozenset({"impact"}),
-    )
+    told: dict[str, Any] = {"gravity": (0.0, 0.0), "elasticity": 1.0, "pressure": 8.0}
+    return set_up("gas", (*walls, *discs), 3.0, error, "relative change of energy", **told)
 
 
 CROWDS: dict[str, Callable[[int], Scene]] = {"towers": towers, "pyramid": pyramid, "gas": gas}

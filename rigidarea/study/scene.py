@@ -64,13 +64,11 @@ class Segment:
 class Curve:
     """An outline that may be curved, concave, holed.
 
-    `rings(tolerance)` gives its rings, chords within `tolerance` (length) of the true curve. `convex` says that the
-    outer ring is convex and there are no holes. `exact()` gives the same with its arcs, for whoever takes them; None
-    where there are other curves than arcs.
+    `rings(tolerance)` gives its rings, chords within `tolerance` (length) of the true curve. `exact()` gives the same
+    with its arcs, for whoever takes them; None where there are other curves than arcs.
     """
 
     rings: Callable[[float], Rings]
-    convex: bool = False
     exact: Callable[[], Outline] | None = None
 
 
@@ -292,10 +290,11 @@ def set_up(
     bodies: Iterable[Body],
     duration: float,
     error: Callable[[Trace], float] = lambda trace: 0.0,
+    error_name: str = "",
     **more: Any,
 ) -> Scene:
-    """A scene that is measured by whoever made it: no title, source, name of the error. more: fields of `Scene`."""
-    return Scene("", tuple(bodies), duration, "", error, "", name, **more)
+    """A scene that is measured by whoever made it: no title, no source. more: fields of `Scene`."""
+    return Scene("", tuple(bodies), duration, error_name, error, "", name, **more)
 
 
 # Registry ---------------------------------------------------------------------------------------------------

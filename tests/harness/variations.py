@@ -40,7 +40,7 @@ def vary(scene: Scene, seed: int) -> Scene:
                 [ring * size for ring in found.rings], arcs=[arcs * size for arcs in found.arcs]
             )
 
-        return Curve(rings, shape.convex, None if shape.exact is None else exact)
+        return Curve(rings, None if shape.exact is None else exact)
 
     def body_of(body: Body) -> Body:
         return replace(

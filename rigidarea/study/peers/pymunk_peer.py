@@ -44,8 +44,6 @@ def convex_shapes(body: Body, made: pymunk.Body, tolerance: float) -> list[pymun
     for shape in body.shapes:
         if not isinstance(shape, Curve):
             shapes.append(plain_shape(shape, made))
-        elif shape.convex:
-            shapes.append(pymunk.Poly(made, shape.rings(tolerance)[0].tolist()))
         elif body.kind == "static":
             for ring in shape.rings(tolerance):
                 shapes += _chain(made, ring)
