@@ -3,7 +3,7 @@
 import math
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import OMEGA, VX, VY, Body, box, box_moment, set_up
+from ..scene import OMEGA, VX, VY, block, box_moment, set_up
 
 LIMIT, V = 0.02, 2.0
 MOMENT = box_moment(1.0, 1.0, 1.0)
@@ -11,15 +11,10 @@ MOMENT = box_moment(1.0, 1.0, 1.0)
 
 def run(variant: Variant, x: float, y: float) -> Outcome:
     """Relative change of kinetic energy, e = 1, no friction."""
-    diagonal = math.sqrt(0.5)
-    tilt = math.radians(45)
-    bodies = (
-        Body("a", (box(1.0, 1.0),), (-diagonal - 0.05, 0.0), tilt, (V, 0.0), moment=MOMENT),
-        Body("b", (box(1.0, 1.0),), (diagonal, x), tilt + math.radians(y), moment=MOMENT),
-    )
-    scene = set_up(
-        name="corner_corner", bodies=bodies, gravity=(0.0, 0.0), elasticity=1.0, duration=0.6, pressure=V**2
-    )
+    diagonal, tilt = math.sqrt(0.5), math.radians(45)
+    a = block("a", 1.0, 1.0, (-diagonal - 0.05, 0.0), angle=tilt, velocity=(V, 0.0))
+    b = block("b", 1.0, 1.0, (diagonal, x), angle=tilt + math.radians(y))
+    scene = set_up("corner_corner", (a, b), 0.6, gravity=(0.0, 0.0), elasticity=1.0, pressure=V**2)
     settings = {"stiffness": 1e4} if variant.area else {}
     last = run_scene(variant, scene, **settings).states[-1]
     energy = float(sum(s[VX] ** 2 + s[VY] ** 2 + MOMENT * s[OMEGA] ** 2 for s in last))

@@ -5,10 +5,17 @@ import math
 import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
-from ..scene import ANGLE, Y
-from ._drop import dropped
+from ..scene import ANGLE, Scene, Y, block, floor, set_up
 
 LIMIT = 0.1
+
+
+def dropped(name: str, tilt: float, drop: float, elasticity: float, frame: float = 1 / 60) -> Scene:
+    """A unit box on a floor, its lowest corner `drop` (sides) above it, `tilt` in degrees, μ = 0.5, two seconds."""
+    angle = math.radians(tilt)
+    reach = math.sqrt(0.5) * math.cos(math.radians(45) - angle)
+    bodies = (floor(), block("box", 1.0, 1.0, (0.0, reach + drop), angle=angle))
+    return set_up(name, bodies, 2.0, friction=0.5, elasticity=elasticity, frame=frame)
 
 
 def run(variant: Variant, x: float, y: float) -> Outcome:

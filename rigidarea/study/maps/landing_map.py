@@ -6,7 +6,7 @@ import numpy as np
 
 from ..atlas import Axis, Map, Outcome, Variant, engines, judge, run_scene
 from ..scene import OMEGA, VX, VY, Array, G, Y, box_moment
-from ._drop import dropped
+from .corner_map import dropped
 
 K, DROP = 1e4, 0.5
 OMEGA_FLAT = math.sqrt(K * G)

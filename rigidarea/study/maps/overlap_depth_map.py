@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from ..atlas import PASS, Axis, Map, Outcome, Variant, engines, run_scene
-from ..scene import Body, Circle, Curve, Polygon, Shape, box, full_circle, set_up
+from ..scene import Body, Circle, Curve, Polygon, Shape, box, floor, full_circle, set_up
 
 SHAPES = ("box", "flat bar", "disc", "triangle", "ring", "L")
 SLAB = 2.0
@@ -35,7 +35,7 @@ def run(variant: Variant, x: float, y: float) -> Outcome:
     """The speed with which the body leaves (its height a second); fails by direction, speed, or staying inside."""
     shape, below = _shape(round(y))
     height = 2 * below if round(y) != 3 else 3 * below
-    slab = Body("slab", (box(20.0, SLAB),), (0.0, -SLAB / 2), kind="static")
+    slab = floor(20.0, SLAB)
     body = Body("body", (shape,), (0.0, below - x * height), moment=0.2)
     scene = set_up(name="overlap_depth", bodies=(slab, body), friction=0.3, duration=4.0)
     path = run_scene(variant, scene, 1e3)["body"]

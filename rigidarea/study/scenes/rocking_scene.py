@@ -4,7 +4,7 @@ import math
 
 import numpy as np
 
-from ..scene import ANGLE, Array, Body, G, Scene, Trace, box, box_moment, floor
+from ..scene import ANGLE, Array, G, Scene, Trace, block, floor
 from ._motion import angle
 
 WIDTH, HEIGHT, MU = 0.4, 2.0, 2.0
@@ -47,10 +47,9 @@ def scene() -> Scene:
     # Lower left corner at the origin; the centre is R away, at angle π/2 − α + tilt.
     at = math.pi / 2 - ALPHA + TILT
     centre = (R * math.cos(at), R * math.sin(at))
-    body = Body("block", (box(WIDTH, HEIGHT),), centre, TILT, moment=box_moment(1.0, WIDTH, HEIGHT))
     return Scene(
         title="rocking block (Housner)",
-        bodies=(floor(), body),
+        bodies=(floor(), block("block", WIDTH, HEIGHT, centre, angle=TILT)),
         friction=MU,
         duration=0.55,
         error_name="tilt before impact, relative",
