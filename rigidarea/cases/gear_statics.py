@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rigidarea.cases import gearbox as gb
 from rigidarea.cases.case_report import Array
@@ -50,8 +51,6 @@ def light_load(addendum: float = gb.ADDENDUM, points: int = 200) -> tuple[dict[s
 
     At each pinion angle the wheel is turned until the force reaches that of one pair pressed in by DEPTH.
     """
-    from scipy.optimize import brentq
-
     a, b = (build([o.rings[0]]) for o in gb.outlines(addendum, 1e-9))
     wa, wb = workspace(a), workspace(b)
     s, none = nodal.scratch(len(a.points) + len(b.points)), np.zeros(0)

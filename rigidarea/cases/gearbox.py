@@ -39,6 +39,7 @@ import numpy as np
 
 from rigidarea.cases.case_report import Array
 from rigidarea.cases.mechanism import timed
+from rigidarea.cases.rigid_level import turn
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body, Record, Simulation
@@ -135,7 +136,6 @@ def simulation(
 
 def through_hook(duration: float, addendum: float = ADDENDUM) -> Record:
     """The rigid level: exact flanks, through the pymunk hook."""
-    from rigidarea.cases.rigid_level import turn
 
     def speed(t: float) -> float:
         return SPEED * min(t / RAMP, 1.0)

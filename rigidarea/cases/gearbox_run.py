@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from rigidarea.cases import gear_statics, gearbox_figures
 from rigidarea.cases import gearbox as gb
 from rigidarea.cases.case_report import Case, say
 from rigidarea.cases.mechanism import kept_steps, main_run
@@ -22,8 +23,6 @@ def run(
 ) -> dict[str, Any]:
     """One gearbox run and its contact ratio; then standard teeth, and the paper's sweeps over mesh, step and
     damper, each beside the paper's numbers."""
-    from rigidarea.cases import gear_statics
-
     settings = {
         "mode": mode,
         "mesh_mm": mesh_mm,
@@ -79,7 +78,5 @@ def run(
     standard["mesh_stiffness"] = gear_statics.mesh_stiffness(gb.STANDARD, cache=cache)
     case.keep(standard_teeth=standard, tooth_compliance=gear_statics.tooth_compliance(cache))
     if out is not None:
-        from rigidarea.cases import gearbox_figures
-
         gearbox_figures.draw(out, case.results, records, steps, mesh_mm, cache)
     return case.finish()

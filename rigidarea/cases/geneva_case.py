@@ -20,8 +20,10 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.optimize import brentq
 
 from rigidarea.cases.case_report import Array
+from rigidarea.cases.rigid_level import turn
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Record, Simulation
@@ -57,8 +59,6 @@ def ideal(slots: int, theta: Array) -> Array:
 
 def first_touch(slots: int) -> float:
     """Crank angle at which the pin has used up the play and begins to turn the wheel at rest."""
-    from scipy.optimize import brentq
-
     entry = 0.5 * np.pi - np.pi / slots
     rest = -np.pi / slots
     return float(brentq(lambda x: float(ideal(slots, np.array(x))) - rest, -entry, -0.5 * entry, xtol=1e-14))
@@ -93,8 +93,6 @@ def simulation(
 
 def through_hook(duration: float, slots: int = 6) -> Record:
     """The rigid level: exact arcs, through the pymunk hook."""
-    from rigidarea.cases.rigid_level import turn
-
     drive = geneva(slots, CENTRES, PIN, CLEARANCE, bore=0.004, tolerance=2e-8)
     start = first_touch(slots) - SPEED * DUE
     density, angles = STEEL.density * THICKNESS, (start, drive.wheel_angle(-drive.entry_angle))

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from rigidarea.cases import geneva_case as gv
+from rigidarea.cases import geneva_figures
 from rigidarea.cases.case_report import Case, say
 from rigidarea.cases.mechanism import kept_steps, main_run
 from rigidarea.flexible.integrate import Simulation
@@ -56,7 +57,5 @@ def run(
     case.grow(case.results, "stiffness", ({"k": k, **measured(1.0, k=k)} for k in (gv.K / 4, gv.K, 4 * gv.K)))
     records = kept_steps(case, lambda: make()[0], lambda r: gv.measure(r, start, 6), gv.STEPS, 1.0, gv.PLAY_S)
     if out is not None:
-        from rigidarea.cases import geneva_figures
-
         geneva_figures.draw(out, r, start, case.results, records, cache)
     return case.finish()

@@ -20,13 +20,19 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+import pymunk
+from scipy.integrate import quad
+from scipy.optimize import brentq
 
+import rigidarea
 from rigidarea.cases import figures
 from rigidarea.cases.case_report import BLUE, ORANGE, RED, Array, Case, figure, save, say
 from rigidarea.cases.mechanism import timed
 from rigidarea.flexible.body import elastic_body
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Simulation
+from rigidarea.shapes import circle as disc
+from rigidarea.shapes import ring
 
 PIN, JOURNAL, RIM, THICKNESS, DENSITY, K, GRAVITY = 0.020, 0.035, 0.045, 0.005, 7800.0, 5e7, 9.81
 STEEL = Material(207e8, 0.29, DENSITY, THICKNESS)
@@ -58,9 +64,6 @@ def circle(radius: float, clockwise: bool = False, n: int = 7200) -> Array:
 
 def exact() -> dict[str, float]:
     """δ_max, F_max, contact time and period of the rigid bodies with F = k A, by the lens area and quadrature."""
-    from scipy.integrate import quad
-    from scipy.optimize import brentq
-
     mass = DENSITY * THICKNESS * np.pi * PIN**2
     play = JOURNAL - PIN
 
@@ -106,12 +109,6 @@ def simulation(
 
 def hook_space(tolerance: float | None = None) -> tuple[Any, Any, Any]:
     """(space, pin, contact) of the rigid level: pin and journal as arcs, or as points to a tolerance (m)."""
-    import pymunk
-
-    import rigidarea
-    from rigidarea.shapes import circle as disc
-    from rigidarea.shapes import ring
-
     space = pymunk.Space()
     space.gravity = (0, -GRAVITY)
     pin_outline = disc(PIN, tolerance=tolerance)

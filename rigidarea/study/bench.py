@@ -7,20 +7,31 @@ import os
 import time
 import tracemalloc
 from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from functools import cache, partial
+from multiprocessing import get_context
 from typing import Any
 
 import numpy as np
+import pymunk
+from pymunk._chipmunk_cffi import lib
+from shapely.affinity import affine_transform
 
 from ..compile.chosen import LIBRARY, backend
+from ..compile.jit import entry
 from ..geometry.outline import Outline
+from ..geometry.overlap import overlap_kernel
+from ..geometry.pool import pack
+from ..geometry.work import enlarged, fits, new_work, relative
 from ..overlap_queries import overlap
 from ..report import Progress, envelope
+from ..shapes import box, capsule, circle, involute_gear, ring, rounded_polygon
 from .crowds import CROWDS
 from .everyday_scenes import pit_of_discs
 from .peers import drive, get_peer, record
 from .records import Row
 from .scene import Scene, check_known
+from .scenes import geneva_scene
 from .timing import exponent, median_times, one_core, spent
 
 SIZES, QUICK_SIZES = (10, 100, 1000, 10000), (10, 100, 1000)
@@ -103,9 +114,6 @@ def growth(rows: Sequence[Row]) -> list[Row]:
 
 def call_overhead() -> Row:
     """What a step of an empty world costs in each engine (µs): the foreign call and the engine's own least work."""
-    import pymunk
-    from pymunk._chipmunk_cffi import lib
-
     space, count = pymunk.Space(), 20000
     found = {
         "pymunk": _us(lib.cpSpaceStep, count, space._space, 1e-3),
@@ -133,9 +141,6 @@ def kernel_pairs() -> dict[str, tuple[Outline, Outline, tuple[float, float, floa
     """Pairs of outlines and the pose (x, y, angle) of the second: boxes, discs and rounded shapes, gears in mesh, a
     Geneva drive.
     """
-    from ..shapes import box, capsule, circle, involute_gear, ring, rounded_polygon
-    from .scenes import geneva_scene
-
     coarse = [involute_gear(0.002, teeth, spacing=6e-4) for teeth in (23, 57)]
     fine = [involute_gear(0.002, teeth, tolerance=6e-7) for teeth in (23, 57)]
     mesh = (0.08, 0.0, math.pi + math.pi / 57 - 2.6e-3)  # flanks pressed 0.15 mm into each other
@@ -178,8 +183,6 @@ def kernels(names: Sequence[str] = (), repeats: int = 15) -> Row:
     the ends of edges and arcs; shapely gets arcs sampled to a thousandth of half the extent (a disc: 72 points), as
     its users sample them.
     """
-    from shapely.affinity import affine_transform
-
     if backend() == LIBRARY:
         raise ValueError(
             "bench kernels compiles a loop of its own: expected RIGIDAREA_BACKEND=compiled (numba), got library"
@@ -233,9 +236,6 @@ class Query:
     """One overlap, asked again and again in a compiled loop with the second outline moved by rounding errors."""
 
     def __init__(self, a: Any, b: Any, pose: tuple[float, float, float]) -> None:
-        from ..geometry.pool import pack
-        from ..geometry.work import enlarged, fits, new_work
-
         self.pool, self.pose = pack([a, b]), pose
         points, rings = sum(len(r) for r in (*a.rings, *b.rings)), len(a.rings) + len(b.rings)
         self.work = new_work()
@@ -259,9 +259,6 @@ class Query:
 @cache
 def _loop() -> Any:
     """Compiled on first use: `count` queries, the loops found by the last."""
-    from ..compile.jit import entry
-    from ..geometry.overlap import overlap_kernel
-    from ..geometry.work import relative
 
     @entry
     def loop(pool, x, y, angle, work, count):  # type: ignore[no-untyped-def]
@@ -296,9 +293,6 @@ def memory(names: Sequence[str] = (), size: int = 1000, peer_names: Sequence[str
     bytes_per_body, python_bytes_per_body (of that, what Python's allocator holds), of ours tables_bytes_per_body (what
     contacts take, all in all) and, by name, largest_tables_bytes_per_body.
     """
-    from concurrent.futures import ProcessPoolExecutor
-    from multiprocessing import get_context
-
     chosen = list(names) or list(HELD)
     wanted = [name for name in USUAL if not peer_names or name in peer_names]
     rows = []

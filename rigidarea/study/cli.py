@@ -146,9 +146,9 @@ def _tell(arguments: argparse.Namespace, report: dict[str, Any], rows: list[dict
 
 
 def _compare(arguments: argparse.Namespace) -> int:
+    needed("matplotlib")
     from . import compare, draw_compare
 
-    needed("matplotlib")
     report, traces = compare.compare(arguments.scene, arguments.out / "cache")
     _write(arguments, "compare", report)
     picture, *_ = draw_compare.levels(report, traces, arguments.out)

@@ -17,10 +17,13 @@ from typing import Any
 
 import numpy as np
 
+from ..flexible.body import elastic_body
+from ..flexible.element import Material
+from ..flexible.integrate import Simulation
 from ..report import Progress, envelope
 from .convergence import ring_energy, studies
 from .records import Row
-from .scene import Array, check_known
+from .scene import Array, check_known, full_circle
 from .timing import one_core
 
 LEVELS = ("rigid", "compliant", "modal")
@@ -126,11 +129,6 @@ IMPACT, IMPACT_STEP = 8e-3, 2e-6
 
 def cantilever(level: str, cache: Path | None, modes: int = 30) -> Any:
     """A steel ball falls on the tip of a steel beam that is held in its root's hole: the simulation."""
-    from ..flexible.body import elastic_body
-    from ..flexible.element import Material
-    from ..flexible.integrate import Simulation
-    from .scene import full_circle
-
     steel = Material(207e9, 0.29, 7800.0, THICK)
     size, block, half = 1e-3, 0.03, HEIGHT / 2
     corners = [(-block, -0.015), (0, -0.015), (0, -half), (LENGTH, -half)]

@@ -13,7 +13,18 @@ from dataclasses import asdict, dataclass
 from typing import Any
 
 import numpy as np
+import scipy.sparse as sp
+import scipy.sparse.linalg as spl
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
+from ..flexible.body import elastic_body
+from ..flexible.boundary import build
+from ..flexible.element import Material, stiffness
+from ..flexible.integrate import Body, Simulation
+from ..flexible.mesh import Mesh, resample, triangulate
+from ..flexible.modes import elastic, hub_rows, reduce
+from ..shapes import involute_gear
 from .records import Row
 from .scene import Array, full_circle
 from .timing import exponent
@@ -54,8 +65,6 @@ def timoshenko_cantilever(
     of uniform beams, J. Appl. Mech. 28 (1961), doi:10.1115/1.3641787; shear coefficient 5/6. With neither it is the
     Euler-Bernoulli equation 1 + cos β cosh β = 0.
     """
-    from scipy.optimize import brentq
-
     r2 = (height / length) ** 2 / 12
     s2 = r2 * 2 * (1 + poisson) / (5 / 6)
 
@@ -76,8 +85,6 @@ def timoshenko_cantilever(
 
 def bar(length: float, height: float, n: int) -> Any:
     """Mesh of a bar along x, clamped end at x = 0, with n nodes' spacings over its height; ring 1 is that end."""
-    from ..flexible.mesh import Mesh, triangulate
-
     m = round(length / height * n)
     x, y = np.linspace(0, length, m + 1), np.linspace(0, height, n + 1)
     sides = (
@@ -91,9 +98,6 @@ def bar(length: float, height: float, n: int) -> Any:
 
 def cantilever_mesh(sizes: Sequence[int] = (3, 6, 12)) -> list[Study]:
     """Tip deflection under a tip load and first three frequencies of a slender cantilever (20 : 1, plane stress)."""
-    from ..flexible.element import Material
-    from ..flexible.modes import elastic
-
     length, height = 1.0, 0.05
     steel = Material(207e9, 0.29, 7800.0, 1.0)
     inertia, shear = height**3 / 12, steel.young / (2 * (1 + steel.poisson))
@@ -121,11 +125,6 @@ def _tooth(size: float) -> tuple[Any, Any, Array]:
 
     The load is spread over 1.6 mm of the flank about the pitch point as cos²: a point load has no finite answer.
     """
-    from ..flexible.element import Material
-    from ..flexible.mesh import Mesh, resample, triangulate
-    from ..flexible.modes import elastic, hub_rows
-    from ..shapes import involute_gear
-
     steel = Material(207e9, 0.29, 7800.0, 0.05)
     gear = involute_gear(2e-3, 23, bore=8e-3, tolerance=1e-7)
     # the inside refines with the boundary, else its coarse middle would be left
@@ -169,11 +168,6 @@ def tooth_modes(counts: Sequence[int] = (10, 20, 40, 80), size: float = 6e-4) ->
     At rest modes and residual flexibility are exact by construction, so they are compared in vibration at half the
     first elastic frequency.
     """
-    import scipy.sparse as sp
-    import scipy.sparse.linalg as spl
-
-    from ..flexible.element import stiffness
-
     response, (mesh, steel), load = _tooth(size)
     phi, omega = response.modes(max(counts))
     static = float((load * response(load)).sum())
@@ -198,10 +192,6 @@ def tooth_modes(counts: Sequence[int] = (10, 20, 40, 80), size: float = 6e-4) ->
 
 def beam_body(mesh: Any, material: Any, modes: int, **keys: Any) -> Any:
     """A clamped bar (`bar`) as a body of `Simulation`."""
-    from ..flexible.boundary import build
-    from ..flexible.integrate import Body
-    from ..flexible.modes import reduce
-
     r = reduce(mesh, material, (0,), clamped=1, modes=modes)
     boundary = build([mesh.points[mesh.rings[0]] - r.centre], None, r.modes, r.how_it_yields)
     return Body(
@@ -212,17 +202,11 @@ def beam_body(mesh: Any, material: Any, modes: int, **keys: Any) -> Any:
 
 def _far() -> Any:
     """A second body that does nothing: kernels are compiled for a number of bodies, two everywhere here."""
-    from ..flexible.boundary import build
-    from ..flexible.integrate import Body
-
     return Body(build([full_circle(1.0, 0.1)]), 1.0, 1.0, (1e3, 0.0), fixed=True)
 
 
 def vibration_step(points: Sequence[int] = (20, 40, 80, 160)) -> list[Study]:
     """Free vibration of a clamped beam in its first mode, ten periods, at ρ∞ = 1 and 0.8."""
-    from ..flexible.element import Material
-    from ..flexible.integrate import Simulation
-
     body = beam_body(bar(1.0, 0.05, 4), Material(207e9, 0.29, 7800.0, 1.0), 1)
     omega = float(body.frequency[0])
     period = 2 * np.pi / omega
@@ -244,11 +228,6 @@ def vibration_step(points: Sequence[int] = (20, 40, 80, 160)) -> list[Study]:
 
 def pendulum_step(steps: Sequence[int] = (100, 200, 400, 800)) -> list[Study]:
     """Angle of a pendulum that swings through a right angle and more for 1 s: a constraint, ρ∞ = 0.8."""
-    from scipy.integrate import solve_ivp
-
-    from ..flexible.boundary import build
-    from ..flexible.integrate import Body, Simulation
-
     mass, inertia, arm, g = 1.3, 0.02, 0.5, 9.81
     pull = mass * g * arm / (inertia + mass * arm**2)
     exact = solve_ivp(lambda t, y: [y[1], -pull * np.cos(y[0])], (0, 1), [0, 0], rtol=1e-12, atol=1e-12).y[
@@ -281,10 +260,6 @@ def impact_step(
 
 def ring_energy(turns: int = 100) -> float:
     """Largest relative change of the energy of a free, undamped, flexible ring that spins and shakes, at ρ∞ = 1."""
-    from ..flexible.body import elastic_body
-    from ..flexible.element import Material
-    from ..flexible.integrate import Simulation
-
     rings = [full_circle(0.1, 1e-5), full_circle(0.08, 1e-5)[::-1]]
     spin = 20.0
     ring, _ = elastic_body(

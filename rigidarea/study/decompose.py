@@ -7,14 +7,13 @@ as the union stays convex (Hertel and Mehlhorn 1983: at most four times the leas
 from __future__ import annotations
 
 import numpy as np
+import shapely
 
 from .scene import Array, Rings
 
 
 def triangles(rings: Rings) -> list[Array]:
     """Counter-clockwise triangles (3, 2) that tile an outline with holes exactly; no vertices are added."""
-    import shapely
-
     outer, *holes = rings
     parts = shapely.constrained_delaunay_triangles(shapely.Polygon(outer, holes)).geoms
     return [np.asarray(shapely.orient_polygons(part).exterior.coords)[:-1] for part in parts]

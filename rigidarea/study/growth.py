@@ -15,6 +15,7 @@ import pymunk
 
 import rigidarea
 
+from ..chipmunk.phases import PHASES
 from ..report import Progress, envelope
 from .everyday import BLOCK
 from .everyday_bodies import GRAVITY_PX as GRAVITY
@@ -168,8 +169,6 @@ def phases() -> list[Row]:
     Rows: scene, frame_us, chipmunk_us (all that is not ours, pymunk's Python too), then each of
     `rigidarea.chipmunk.phases.PHASES`. Reading the clock takes 0.3 µs a phase and substep of it.
     """
-    from ..chipmunk.phases import PHASES
-
     rows = []
     for title, (name, size) in PHASED.items():
         growing = GROWING[name]

@@ -15,6 +15,8 @@ import pymunk
 from ..checkout import harness, pages
 from ..plan.plan import Plan, plan
 from ..report import envelope, output_arguments, write_json
+from .scene import get_scene
+from .user_space import space_of
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -96,9 +98,6 @@ def told(made: Plan) -> dict[str, Any]:
 
 def of_scene(name: str, arguments: argparse.Namespace) -> Plan:
     """The plan of a scene's space. ValueError lists the known scenes."""
-    from .scene import get_scene
-    from .user_space import space_of
-
     scene = get_scene(name)
     space, _ = space_of(scene)
     return plan(space, arguments.tolerance, arguments.seconds or scene.duration, frame=scene.frame)

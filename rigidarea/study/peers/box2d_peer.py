@@ -11,6 +11,11 @@ from ..decompose import convex_pieces
 from ..scene import Array, Body, Circle, Polygon, Scene, Segment, oriented
 from .base import Run, Settings, combined, drive, rigid_only, samplings
 
+try:
+    import pyb2d3 as b2
+except ImportError:
+    b2 = None
+
 MOST_VERTICES = 8
 """Of a Box2D polygon (B2_MAX_POLYGON_VERTICES)."""
 STEPPING = ((1, 4), (1, 8), (2, 4), (4, 1), (4, 4), (1, 16), (8, 4), (16, 1), (16, 4), (64, 1), (64, 4))
@@ -18,7 +23,7 @@ QUICK_STEPPING = ((1, 4), (4, 4), (16, 4), (64, 1))
 """Steps a frame and substeps a step that are swept."""
 
 
-def _rotation(b2: Any, angle: float) -> Any:
+def _rotation(angle: float) -> Any:
     """Exact cosine and sine: Box2D's own `b2MakeRot` approximates them, which would shift the start by 2e-3 rad."""
     rotation = b2.make_rot(0.0)
     rotation.c, rotation.s = math.cos(angle), math.sin(angle)
@@ -29,8 +34,6 @@ class WorldRun:
     """A Box2D world in its own unit of length."""
 
     def __init__(self, scene: Scene, settings: Settings) -> None:
-        import pyb2d3
-
         self.unit = settings["length"] / scene.size
         steps, substeps = settings["steps"], settings["substeps"]
         self.steps, self.substeps, self.h = steps, substeps, scene.frame / steps
@@ -39,7 +42,7 @@ class WorldRun:
         if settings["stiff"]:
             # The stiffest contact that Box2D allows: it caps the frequency at a quarter of the substep rate.
             hertz = max(hertz, 0.25 * substeps / self.h)
-        self.world = pyb2d3.World(gravity=gravity, contact_hertz=hertz, restitution_threshold=0.01)
+        self.world = b2.World(gravity=gravity, contact_hertz=hertz, restitution_threshold=0.01)
         self.world.sleeping_enabled = False  # a sleeping scene would cost nothing and prove nothing
         tolerance = settings.get("sampling", 1e-3) * scene.size
         self.bodies = [self.add(scene, body, tolerance) for body in scene.bodies]
@@ -47,11 +50,9 @@ class WorldRun:
 
     def add(self, scene: Scene, body: Body, tolerance: float) -> Any:
         """Box2D's body of one of the scene's; curves are sampled to the tolerance (length)."""
-        import pyb2d3 as b2
-
         made = getattr(self.world, f"create_{body.kind}_body")(
             position=self._scaled(body.position),
-            rotation=_rotation(b2, body.angle),
+            rotation=_rotation(body.angle),
             linear_velocity=self._scaled(body.velocity),
             angular_velocity=body.angular_velocity,
         )
@@ -132,11 +133,7 @@ class Box2D:
 
     def refuses(self, scene: Scene) -> str:
         """What only elastic bodies answer; everything if `pyb2d3` is not installed."""
-        try:
-            import pyb2d3  # noqa: F401
-        except ImportError:
-            return "pyb2d3 is not installed (extra: studies)"
-        return rigid_only(scene)
+        return rigid_only(scene) if b2 is not None else "pyb2d3 is not installed (extra: studies)"
 
     def settings(self, scene: Scene, quick: bool) -> list[Settings]:
         """Steps × substeps × contact softness × sampling."""

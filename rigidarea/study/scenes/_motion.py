@@ -5,6 +5,7 @@ from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 from ..scene import Array, G
 
@@ -12,8 +13,6 @@ Rates = Callable[[float, Array], Sequence[float]]
 
 
 def _solve(rates: Rates, start: Sequence[float], end: float, **more: Any) -> Any:
-    from scipy.integrate import solve_ivp
-
     return solve_ivp(rates, (0.0, end), start, method="DOP853", rtol=1e-12, atol=1e-12, **more)
 
 

@@ -4,6 +4,7 @@ import itertools
 from functools import cache
 
 import numpy as np
+from scipy.optimize import linprog
 
 from ...geometry.outline import Outline
 from ..scene import Array, Body, G, Polygon, Scene, floor, rest_error
@@ -35,8 +36,6 @@ def stands(thickness: float, count: int = COUNT, friction: float = MU) -> bool:
     joint can bear is such a pair, for it pushes within the joint and within the cone of friction. Every voussoir is in
     balance: three equations each. By the safe theorem one solution is enough.
     """
-    from scipy.optimize import linprog
-
     corners, stones = joints(thickness, count), voussoirs(thickness, count)
     unknowns = 4 * (count + 1)  # of each joint n, s at the inner corner, n, s at the outer
     balance = np.zeros((3 * count, unknowns))

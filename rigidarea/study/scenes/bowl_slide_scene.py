@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy.special import ellipj, ellipk
 
 from ...geometry.outline import Outline
 from ..scene import Body, Curve, G, Rings, Scene, Trace, arc, disc, place_error
@@ -13,8 +14,6 @@ RHO = BOWL - RADIUS
 
 def period(length: float, amplitude: float) -> float:
     """Exact period 4 sqrt(l/g) K(sin²(θ₀/2)) of a pendulum of `length` (DLMF 22.19)."""
-    from scipy.special import ellipk
-
     return float(4 * math.sqrt(length / G) * ellipk(math.sin(amplitude / 2) ** 2))
 
 
@@ -23,8 +22,6 @@ def swing(t: np.ndarray, length: float, amplitude: float) -> np.ndarray:
 
     sin(θ/2) = k cd(ω t, k), k = sin(θ₀/2) (DLMF 22.19.2).
     """
-    from scipy.special import ellipj
-
     k = math.sin(amplitude / 2)
     _, cn, dn, _ = ellipj(math.sqrt(G / length) * np.asarray(t), k * k)
     return 2 * np.arcsin(k * cn / dn)

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy.integrate import quad
 
 from ..scene import ANGLE, Array, Body, G, Polygon, Scene, Trace, floor
 from ._motion import angle
@@ -27,7 +28,6 @@ def leaving_angle() -> float:
 
 def leaving_time() -> float:
     """∫ dθ/θ', θ'² = 2 P2 (sin θ₀ − sin θ); θ = θ₀ − u² takes the root out of the integrand."""
-    from scipy.integrate import quad
 
     def integrand(u: float) -> float:
         if u == 0:

@@ -3,6 +3,7 @@
 import math
 
 import numpy as np
+from scipy.integrate import quad
 
 from ..scene import ANGLE, Array, G, Scene, Trace, block, floor
 from ._motion import angle
@@ -24,7 +25,6 @@ def quarter() -> float:
 
     The substitution θ = θ₀ (1 − u²) takes the root out of the integrand.
     """
-    from scipy.integrate import quad
 
     def integrand(u: float) -> float:
         # cos a − cos b = 2 sin((a + b)/2) sin((b − a)/2) keeps the digits near u = 0
