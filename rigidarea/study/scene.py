@@ -250,6 +250,17 @@ def oriented(rings: Rings) -> list[Array]:
     return [turned(outer, 1.0), *(turned(hole, -1.0) for hole in holes)]
 
 
+def shape_rings(shape: Shape, tolerance: float) -> list[Array]:
+    """Rings (n, 2) of a shape, the material on their left: outer ones counter-clockwise, holes clockwise."""
+    if isinstance(shape, Circle):
+        return [full_circle(shape.radius, tolerance) + np.array(shape.center)]
+    if isinstance(shape, Polygon):
+        return [np.array(shape.points, dtype=np.float64)]
+    if isinstance(shape, Segment):
+        raise ValueError("expected a shape with an outline of its own, got a Segment")
+    return oriented(shape.rings(tolerance))
+
+
 def slab_with_hole(radius: float, half: float) -> Curve:
     """A square of half-side `half` with a circular hole of `radius` about the origin."""
     outer = np.array([(-half, -half), (half, -half), (half, half), (-half, half)], dtype=float)

@@ -6,6 +6,7 @@ than 1, are refused. One mechanism of two bodies at a time (all static bodies ar
 
 from __future__ import annotations
 
+import copy
 import math
 from functools import cache
 from typing import Any
@@ -13,34 +14,11 @@ from typing import Any
 import numpy as np
 
 from ...geometry.outline import Outline
-from ..scene import (
-    ANGLE,
-    Array,
-    Body,
-    Circle,
-    Polygon,
-    Scene,
-    Segment,
-    Shape,
-    full_circle,
-    get_scene,
-    oriented,
-)
+from ..scene import ANGLE, Array, Body, Scene, get_scene, shape_rings
 from .base import Run, Settings, combined, has_curves, knob
 
 MARGIN = 0.05
 """How far bodies move before contact is searched anew, in body sizes."""
-
-
-def shape_rings(shape: Shape, tolerance: float) -> list[Array]:
-    """Rings (n, 2) of a shape, the material on their left: outer ones counter-clockwise, holes clockwise."""
-    if isinstance(shape, Circle):
-        return [full_circle(shape.radius, tolerance) + np.array(shape.center)]
-    if isinstance(shape, Polygon):
-        return [np.array(shape.points, dtype=np.float64)]
-    if isinstance(shape, Segment):
-        raise ValueError("expected a shape with an outline of its own, got a Segment")
-    return oriented(shape.rings(tolerance))
 
 
 def _placed(ring: Array, body: Body) -> Array:
@@ -68,8 +46,6 @@ class FlexibleRun:
     """A simulation of the flexible submodule; a step that does not converge leaves states that are not finite."""
 
     def __init__(self, scene: Scene, settings: Settings, level: str) -> None:
-        import copy
-
         from ...flexible.boundary import build
         from ...flexible.integrate import Body as FlexibleBody
         from ...flexible.integrate import Simulation
