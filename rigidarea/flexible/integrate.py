@@ -28,7 +28,7 @@ from rigidarea.flexible.check import (
 from rigidarea.flexible.contacts import replay
 from rigidarea.flexible.linear_limits import watch
 from rigidarea.flexible.mechanism_joints import JOINT, Joint
-from rigidarea.flexible.run import BODY, HALVINGS, HEAD, NOT_FINITE, run_steps
+from rigidarea.flexible.run import BODY, COARSE, HALVINGS, HEAD, IMPACT_HALVINGS, NOT_FINITE, run_steps
 from rigidarea.flexible.scratch import FULL, MANY, SLICED, TORN, searches
 from rigidarea.flexible.start import moving, settle, start, weighed
 from rigidarea.flexible.system import REGIONS, Buffers, Settings, State, System, buffers
@@ -228,7 +228,7 @@ class Simulation:
         made = buffers(len(self.bodies), len(self.pairs), len(self.joints), modes, loads)
         if old is not None:
             made.counts[1], made.most[:] = old.counts[1], old.most
-            made.springs[:], made.held[:] = old.springs, old.held
+            made.springs[:], made.held[:], made.met[:] = old.springs, old.held, old.met
         self._buffers: Buffers = made
         # regions are numbered anew: no node belongs to one
         for w in self.works:
@@ -249,15 +249,15 @@ class Simulation:
         return State(x, v, acc, acc.copy(), z, z.copy(), z.copy(), z.copy(), mu, turn)
 
     def run(self, duration: float, h: float, every: int = 1, shapes: bool = False) -> Record:
-        """Advances by ``duration`` in steps of ``h``, recording every ``every`` steps; ``shapes`` too if asked for.
+        """Advances by ``duration``, a whole number of steps ``h`` (rounded), recording every ``every`` of them; shapes
+        too if asked for.
 
         Raises ValueError for lengths of time or ``every`` out of range, RuntimeError naming step, residual, pair and
-        its stiffness if a step does not converge after HALVINGS halvings. Warns (``watch.LinearityWarning``) where a
-        body went beyond linear elasticity. What was computed until then, or until an
-        interrupt, is in ``self.record``.
+        its stiffness if a step does not converge after HALVINGS halvings, or does not follow a blow after
+        IMPACT_HALVINGS. Warns (``watch.LinearityWarning``) where a body went beyond linear elasticity. What was
+        computed until then, or until an interrupt, is in ``self.record``.
         """
         positive(duration, "duration"), positive(h, "h")
-        every = whole(every, "every", 1)
         if h > duration * (1 + 1e-9):
             raise ValueError(f"h must be at most the duration, {duration:g}, got {h:g}")
         if duration / h > MOST_STEPS:
@@ -265,6 +265,7 @@ class Simulation:
                 f"h must be at least {duration / MOST_STEPS:.4g} for a duration of {duration:g}, got {h:g}"
             )
         steps = round(duration / h)
+        every = whole(every, "every", 1, steps)
         n, m, p = len(self.bodies), len(self.state.q), len(self.pairs)
         out = np.zeros(
             (steps // every, HEAD + BODY * n + 2 * p + 3 * len(self.joints) + (m + 3 * n if shapes else 0))
@@ -298,7 +299,8 @@ class Simulation:
             )
         if code < 0:
             raise RuntimeError(
-                f"step {done} (t = {self.time:.6g}, h = {h:g}, halved {HALVINGS} times): {self._trouble(code)}"
+                f"step {done} (t = {self.time:.6g}, h = {h:g}, halved {IMPACT_HALVINGS if code == COARSE else HALVINGS}"
+                f" times): {self._trouble(code)}"
             )
         # a column at a time: a maximum over the long axis of a narrow array takes numpy fifty times as long
         spin = np.array([np.abs(w).max(initial=0.0) for w in self.record.v[:, :, 2].T])
@@ -311,6 +313,7 @@ class Simulation:
             MANY: "more contact points than the work arrays hold",
             TORN: "a boundary crosses itself, or the bodies overlap deeper than a feature",
             SLICED: "one body passes through the other",
+            COARSE: "a blow too short to follow: it would gain energy",
             NOT_FINITE: "the state is not finite: expected forces, stiffnesses and speeds whose products are numbers",
         }.get(code, "no convergence")
         if len(self.pairs):

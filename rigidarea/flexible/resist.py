@@ -1,8 +1,9 @@
 """What contacts lose: damping along their direction, friction across it. Forces on the frames, region by region.
 
-Damping is a dashpot c = 2 ζ √(k L m), k L the region's stiffness, m the effective mass of its bodies, that never makes
-a contact pull; ζ is that of the linear spring and dashpot that returns the restitution asked for, as for rigid contacts
-at rest (``kernel.impact.damping_ratio``). Where the chord grows with the depth what comes back is near it, not exact.
+Damping is a dashpot c = 2 ζ √(s m), s the stiffness of the region, k L, and of its bodies in series, m their effective
+mass, that never makes a contact pull; ζ is that of the linear spring and dashpot that returns the restitution asked
+for, as for rigid contacts at rest (``kernel.impact.damping_ratio``). Where the chord grows with the depth what comes
+back is near it, not exact, and of modes more does: what their vibration adds to the yield counts as yield.
 
 Friction is a spring of 2/7 of the normal stiffness that a region remembers, stretched by the slip and held below μ
 times the normal force (P. A. Cundall and O. D. L. Strack, Géotechnique 29, 1979, doi:10.1680/geot.1979.29.1.47): it
@@ -63,7 +64,9 @@ def resist(sy, buf, k, r, p, ia, ib):  # type: ignore[no-untyped-def]
     stiff = k * r["chord"]
     if sy.ratio[p] > 0.0:
         ta, tb = ax * ny - ay * nx, bx * ny - by * nx
-        c = _dashpot(sy, p, ia, ib, ta, tb, stiff)
+        # beside it are both bodies' own springs too, in series: its force over all that yields to it
+        yields = r["force"] / stiff + buf.bend[ia] + buf.bend[ib]
+        c = _dashpot(sy, p, ia, ib, ta, tb, r["force"] / yields if yields > 0.0 else stiff)
         force = c * (vx * nx + vy * ny)
         if force < -r["force"]:
             force, c = -r["force"], 0.0

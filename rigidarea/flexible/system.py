@@ -124,6 +124,8 @@ class Buffers(NamedTuple):
     clock: Array  # (2,) step length, change of a velocity by that of its position
     springs: Array  # (3, REGIONS, 4) pair, place (2), stretch: of this evaluation, the last step, the step before it
     held: Ints  # (3,) how many
+    # (2, p, 7) force, direction, point, chord of the pairs that touch, for how long: in the last step, when it began
+    met: Array
     joint: Array  # (j, 3) force and moment of each joint on its body b
     modes: Array  # (4, most modes of a body) see ``frame.inertia_forces``
     pace: Array  # (5,) of Newton's method, see ``pace``
@@ -146,6 +148,6 @@ def buffers(bodies: int, pairs: int, joints: int, modes: list[int], room: int) -
         np.zeros((room, wide)), np.zeros((unknowns, wide)), np.zeros(unknowns, np.int64), np.zeros((6 * n, 6 * n + 1)),
         np.zeros(unknowns),
         np.zeros((2, room)), np.zeros((n, 3)), np.zeros(n), np.zeros(2),
-        np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((joints, 3)),
+        np.zeros((3, REGIONS, 4)), np.zeros(3, np.int64), np.zeros((2, pairs, 7)), np.zeros((joints, 3)),
         np.zeros((4, most)), np.zeros(5),
     )  # fmt: skip
