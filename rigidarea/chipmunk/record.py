@@ -133,12 +133,14 @@ def write_motion(s: Any, body: Any) -> None:
 def write_bias(s: Any, body: Any, dt: float) -> None:
     """Have its position function move it, in the next step, as far as contacts ask: Chipmunk's v_bias and w_bias.
 
-    They stand behind its transform and the user's pointer (struct cpBody).
+    They stand behind its transform and the user's pointer (struct cpBody). All substeps of the frame have asked for it,
+    of the same overlap: a substep's share.
     """
     v = floats(body.address + s.body_transform + 56, 3)
-    v[0] = body.put_x / dt
-    v[1] = body.put_y / dt
-    v[2] = body.put_a / dt
+    rate = 1.0 / (dt * max(1, s.taken))
+    v[0] = rate * body.put_x
+    v[1] = rate * body.put_y
+    v[2] = rate * body.put_a
 
 
 @kernel(forceinline=True)

@@ -12,12 +12,12 @@ short as their contacts ask for (``inspace``): contacts between parts act on def
 own functions. Then the rest of the space has its frame as ever, with parts in the places and at the velocities that
 came out. What a part has to do with other bodies is the area contact's: its impulses change the part's velocity,
 and its joints answer, within what is left of their ``max_force``. So every impulse is exchanged between two bodies at
-one time, and momentum is kept to rounding.
+one time, and momentum is kept to rounding. What lasts of it acts ahead of time in the next frame's steps (``inspace``).
 
 What follows from it: rigid bodies feel a part at the end of the frame; a blow on a part reaches its mate in the next
 frame, as a change of velocity. Contacts between parts have the friction and elasticity of their shapes (``resist``),
 but no arbiter: no callbacks. A joint's callbacks see the impulse that it has in the second half of the frame, its
-``impulse`` afterwards is that of both. Parts do not fall asleep.
+``impulse`` afterwards is that of both. Neither parts nor what touches them fall asleep.
 """
 
 from __future__ import annotations
@@ -37,20 +37,21 @@ from pymunk._chipmunk_cffi import lib
 from rigidarea.contact.impact import damping_ratio
 from rigidarea.flexible.body import outline_body
 from rigidarea.flexible.element import Material
-from rigidarea.flexible.inspace import advance, gather, give_back
+from rigidarea.flexible.inspace import advance, gather, give_back, note_rest
 from rigidarea.flexible.integrate import Body, Simulation
 from rigidarea.flexible.recover import State
+from rigidarea.flexible.run import RESOLVED
 from rigidarea.flexible.scratch import FULL
 from rigidarea.flexible.tied import Tied
-from rigidarea.geometry.gate import not_negative, positive
+from rigidarea.geometry.gate import finite, not_negative, positive
 from rigidarea.geometry.outline import Outline
 
 Array = NDArray[np.float64]
 
-RESOLVED = 0.3  # step times the highest angular frequency of a contact: symplectic Euler is stable to 2, and
-# its frequency then off by (0.3)²/24 = 0.4 %
 TRAVEL = 0.25  # of the mesh size: how far a boundary moves in a step, before a contact is seen
 COARSER = 2.0  # how fast steps grow again where contacts have gone or become softer, a factor a frame
+LASTS = 1.0  # for so long (time) steps stay as short as what joints hold has asked for: steps that follow the phase
+# of a swing pump it, also at the second order
 SPRINGS_KEPT = 256  # contact regions whose friction a frame that is run again remembers
 MOST_STEPS = 100_000  # of a frame: a second or more of it, for what moves faster than a game can have meant
 TRIES = 8  # a frame whose steps turn out too long is run again with shorter ones, so many times at the most
@@ -107,6 +108,8 @@ class Assembly:
             raise RuntimeError("part() on an attached assembly: add parts before attach()")
         if not isinstance(shape, pymunk.Shape):
             raise ValueError(f"shape must be a pymunk.Shape, got {type(shape).__name__}")
+        if isinstance(shape, pymunk.Segment) and shape.radius == 0.0:
+            raise ValueError("expected a shape with an area, got a Segment of radius 0")
         body = shape.body
         if body is None or body.body_type == pymunk.Body.STATIC:
             raise ValueError("expected the shape of a dynamic or kinematic body, got one of a static body")
@@ -136,7 +139,7 @@ class Assembly:
         """Contact regions between parts at the end of the last frame, as `AreaContact.regions` has them (dtype
         ``kind``)."""
         sim = self._running()
-        rows = sim._buffers.regions[: sim.counts()[0]]
+        rows = sim._buffers.regions[: sim.counts()[1]]
         out = np.zeros(len(rows), kind)
         for row, (pair, force, nx, ny, x, y, chord) in zip(out, rows[:, :7].tolist(), strict=True):
             for side, part in zip("ab", sim.pairs[int(pair)], strict=True):
@@ -159,7 +162,10 @@ class Assembly:
         loads = np.column_stack([nodes, work.node_load[nodes]])
         modal = sim.state.q[first[part] : first[part + 1]]
         u = shape.displacement(modal, loads, work.hub_load, float(np.sqrt(work.spin[0])))
-        frame = sim.state.x[part].copy()
+        owner, made = self._parts[part]
+        body = owner.body
+        assert body is not None
+        frame = np.array([*body.local_to_world(made.position), body.angle])
         return State(shape, frame, shape.turned(u), shape.stress(u))
 
     def _running(self) -> Simulation:
@@ -190,7 +196,7 @@ class Assembly:
             lib.cpSpaceAddConstraint(space._space, joint)
             self._apart.append(joint)
         if self._memory is not None:
-            self._tied.recall(self._memory[3])
+            self._tied.recall(self._memory[-1])
             self._memory = None
         self._compile(space)
 
@@ -225,8 +231,10 @@ class Assembly:
         size = min(float(np.linalg.norm(b.boundary.points, axis=1).max()) for b in bodies)
         self.simulation = Simulation(bodies, self._pairs(), self._k, self._q, margin=0.01 * size)
         self._step, self._before = math.inf, 0.0
+        # fastest that joints have held: for how long it has been looked at, in that time, in the LASTS before
+        self._swings = 0.0, 0.0, 0.0
         if self._memory is not None:
-            self._step, self._before, arrays, _ = self._memory
+            self._step, self._before, self._swings, arrays, _ = self._memory
             for array, old in zip(self._kept(), arrays, strict=True):
                 array[:] = old
 
@@ -240,7 +248,7 @@ class Assembly:
         for spring in sim._buffers.springs[1]:  # friction's, of the pairs that stay
             pair = before[int(spring[0])] if 0 <= spring[0] < len(before) else ()
             spring[0] = pairs.index(pair) if pair in pairs else -1
-        self._memory = self._step, self._before, self._kept(), None
+        self._memory = self._step, self._before, self._swings, self._kept(), None
         self._start()
         self._memory = None
 
@@ -254,7 +262,8 @@ class Assembly:
             sim._table, sim.system, sim.state, sim.pairs, sim.settings, sim.scratch, sim._searches, sim._buffers,
             tied.members, tied.links, tied.offsets, 0.0, 0, space.iterations, 1.0,
         )  # fmt: skip
-        give_back(none, none.copy(), tied.offsets, False)
+        give_back(none, none.copy(), tied.offsets, 0.0)
+        note_rest(none, tied.offsets, 1.0)
 
     # --- a frame ---
 
@@ -266,6 +275,7 @@ class Assembly:
         """
         space = self._space
         assert space is not None
+        finite(dt, "dt")
         if dt > 0:
             for n, (shape, _) in enumerate(self._parts):
                 if shape.space is not space:
@@ -275,13 +285,18 @@ class Assembly:
                 self._tied.release()
                 self._tied = Tied(self._parts, constraints, self._tied)
             self._pair_anew(self._pairs())
+            if math.isfinite(space.sleep_time_threshold):
+                self._tied.stay_awake()
             self._move(space, dt)
         self._tied.rest_of_frame(dt, rest, idle)
+        if dt > 0:
+            note_rest(self._tied.members, self._tied.offsets, dt)
 
     def _move(self, space: pymunk.Space, dt: float) -> None:
         sim, tied = self.simulation, self._tied
         assert sim is not None
         gather(tied.members, tied.offsets, *space.gravity, space.damping, dt)
+        tied.check()
         self._read_shapes(sim)
         start, links = tied.members.copy(), tied.links.copy()
         kept = [a.copy() for a in self._kept()]
@@ -308,7 +323,7 @@ class Assembly:
                 array[:] = old
         else:
             tied.links[:] = links
-            give_back(start, start, tied.offsets, False)
+            give_back(start, start, tied.offsets, 0.0)
             told = f"a frame of {dt:g} of the flexible parts, tried {tries} times"
             if code < 0:
                 raise RuntimeError(f"{told}, at last with h = {dt / steps:g}: {sim._trouble(code)}")
@@ -320,7 +335,7 @@ class Assembly:
         self._before, self.steps = dt / steps, steps
         fastest = RESOLVED / math.sqrt(stiffest) if stiffest > 0 else math.inf
         self._step = min(fastest, COARSER * (dt / steps if tries > 1 else self._step))
-        give_back(tied.members, start, tied.offsets, True)
+        give_back(tied.members, start, tied.offsets, dt)
 
     def _read_shapes(self, sim: Simulation) -> None:
         """Inertia, and each pair's friction and elasticity: the products of its shapes', as pymunk has them."""
@@ -357,10 +372,12 @@ class Assembly:
         near = np.abs(at[i] - at[j]) < sim.system.size[i] + sim.system.size[j] + reach
         links = self._tied.links
         held = np.isin(np.arange(len(parts)), [links["a"], links["b"]])
-        fastest = max(
-            float((speed + np.maximum(spin[i], spin[j]))[near].max(initial=0.0)),
-            float((np.abs(v) + spin)[held].max(initial=0.0)),
-        )
+        swings = float((np.abs(v) + spin)[held].max(initial=0.0))
+        since, most, before = self._swings
+        if since >= LASTS:
+            since, most, before = 0.0, 0.0, most
+        self._swings = since + dt, max(most, swings), before
+        fastest = max(float((speed + np.maximum(spin[i], spin[j]))[near].max(initial=0.0)), *self._swings[1:])
         return TRAVEL * size / fastest if fastest > 0 else math.inf
 
     # --- copies ---
@@ -369,6 +386,7 @@ class Assembly:
         names = ("_k", "_q", "_longest", "_cache", "_parts", "_size", "steps")
         memory = None
         if self._space is not None:
-            memory = self._step, self._before, [a.copy() for a in self._kept()], self._tied.memory()
+            arrays = [a.copy() for a in self._kept()]
+            memory = self._step, self._before, self._swings, arrays, self._tied.memory()
         kept = {name: self.__dict__[name] for name in names}
         return kept | {"_space": None, "simulation": None, "_memory": memory}

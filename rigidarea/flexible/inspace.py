@@ -1,9 +1,16 @@
 """Bodies of a pymunk space that yield, moved through a frame in steps of their own: the compiled part of ``assembly``.
 
-Frames are rigid bodies of Chipmunk's, by symplectic Euler: drift; contact (``step`` with the frames given: loads and
+Frames are rigid bodies of Chipmunk's, by the leapfrog: half a drift; contact (``step`` with the frames given: loads and
 modes are found for where they are); the contacts' forces, gravity and the user's forces change velocities; then
-joints do, by Chipmunk's own functions, sequential impulses as in its solver but at this finer step. What joints do to a
-body is the load on its hub, as far as it has one.
+joints do, by Chipmunk's own functions, sequential impulses as in its solver but at this finer step; the other half of
+the drift. Under constant forces that is exact, whatever the number of steps, and a step that changes with the motion
+gives no energy, as symplectic Euler's does (E. Hairer, C. Lubich, G. Wanner, Geometric Numerical Integration, VIII.2).
+What joints do to a body is the load on its hub, as far as it has one.
+
+What bodies of no part do to a member is known once a frame, after its steps, and acts in the next one ahead of time: as
+far as it has balanced the other loads, as a constant acceleration (``bear_x`` …), which is taken out again before they
+answer themselves (impulses of several time steps: J. J. Biesiadecki and R. D. Skeel, J. Comput. Phys. 109, 1993,
+doi:10.1006/jcph.1993.1220). So what lies on a floor lies still, and what lies on it is carried.
 """
 
 from __future__ import annotations
@@ -32,6 +39,10 @@ MEMBER = record(
         ("vx", "f8"), ("vy", "f8"), ("w", "f8"),
         ("inverse_mass", "f8"), ("inverse_moment", "f8"),
         ("ax", "f8"), ("ay", "f8"), ("alpha", "f8"),  # by gravity and the user's forces, constant in a frame
+        ("bear_x", "f8"), ("bear_y", "f8"), ("bear_w", "f8"),  # of that, by the space's own frame before
+        ("rest_x", "f8"), ("rest_y", "f8"), ("rest_w", "f8"),  # all that this did, over its length
+        ("mend_x", "f8"), ("mend_y", "f8"), ("mend_w", "f8"),  # drift that takes it out of overlaps: no velocity
+        ("was_x", "f8"), ("was_y", "f8"), ("was_w", "f8"),  # its velocity at the frame's start
         ("turn", "f8"),  # angular acceleration of the last step, which modes feel
         ("cog_x", "f8"), ("cog_y", "f8"),  # in the body's coordinates
         ("off_x", "f8"), ("off_y", "f8"),  # from there to the origin of the part's boundary
@@ -44,6 +55,7 @@ LINK = record(
         ("address", "u8"),
         ("a", "i8"), ("b", "i8"),  # members
         ("at", "i8"), ("count", "i8"),  # where it keeps its impulse (bytes), and how many numbers that is
+        ("arms", "i8"),  # of a pivot: where it keeps its anchors (bytes); -1
         ("x", "f8"), ("y", "f8"),  # impulse summed over the frame
         ("warm_x", "f8"), ("warm_y", "f8"),  # of the last step
     ]
@@ -91,9 +103,11 @@ def gather(members: Any, offsets: Any, gx: float, gy: float, damping: float, dt:
             a.vx *= keep
             a.vy *= keep
             a.w *= keep
-            a.ax = gx + f[0] * a.inverse_mass
-            a.ay = gy + f[1] * a.inverse_mass
-            a.alpha = _floats(a.address + np.uint64(offsets.body_torque), 1)[0] * a.inverse_moment
+            a.was_x, a.was_y, a.was_w = a.vx, a.vy, a.w
+            a.ax = gx + f[0] * a.inverse_mass + a.bear_x
+            a.ay = gy + f[1] * a.inverse_mass + a.bear_y
+            torque = _floats(a.address + np.uint64(offsets.body_torque), 1)[0]
+            a.alpha = torque * a.inverse_moment + a.bear_w
 
 
 @kernel
@@ -116,20 +130,62 @@ def _write_motion(a, offsets):  # type: ignore[no-untyped-def]
 
 
 @entry
-def give_back(members: Any, start: Any, offsets: Any, used: bool) -> None:
-    """Chipmunk's bodies where the members are, their forces ``used`` up; those that are led as in ``start``."""
+def give_back(members: Any, start: Any, offsets: Any, dt: float) -> None:
+    """Chipmunk's bodies where the members are, forces and what was borne ahead of time used up in ``dt`` (0: not);
+    those that are led as in ``start``."""
     for m in range(len(members)):
         a = members[m]
         if a.led == 1:
             _write_place(start[m], offsets)
             continue
+        a.vx -= dt * a.bear_x
+        a.vy -= dt * a.bear_y
+        a.w -= dt * a.bear_w
         _write_place(a, offsets)
         _write_motion(a, offsets)
-        if not used:
+        if dt == 0.0:
             continue
         f = _floats(a.address + np.uint64(offsets.body_force), 2)
         f[0] = f[1] = 0.0
         _floats(a.address + np.uint64(offsets.body_torque), 1)[0] = 0.0
+
+
+@entry
+def note_rest(members: Any, offsets: Any, dt: float) -> None:
+    """What the space's own frame of dt has done to the members, for the next one.
+
+    Of an acceleration so much lasts as was there in the frame before (minmod), and as it left the velocity as it was
+    when the frame began: one that made half of itself, or more, of a change of velocity was a blow.
+    """
+    for m in range(len(members)):
+        a = members[m]
+        if a.led == 1 or a.inverse_mass == 0.0:
+            continue
+        v = _floats(a.address + np.uint64(offsets.body_velocity), 2)
+        w = _floats(a.address + np.uint64(offsets.body_spin), 1)[0]
+        x, y, turn = (v[0] - a.vx) / dt, (v[1] - a.vy) / dt, (w - a.w) / dt
+        arm = a.inverse_mass / a.inverse_moment if a.inverse_moment > 0.0 else 0.0  # mass is the metric
+        square = x * x + y * y + arm * turn * turn
+        part = 0.0
+        if square > 0.0:
+            changed = x * (v[0] - a.was_x) + y * (v[1] - a.was_y) + arm * turn * (w - a.was_w)
+            before = x * a.rest_x + y * a.rest_y + arm * turn * a.rest_w
+            part = max(0.0, 1.0 - 2.0 * abs(changed) / (dt * square)) * min(1.0, max(0.0, before / square))
+        a.rest_x, a.rest_y, a.rest_w = x, y, turn
+        a.bear_x, a.bear_y, a.bear_w = part * x, part * y, part * turn
+        # Chipmunk's v_bias and w_bias, behind its transform and the user's pointer: used once
+        mend = _floats(a.address + np.uint64(offsets.body_transform) + np.uint64(56), 3)
+        a.mend_x, a.mend_y, a.mend_w = mend[0], mend[1], mend[2]
+        mend[0] = mend[1] = mend[2] = 0.0
+
+
+@kernel
+def _drift(members, h):  # type: ignore[no-untyped-def]
+    for m in range(len(members)):
+        a = members[m]
+        a.x += h * (a.vx + a.mend_x)
+        a.y += h * (a.vy + a.mend_y)
+        a.angle += h * (a.w + a.mend_w)
 
 
 @kernel
@@ -156,6 +212,25 @@ def _rate(rate, a):  # type: ignore[no-untyped-def]
 
 
 @kernel
+def _round_the_bend(members, link, offsets, h):  # type: ignore[no-untyped-def]
+    """Has a pivot's speed end on the arms' circle: a step along the tangent ends (ω h)²/2 of the arm beside it.
+
+    As an error of place it would be taken back (``error_bias``) when ω is another: that takes energy. ω is that after
+    the impulses of the step before: one that lags gives energy.
+    """
+    anchors = _floats(link.address + np.uint64(link.arms), 4)
+    bias = link.address + np.uint64(link.at) + np.uint64(16)  # of cpPivotJoint, behind its impulse
+    speed = _floats(bias, 2)
+    for side in range(2):
+        a, sign = (members[link.a], -0.5) if side == 0 else (members[link.b], 0.5)
+        x, y = anchors[2 * side] - a.cog_x, anchors[2 * side + 1] - a.cog_y
+        c, s = np.cos(a.angle), np.sin(a.angle)
+        w = _floats(a.address + np.uint64(offsets.body_spin), 1)[0]
+        speed[0] += sign * h * w * w * (c * x - s * y)
+        speed[1] += sign * h * w * w * (s * x + c * y)
+
+
+@kernel
 def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-untyped-def]
     """All joints' impulses of one step, on the members' velocities; ``factor``: this step over the last.
 
@@ -173,6 +248,9 @@ def _joints(members, links, offsets, h, iterations, factor):  # type: ignore[no-
         _run(link.address, _PRE_STEP, h)
     for j in range(len(links)):
         _run(links[j].address, _APPLY_CACHED, 1.0)
+    for j in range(len(links)):
+        if links[j].arms >= 0:
+            _round_the_bend(members, links[j], offsets, h)
     for _ in range(iterations):
         for j in range(len(links)):
             _run(links[j].address, _APPLY, h)
@@ -226,11 +304,7 @@ def advance(  # type: ignore[no-untyped-def]
     stiffest = 0.0
     code = 0
     for n in range(steps):
-        for m in range(len(members)):
-            a = members[m]
-            a.x += h * a.vx
-            a.y += h * a.vy
-            a.angle += h * a.w
+        _drift(members, 0.5 * h)
         for b in range(count):
             _place_frame(state, members, b, h)
             _rate(buf.rate[b], members[b])
@@ -275,6 +349,7 @@ def advance(  # type: ignore[no-untyped-def]
             a = members[b]
             _load_hub(state.mu[b], a, buf.load[b], buf.pose[b], h, 1.0)
             a.turn = (a.w - a.turn) / h if a.inverse_mass > 0.0 else 0.0
+        _drift(members, 0.5 * h)
     return code, stiffest
 
 

@@ -10,6 +10,7 @@ import numpy as np
 import pymunk
 from pymunk._chipmunk_cffi import ffi
 
+from rigidarea.chipmunk.asked import SimulationError
 from rigidarea.chipmunk.joint_structs import kinds_of_joints
 from rigidarea.chipmunk.structs import address_of, layout
 from rigidarea.contact.space_record import OFFSETS
@@ -18,6 +19,8 @@ from rigidarea.flexible.integrate import Body
 
 Pair = tuple[float, float]
 
+#: What members keep from frame to frame: of the space's own frame (``inspace.note_rest``).
+_NOTED = [f"{what}_{axis}" for what in ("bear", "rest", "mend") for axis in "xyw"]
 _SPRINGS = pymunk.DampedSpring, pymunk.DampedRotarySpring  # joints whose force max_force does not bound
 
 
@@ -43,7 +46,7 @@ class Tied:
         constraints: tuple[pymunk.Constraint, ...],
         before: Tied | None = None,
     ) -> None:
-        self.constraints = constraints
+        self.constraints, self._parts = constraints, len(parts)
         bodies: list[pymunk.Body] = [shape.body for shape, _ in parts if shape.body is not None]
         places = {id(b): i for i, b in enumerate(bodies)}
         moved = set(places)
@@ -76,9 +79,12 @@ class Tied:
         for body in self._led:
             body.position_func, body.velocity_func = _stay, _stay
         self.members = np.zeros(len(bodies), MEMBER)
+        noted = {} if before is None else {int(r["address"]): r for r in before.members}
         row: Any
         for row, body in zip(self.members, bodies, strict=True):
             row["address"], row["led"] = address_of(body._body), id(body) not in moved
+            for name in _NOTED if int(row["address"]) in noted else ():
+                row[name] = noted[int(row["address"])][name]
         for row, (_, made) in zip(self.members, parts, strict=False):
             # from the body's origin, where its centre of gravity is taken to be so far
             row["off_x"], row["off_y"] = made.position
@@ -90,11 +96,13 @@ class Tied:
         warm = {} if before is None else {int(r["address"]): (r["warm_x"], r["warm_y"]) for r in before.links}
         self.links: np.ndarray = np.zeros(len(joints), LINK)
         for row, joint in zip(self.links, joints, strict=True):
-            row["address"], row["at"] = address_of(joint._constraint), -1
+            row["address"], row["at"], row["arms"] = address_of(joint._constraint), -1, -1
             row["a"], row["b"] = places[id(joint.a)], places[id(joint.b)]
             kind = kinds.get(int(ffi.cast("uintptr_t *", joint._constraint)[0]))
             if kind is not None:
                 row["at"], row["count"] = kind.impulse, kind.impulses
+                if isinstance(joint, pymunk.PivotJoint):
+                    row["arms"] = kind.parameters
             row["warm_x"], row["warm_y"] = warm.get(int(row["address"]), (0.0, 0.0))
         at = layout()
         self.offsets = np.zeros(1, PLACES)[0]
@@ -104,6 +112,25 @@ class Tied:
     def holds(self) -> bool:
         """Whether all bodies are still moved by the assembly, by nobody else."""
         return all(_functions(body) == (_stay, _stay) for body in self._led)
+
+    def stay_awake(self) -> None:
+        """Nobody asleep is moved: Chipmunk's idle times begin anew, of what they touch too."""
+        for body in self._led:
+            body.activate()
+
+    def check(self) -> None:
+        """SimulationError for a member that is nowhere, or that no finite force or velocity moves."""
+        moved = [self.members[name] for name in ("x", "y", "angle", "vx", "vy", "w", "ax", "ay", "alpha")]
+        bad = np.flatnonzero(~np.isfinite(moved).all(axis=0))
+        if len(bad):
+            a, who = self.members[bad[0]], f"part {bad[0]}"
+            if bad[0] >= self._parts:
+                who = "a body that joints tie to a part"
+            raise SimulationError(
+                f"{who}: expected a finite place, velocity, force and torque, got the place ({a['x']:g}, {a['y']:g}),"
+                f" the velocity ({a['vx']:g}, {a['vy']:g}), {a['w']:g} and the acceleration ({a['ax']:g}, {a['ay']:g}),"
+                f" {a['alpha']:g}; all bodies are as they were before it"
+            )
 
     def apart(self) -> set[frozenset[pymunk.Body]]:
         """Parts, two and two, that a joint between them keeps from touching."""
@@ -149,16 +176,18 @@ class Tied:
             self._rest[address] = more
             _set_impulse(link, (link["x"] + more[0], link["y"] + more[1]))
 
-    def memory(self) -> list[tuple[Pair, Pair]]:
-        """What a copy's joints start from."""
-        return [
+    def memory(self) -> tuple[np.ndarray, list[tuple[Pair, Pair]]]:
+        """What a copy's members and joints start from."""
+        joints = [
             ((float(r["warm_x"]), float(r["warm_y"])), self._rest.get(int(r["address"]), (0.0, 0.0)))
             for r in self.links
         ]
+        return self.members[_NOTED].copy(), joints
 
-    def recall(self, memory: list[tuple[Pair, Pair]]) -> None:
+    def recall(self, memory: tuple[np.ndarray, list[tuple[Pair, Pair]]]) -> None:
         """Give a copy what its original remembers."""
-        for link, (warm, rest) in zip(self.links, memory, strict=True):
+        self.members[_NOTED] = memory[0]
+        for link, (warm, rest) in zip(self.links, memory[1], strict=True):
             link["warm_x"], link["warm_y"] = warm
             self._rest[int(link["address"])] = rest
 

@@ -115,6 +115,26 @@ def test_a_frame_that_nobody_can_wait_for():
     assert told[1] == told[2]
 
 
+def test_numbers_that_are_none():
+    """A force or a step that is not finite is named, everything as it was; a shape without an area is refused."""
+    space, assembly, (one, two) = two_blocks(0.01)
+    ra.attach(space, flexible=assembly)
+    space.step(1e-3)
+    at = one.position
+    two.force = math.nan, 0.0
+    with pytest.raises(
+        ra.SimulationError, match="part 1: expected a finite place, velocity, force and torque"
+    ):
+        space.step(1e-3)
+    two.force = 0.0, 0.0
+    with pytest.raises(ValueError, match="dt must be a finite number, got inf"):
+        space.step(math.inf)
+    assert one.position == at
+    space.step(1e-3)
+    with pytest.raises(ValueError, match="a shape with an area, got a Segment of radius 0"):
+        Assembly(k=1.0).part(pymunk.Segment(one, (0, 0), (1, 0), 0), RUBBER, mesh=0.1)
+
+
 @pytest.mark.parametrize("elasticity", [0.0, 0.5])
 @pytest.mark.parametrize("young", [1e7, 1e9])
 def test_a_part_comes_to_rest_on_another(elasticity, young):
