@@ -13,6 +13,7 @@ from rigidarea.flexible.boundary import build
 from rigidarea.flexible.check import check_elastic, held_nodes
 from rigidarea.flexible.element import Material
 from rigidarea.flexible.integrate import Body
+from rigidarea.flexible.linear_limits import watch_mesh
 from rigidarea.flexible.mesh import Array, Mesh, keep_area, resample, triangulate
 from rigidarea.flexible.modes import reduce
 from rigidarea.flexible.recover import Shape
@@ -73,6 +74,8 @@ def elastic_body(
     )
     ends = np.cumsum([0] + [len(r) for r in nodes])
     mesh = Mesh(found["points"], found["triangles"], tuple(map(np.arange, ends[:-1], ends[1:])))
+    if level != "rigid":
+        watch_mesh(mesh)
     if callable(clamped):
         held = held_nodes(clamped, mesh.points[: int(ends[-1])], [mesh.rings[k] for k in contact_rings])
         mesh = Mesh(mesh.points, mesh.triangles, (*mesh.rings, held))

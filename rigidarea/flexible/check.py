@@ -193,8 +193,9 @@ def check_bodies(bodies: Sequence[Any], rho: float, constrained: bool = False) -
                     f"body {i}: its pivot must be where its hub is, ({at[0]:.6g}, {at[1]:.6g}), within"
                     f" {near:.3g}, got ({b.anchor[0]:.6g}, {b.anchor[1]:.6g})"
                 )
-        if b.fixed and (b.anchor is not None or b.drive is not None):
-            raise ValueError(f"body {i} is fixed: expected neither anchor nor drive")
+        moved = b.anchor is not None or b.drive is not None or b.torque or b.damper or any(b.velocity)
+        if b.fixed and moved:
+            raise ValueError(f"body {i} is fixed: expected no anchor, drive, torque, damper or velocity")
         modes = b.boundary.modes.shape[1]
         for name, shape in (("frequency", (modes,)), ("stretch", (modes,)), ("coupling", (modes, modes))):
             if np.shape(getattr(b, name)) != shape:
@@ -221,7 +222,9 @@ def check_elastic(
         good = ring.ndim == 2 and ring.shape[1:] == (2,) and len(ring) >= 3 and ring.dtype.kind in "fiu"
         if not good or not np.isfinite(ring).all():
             raise ValueError(f"rings[{n}] must be finite numbers (n, 2) with n >= 3, got shape {ring.shape}")
-    for number in listed(contact, "contact"):
+    if len(listed(contact, "contact")) == 0:
+        raise ValueError("contact must name 1 ring at least that may touch others, got none")
+    for number in contact:
         whole(number, "contact: a ring", 0, len(points) - 1)
     for name, number in held.items():
         if number is not None and not callable(number):

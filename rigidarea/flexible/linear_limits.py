@@ -16,6 +16,29 @@ DEFLECTION = 0.05
 SPIN = 0.1  # over the first elastic frequency: stiffness then changes by about the square, 1 %
 
 
+ACROSS = 0.5  # of a mesh's area, in triangles between boundary nodes alone: one across a beam is up to 30 % too stiff
+
+
+class MeshWarning(UserWarning):
+    """A mesh is too coarse for its body to bend as it should."""
+
+
+def watch_mesh(mesh: Any) -> None:
+    """Warns (MeshWarning) of a ``mesh.Mesh`` most of whose triangles reach from one side of the body to the other."""
+    nodes = np.concatenate(mesh.rings)
+    areas = mesh.areas()
+    across = float(areas[np.isin(mesh.triangles, nodes).all(axis=1)].sum() / areas.sum())
+    if across > ACROSS:
+        rings = [mesh.points[ring] for ring in mesh.rings]
+        length = sum(float(np.hypot(*(np.roll(p, -1, 0) - p).T).sum()) for p in rings)
+        warnings.warn(
+            f"{100 * across:.0f} % of a mesh has one triangle across the body, which bends by up to a third too little:"
+            f" expected two at least, a mesh size of at most about {areas.sum() / length:.3g}",
+            MeshWarning,
+            stacklevel=4,
+        )
+
+
 class LinearityWarning(UserWarning):
     """A flexible body has left what linear elasticity in its frame describes."""
 

@@ -24,6 +24,7 @@ from rigidarea.flexible.element import Material, lumped_mass, strain_displacemen
 from rigidarea.flexible.mesh import Array, Mesh
 from rigidarea.flexible.modes import Flexibility, Reduced, carriers, elastic, hub_rows, rigid_modes
 from rigidarea.flexible.tension import matrix
+from rigidarea.geometry.gate import whole
 
 
 @dataclass(frozen=True)
@@ -176,11 +177,13 @@ class State:
 def recover(sim: Any, record: Any, row: int, body: int) -> State:
     """Body ``body`` of a ``Simulation`` at row ``row`` of a record that kept shapes (``run(..., shapes=True)``).
 
-    Raises ValueError for a record without shapes, and a body that has no mesh (rigid, or made by hand).
+    A negative row is counted from the end. Raises ValueError for a record without shapes, a row or body that there is
+    not, and a body that has no mesh (rigid, or made by hand).
     """
     if record.shapes is None:
         raise ValueError("expected a record with shapes, got one without: run(..., shapes=True) keeps them")
-    shape = sim.bodies[body].shape
+    whole(row, "row", -len(record.t), len(record.t) - 1)
+    shape = sim.bodies[whole(body, "body", 0, len(sim.bodies) - 1)].shape
     if shape is None:
         raise ValueError(f"body {body} has no mesh to recover: expected one made by elastic_body, not rigid")
     kept, first = record.shapes, sim.system.first

@@ -221,5 +221,5 @@ def test_soft_body(level, held):
 
 
 def test_a_ground_takes_no_anchor(mesh):
-    with pytest.raises(ValueError, match="expected neither anchor nor drive"):
+    with pytest.raises(ValueError, match="expected no anchor, drive"):
         Simulation([ball(mesh), beam_body(mesh, MAT, 0, anchor=(0.0, 0.0))])

@@ -1,9 +1,12 @@
 """What was done in silence: it is right now, or an error that says what to write instead."""
 
+import warnings
+
 import numpy as np
 import pytest
 
 from rigidarea.flexible import Material, Mechanism, elastic_body
+from rigidarea.flexible.linear_limits import MeshWarning
 from rigidarea.geometry.outline import Outline
 from rigidarea.shapes import box
 
@@ -145,3 +148,41 @@ def test_a_mesh_size_for_each_ring():
     m = Mechanism(1e8)
     m.body(Outline(bar, [bore]), STEEL, mesh=(0.02, 1e-3), hub=1, growth=0.3, sides=1)
     assert len(m._bodies[0].shape.mesh.points) < len(mesh.points)
+
+
+def test_what_a_clamped_body_cannot_do():
+    """Nothing of it moves but its modes: a torque, a damper or a velocity would be dropped."""
+    for keys, given in (({"velocity": (3.0, 0.0, 0.0)}, {}), ({}, {"torque": 5.0}), ({}, {"damper": 2.0})):
+        m = Mechanism(1e8)
+        b = m.body(box(0.1, 0.02), STEEL, mesh=0.01, clamp=lambda p: p[:, 0] < -0.04, **keys)
+        m.load(b, **given)
+        with pytest.raises(ValueError, match="body 0 is fixed: expected no anchor, drive, torque, damper"):
+            m.run(1e-3, 1e-4)
+
+
+def test_states_and_rows_that_there_are_not():
+    m = Mechanism(1e8)
+    b = m.body(box(0.1, 0.02), STEEL, mesh=0.01)
+    record = m.run(1e-3, 1e-4, shapes=True)
+    assert m.state(record, -1, b).frame == pytest.approx(record.x[-1, 0])
+    with pytest.raises(ValueError, match="row must be a whole number from -10 to 9, got 99"):
+        m.state(record, 99, b)
+    with pytest.raises(ValueError, match="body must be a whole number from 0 to 0, got -1"):
+        m.state(record, -1, -1)
+    with pytest.raises(ValueError, match="every must be a whole number from 1 to 10, got 100"):
+        m.run(1e-3, 1e-4, every=100)
+    with pytest.raises(ValueError, match="contact must name 1 ring at least"):
+        m.body(box(0.1, 0.02), STEEL, mesh=0.01, contact=())
+
+
+def test_a_mesh_of_one_triangle_across():
+    """A beam's first bending frequency, over that of Timoshenko's beam: it is told of where it is far off."""
+    bar = box(1.0, 0.1)
+    exact = 0.966 * 4.73004**2 * np.sqrt(STEEL.young * 0.1**2 / 12 / STEEL.density)
+    with pytest.warns(MeshWarning, match="one triangle across the body, .* mesh size of at most about 0.045"):
+        body, _ = elastic_body(bar.polygon_rings, 0.1, STEEL, "modal", modes=4)
+    assert body.frequency[0] > 1.2 * exact
+    with warnings.catch_warnings():
+        warnings.simplefilter("error", MeshWarning)
+        body, _ = elastic_body(bar.polygon_rings, 0.045, STEEL, "modal", modes=4)
+    assert body.frequency[0] == pytest.approx(exact, rel=0.02)
