@@ -125,6 +125,21 @@ def first_frequency(shape: Shape, material: Any) -> float:
     return min(lump, est.ring_frequency(young, density, middle, rim))
 
 
+def materials_of(space: pymunk.Space) -> dict[pymunk.Body, Any]:
+    """What bodies carry: `body.material`, or that of one of its shapes, where that is a `flexible.Material`."""
+    given = [
+        (body, thing.material)
+        for body in space.bodies
+        for thing in (*body.shapes, body)
+        if hasattr(thing, "material")
+    ]
+    if not given:
+        return {}
+    from ..flexible import Material
+
+    return {body: material for body, material in given if isinstance(material, Material)}
+
+
 def choose(
     space: pymunk.Space,
     materials: Mapping[pymunk.Body, Any],

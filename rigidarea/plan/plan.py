@@ -327,7 +327,8 @@ def plan(
         drives over their speed; 0.01 is one per cent, and so is "1%".
     seconds: simulated time over which it must hold, 10 unless said: it is tried out as far as a twentieth of that run's
         cost goes, or a tenth of a second. frame: length of a frame (time).
-    materials: what bodies are made of (`flexible.Material`), where it matters whether they bend.
+    materials: what bodies are made of (`flexible.Material`), where it matters whether they bend; None: what `material`
+        of the bodies says, where they have one.
 
     Nothing is changed before `Plan.apply`. Raises ValueError for settings out of range.
     """
@@ -338,4 +339,5 @@ def plan(
     for body in materials or {}:
         if not isinstance(body, pymunk.Body):
             raise ValueError(f"materials must be given by pymunk.Body, got {type(body).__name__}")
-    return Plan(space, tolerance, seconds, frame, materials or {})
+    told = elastic.materials_of(space) if materials is None else materials
+    return Plan(space, tolerance, seconds, frame, told)

@@ -139,13 +139,4 @@ def of_script(name: str, arguments: argparse.Namespace) -> Plan:
         raise ValueError(f"{name} stepped no pymunk space: there is nothing to plan")
     space, dt = spaces[0]
     frame = dt if dt > 0.0 else 1.0 / 60.0
-    return plan(space, arguments.tolerance, arguments.seconds, frame=frame, materials=_materials(space))
-
-
-def _materials(space: pymunk.Space) -> dict[pymunk.Body, Any]:
-    """What a program's bodies are made of: `body.material`, or that of one of its shapes, where it gives them one."""
-    from ..flexible import Material
-
-    things = ((body, thing) for body in space.bodies for thing in (*body.shapes, body))  # its own counts
-    given = ((body, getattr(thing, "material", None)) for body, thing in things)
-    return {body: material for body, material in given if isinstance(material, Material)}
+    return plan(space, arguments.tolerance, arguments.seconds, frame=frame)

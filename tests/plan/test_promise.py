@@ -146,10 +146,13 @@ def test_blows_choose_the_level():
     assert made.again().elastic[0].level == "rigid"
     assert any("what presses a body" in reason for reason in made.unpromised)
     rubber = disc(0.05, 1100.0 * np.pi * 0.05**2 * 0.02, (0.0, 0.5))
-    soft = ra.plan(space_with(rubber, gravity=9.81), "0.1%", materials={rubber[0]: RUBBER})
+    space = space_with(rubber, gravity=9.81)
+    soft = ra.plan(space, "0.1%", materials={rubber[0]: RUBBER})
     assert soft.elastic[0].level == "modal"
     assert "a blow at 2.97" in soft.elastic[0].reason  # √(2 g 0.45)
     assert any("undeformed outline" in reason for reason in soft.unpromised)
+    rubber[0].material = RUBBER  # which says the same
+    assert ra.plan(space, "0.1%").elastic[0].reason == soft.elastic[0].reason
 
 
 PROGRAM = """
