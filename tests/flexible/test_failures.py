@@ -184,7 +184,7 @@ def test_pairs_are_checked(pairs, text):
 def test_runs_and_sizes_are_checked():
     sim = Simulation([Body(build([circle(0.1, 20)]), 1.0, 1.0, (0.0, 1.0)), slab()])
     for every in (0, -1, 1.5):
-        with pytest.raises(ValueError, match="every must be a whole number of at least 1"):
+        with pytest.raises(ValueError, match="every must be a whole number from 1 to 10"):
             sim.run(1.0, 0.1, every=every)
     for settings in ({"margin": -1.0}, {"q": np.nan}, {"gravity": (0.0, np.nan)}, {"k": np.inf}):
         with pytest.raises(ValueError):

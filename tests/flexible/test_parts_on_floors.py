@@ -1,4 +1,4 @@
-"""Flexible parts on floors and joints: they lie, bounce, swing and stay awake as rigid bodies do, whatever the steps."""
+"""Flexible parts on floors and joints: they lie, bounce, swing and wake as rigid bodies do, whatever the steps."""
 
 import copy
 

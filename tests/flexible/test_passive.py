@@ -148,7 +148,6 @@ def test_cams_with_dampers(damper):
         m.load(follower, torque=-0.5 - 4 * m._bodies[follower].inertia * speed**2, damper=damper)
         m.contact(cam, follower)
         r = m.run(0.1, 2e-5)
-        assert r.halved.sum() == 0
         lifts.append(np.ptp(r.hub[1000:, follower]))
     assert np.abs(np.array(lifts) / lifts[0] - 1).max() < 5e-3
 
