@@ -16,7 +16,7 @@ from rigidarea.flexible.tension import between
 
 NOT_FINITE, COARSE = -11, -12
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
-IMPACT_HALVINGS = 10  # one in which bodies come together or part, so many times
+IMPACT_HALVINGS = 16  # one in which bodies come together or part, so many times
 RESOLVED = (
     0.3  # step times the highest angular frequency of a contact that it follows: a blow then comes back about
 )
@@ -208,7 +208,7 @@ def run_steps(  # type: ignore[no-untyped-def]
     for n in range(first, last):
         if filled[1] + len(buf.regions) > len(regions) or (keep and filled[2] + nodes > len(loads)):
             return n, 0
-        parts = 1
+        parts, most = 1, HALVINGS
         while True:
             _copy(state, saved)
             keep_springs(buf, 1, 2)
@@ -238,7 +238,9 @@ def run_steps(  # type: ignore[no-untyped-def]
                 return n, code
             parts *= 2
             filled[4] += 1
-            if parts > 2 ** (IMPACT_HALVINGS if code == COARSE else HALVINGS):
+            if code == COARSE:
+                most = IMPACT_HALVINGS
+            if parts > 2**most:
                 return n, code
         filled[3] = max(filled[3], used)
         if (n + 1) % every > 0:
