@@ -61,7 +61,7 @@ def test_geneva_levels_and_hook():
 
 
 def test_geneva_sweep_of_steps_counts_what_large_steps_cost():
-    """Halved steps and the attempts before them are in the cost; coarse steps are marked, fine ones hardly halved: where
+    """Halved steps and attempts before them are in the cost; coarse steps are marked, fine ones hardly halved, where
     the pin comes and goes."""
     start = geneva_case.simulation("rigid")[1]
     fine, coarse = (
