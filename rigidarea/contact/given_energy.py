@@ -8,9 +8,9 @@ friction's cone as both do, and its work is a square of the part: the largest pa
 joints do counts as well, through which a contact may give what it does not itself; not what motors and springs do.
 
 Joints give energy as they mend errors of place, without bound where two contradict each other on one body: its island
-may have as much of it as if every body went at all their speeds together, ½ M T^2 + ½ I R^2 (M, I: its mass and moment;
-T, R: the sums of its joints' mending speeds), and as it takes to mend against the load that they bore before: a hanging
-bridge is lifted. What gives more is mixed with a solve that mends nothing.
+may have as much of it as if every body went at each of their speeds, ½ M Σ T^2 + ½ I Σ R^2 (M, I: its mass and moment;
+T, R: its joints' mending speeds), and as it takes to mend against the load that they bore before: a hanging bridge is
+lifted. What gives more is mixed with a solve that mends nothing.
 """
 
 from __future__ import annotations
@@ -85,9 +85,9 @@ def _note_held(tables: Tables) -> None:
         if _holds(_kind(tables, row)):
             t1, tt = mending_speeds(row)
             if row.nx != 0.0 or row.ny != 0.0:
-                island.mending += math.sqrt(t1 * t1 + tt * tt)
+                island.mending += t1 * t1 + tt * tt
             else:
-                island.turning += abs(t1)
+                island.turning += t1 * t1
             island.lifted += min(row.held, max(0.0, -(row.l1 * t1 + row.lt * tt)))  # a blow is no load
         elif row.ends > 0:
             island.held += 0.5 * (1.0 - row.theta) * row.held
@@ -108,8 +108,7 @@ def _note_held(tables: Tables) -> None:
         island = tables.islands[k]
         island.held += min(island.product, LOOSE * island.energy)
         island.product = 0.0
-        island.mending *= island.mass * island.mending
-        island.mending += island.moment * island.turning * island.turning + 2.0 * island.lifted
+        island.mending = island.mass * island.mending + island.moment * island.turning + 2.0 * island.lifted
 
 
 @kernel
