@@ -10,8 +10,9 @@ a part of the mean |φ_eff|.
 
 Steps. The paper's cost has its minimum at 0.4 ms and rises beyond, as its Newton iterations grow. Here they grow too,
 from 3 to 7 a step at 50 ms, but far slower than the number of steps falls, so the minimum lies there, two orders
-beyond. At 0.1 and 0.2 s, when the whole engagement is a few steps, iterations multiply, steps are halved, and the cost
-rises again; accuracy ends before, at 30 ms, and bounds the step, not cost (Fig. 19, ``steps``).
+beyond. At 0.1 s, when the whole engagement is a few steps, iterations multiply, steps are halved, and the cost rises
+again; at 0.2 s the step is given up. Accuracy ends before, at 30 ms, and bounds the step, not cost (Fig. 19,
+``steps``).
 """
 
 from __future__ import annotations
