@@ -16,6 +16,7 @@ from ..compile.jit import callback, kernel
 from ..compile.raw_memory import array_at
 from ..contact.space_record import load_tables
 from ..contact.tables import COUNTED, TOLD, Tables, find_pair
+from ..contact.verdict import go_on
 from .awake import look_again
 from .begin import begin, listened
 from .frame import whole_frame
@@ -53,6 +54,8 @@ def silence(constraint: int, dt: float) -> None:
             count = array_at(pair.arbiter + s.arbiter_count, (1,), np.int32)
             pair.points = count[0]
             count[0] = 0
+        elif pair.owed > 0.0:
+            go_on(tables, pair)
     if not s.asleep:
         return
     for arbiter in members(space, s.space_contacts - 8):

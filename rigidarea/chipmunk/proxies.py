@@ -54,11 +54,9 @@ def _side(s: Any, tables: Tables, i: int, pose: Pose, j: int, other_pose: Pose) 
         side = pair.side_a if pair.a == i else pair.side_b
         kept = pair.kept_a if pair.a == i else pair.kept_b
         if pair.head < 0:
-            side = faces(
-                load_pool(s), shape.outline, pose, tables.shapes[j].outline, other_pose, side, kept, 0.0
-            )
+            side = faces(load_pool(s), shape.outline, pose, tables.shapes[j], other_pose, side, kept, 0.0)
     if side == 0:
-        side = faces(load_pool(s), shape.outline, pose, tables.shapes[j].outline, other_pose, 0, kept, 0.0)
+        side = faces(load_pool(s), shape.outline, pose, tables.shapes[j], other_pose, 0, kept, 0.0)
     return int(shape.outline if side > 0 else shape.mirror)
 
 

@@ -168,6 +168,7 @@ PAIR = record(
         # frame in which it last waited for its verdict, since a callback of the user's will hear of it
         ("waiting", "i8"),
         ("waited", "f8"),  # how long, in that frame (time)
+        ("owed", "f8"),  # by how much the two have been put back for it when the last frame ended (time)
         ("arbiter", "u8"),  # Chipmunk's arbiter in that frame
         ("friction", "f8"),
         ("elasticity", "f8"),

@@ -10,7 +10,7 @@ from ..geometry.locate import way_into
 from ..geometry.overlap import A_EDGE, Relative, Work
 from ..geometry.place import Pose
 from ..geometry.pool import Pool
-from .constants import SMOOTH
+from .constants import PUT, SMOOTH
 from .tables import Tables
 
 
@@ -58,10 +58,12 @@ def over(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose) -> tuple[
 
 
 @kernel
-def _nearest_height(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, last: bool) -> float:
+def _nearest_height(
+    pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, last: bool, slack: float
+) -> float:
     """To which side of a segment another outline is from its first end, or its last: left positive (length^2).
 
-    0: it is about straight on.
+    0: it is about straight on, or a corner of it is no farther than what a solve may leave, `slack` (length).
     """
     head = pool.heads[i]
     p = head.point
@@ -72,7 +74,7 @@ def _nearest_height(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose
     x = pose.x + pose.c * lx - pose.s * ly - other_pose.x
     y = pose.y + pose.s * lx + pose.c * ly - other_pose.y
     it = pool.heads[other]
-    ux, uy = way_into(
+    ux, uy, corner = way_into(
         pool,
         other,
         other_pose.c * x + other_pose.s * y - it.x,
@@ -81,15 +83,17 @@ def _nearest_height(pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose
     wx = other_pose.c * ux - other_pose.s * uy
     wy = other_pose.s * ux + other_pose.c * uy
     across = dx * (pose.c * wy - pose.s * wx) - dy * (pose.c * wx + pose.s * wy)
+    if corner <= slack:
+        return 0.0
     straight_on = across * across <= SMOOTH * (dx * dx + dy * dy) * (wx * wx + wy * wy)
     return 0.0 if straight_on else float(across)
 
 
 @kernel
 def faces(
-    pool: Pool, i: int, pose: Pose, other: int, other_pose: Pose, before: int, kept: int, way: float
+    pool: Pool, i: int, pose: Pose, it: Any, other_pose: Pose, before: int, kept: int, way: float
 ) -> int:
-    """Which solid side a two-sided segment shows to another outline: 1 outline i, -1 its mirror.
+    """Which solid side a two-sided segment shows to another shape: 1 outline i, -1 its mirror.
 
     The solid lies to the left of outline i's first edge, the segment, and the other outline's middle decides: the
     solid is on the far side of it. Where that is past an end, it says nothing (of a plank that lies across a peak it is
@@ -99,6 +103,7 @@ def faces(
     `kept`: on which side of it the other one has stayed when the last frame ended (`passed`), 0: not known. What
     bounces off one wall of a corner has its middle over neither, and may have gone a substep's `way` (length) too far.
     """
+    other = it.outline
     height, along, length = over(pool, i, pose, other, other_pose)
     radius = pool.heads[other].radius
     if kept != 0 and abs(height) < radius + way:
@@ -107,7 +112,7 @@ def faces(
     if before != 0 and abs(height) < radius and over_it:
         return before
     if not over_it and abs(height) < radius and not pool.heads[other].disc:
-        nearest = _nearest_height(pool, i, pose, other, other_pose, along > 0.0)
+        nearest = _nearest_height(pool, i, pose, other, other_pose, along > 0.0, PUT * it.extent)
         height = nearest if nearest != 0.0 else height
     return 1 if height <= 0.0 else -1
 
@@ -134,13 +139,13 @@ def shown_sides(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pos
     if sa.mirror >= 0:
         if pair.head < 0 or pair.side_a == 0:
             way = _way(a, pose_a, b, pose_b)
-            pair.side_a = faces(pool, ia, pose_a, ib, pose_b, pair.side_a, pair.kept_a, way)
+            pair.side_a = faces(pool, ia, pose_a, sb, pose_b, pair.side_a, pair.kept_a, way)
         if pair.side_a < 0:
             ia = sa.mirror
     if sb.mirror >= 0:
         if pair.head < 0 or pair.side_b == 0:
             way = _way(a, pose_a, b, pose_b)
-            pair.side_b = faces(pool, sb.outline, pose_b, sa.outline, pose_a, pair.side_b, pair.kept_b, way)
+            pair.side_b = faces(pool, sb.outline, pose_b, sa, pose_a, pair.side_b, pair.kept_b, way)
         if pair.side_b < 0:
             ib = sb.mirror
     return ia, ib

@@ -230,6 +230,7 @@ def _renew(pair: Any) -> None:
     pair.axis_y = 0.0
     pair.parted = -1
     pair.waiting = -1
+    pair.owed = 0.0
 
 
 @entry

@@ -11,7 +11,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..geometry.clearance import clearance
 from ..geometry.overlap import OVERFLOW
-from ..geometry.place import overlap_of_outlines, place, seen_from
+from ..geometry.place import place, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .birth import size_of
@@ -108,31 +108,47 @@ def _put_back(body: Any, back: float) -> None:
 
 
 @kernel
+def _underway(body: Any, dt: float) -> float:
+    """For how long a body has come at its velocity when a frame of dt ends: longer where it has gone on (`go_on`)."""
+    square = body.vx * body.vx + body.vy * body.vy
+    if body.kind != DRIFTS or square == 0.0:
+        return dt
+    way = (body.x - body.old_x) * body.vx + (body.y - body.old_y) * body.vy
+    return float(max(dt, min(2.0 * dt, way / square)))
+
+
+@kernel
 def wait_for_verdicts(pool: Pool, tables: Tables, work: Work, frame: int, dt: float) -> bool:
     """After a frame of dt: what has passed a shape that the user is to be asked about goes back to where they touch.
 
-    Not what overlaps it still, which Chipmunk will report where it is; a line does not say so of its solid side.
-    False: the scratch is too small.
+    What it has lost by that it gets where the user lets it through (`go_on`). False: the scratch is too small.
     """
     for i in range(tables.counters[NEAR]):
         pair = tables.pairs[tables.near[i].pair]
+        pair.owed = 0.0
         if pair.stamp == frame or not _heard(tables, pair):
             continue
         a = tables.bodies[tables.near[i].a]
         b = tables.bodies[tables.near[i].b]
-        looks = jumped(tables, pair, a, b, dt)
+        time = max(_underway(a, dt), _underway(b, dt))
+        looks = jumped(tables, pair, a, b, time)
         if looks == 1 or (a.kind != DRIFTS and b.kind != DRIFTS):
             continue
-        ia, ib = shown_sides(pool, tables, pair, earlier(a, dt), earlier(b, dt))
-        lines = tables.shapes[pair.a].mirror >= 0 or tables.shapes[pair.b].mirror >= 0
-        n = 0 if lines else overlap_of_outlines(pool, ia, pose_of(a), ib, pose_of(b), work)[0]
-        if n > 0:
-            continue
-        n, back = overlap_before(pool, work, ia, ib, a, b, dt, afford(tables.counters, looks))
+        ia, ib = shown_sides(pool, tables, pair, earlier(a, time), earlier(b, time))
+        n, back = overlap_before(pool, work, ia, ib, a, b, time, afford(tables.counters, looks))
         if n == OVERFLOW:
             tables.counters[MORE_WORK] = 1
             return False
         if n > 0:
+            pair.owed = back
             _put_back(a, back)
             _put_back(b, back)
     return True
+
+
+@kernel
+def go_on(tables: Tables, pair: Any) -> None:
+    """What has been put back to be asked about, and is let through, is where it would be."""
+    _put_back(tables.bodies[tables.shapes[pair.a].body], -pair.owed)
+    _put_back(tables.bodies[tables.shapes[pair.b].body], -pair.owed)
+    pair.owed = 0.0

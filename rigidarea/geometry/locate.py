@@ -93,13 +93,15 @@ def nearest_edge(pool: Pool, i: int, rel: Relative, x: float, y: float) -> tuple
 
 
 @kernel
-def way_into(pool: Pool, i: int, x: float, y: float) -> tuple[float, float]:
+def way_into(pool: Pool, i: int, x: float, y: float) -> tuple[float, float, float]:
     """Which way outline i is from a point of its frame, by what of its boundary is nearest: against the normal there.
 
-    Of a corner, towards it; from it where the point is within. Of any length, 0 on the corner itself.
+    Of a corner, towards it; from it where the point is within. Of any length. And how far the nearest corner is, of two
+    straight edges (length; infinity: there is none).
     """
     head = pool.heads[i]
     least = math.inf
+    corner = math.inf
     best = (0.0, 0.0)
     for e in range(head.point, head.point + head.count):
         k = pool.following[e]
@@ -114,6 +116,8 @@ def way_into(pool: Pool, i: int, x: float, y: float) -> tuple[float, float]:
             square = dx * dx + dy * dy
             beside = 0.0 < fx * dx + fy * dy < square
             distance = (fx * dy - fy * dx) ** 2 / square
+            if head.arcs == 0 or pool.arcs[k, 2] == 0.0:
+                corner = min(corner, (fx - dx) ** 2 + (fy - dy) ** 2)
         else:  # of no more than half a turn: the way from the centre leaves between its two ends
             ux = x - pool.arcs[e, 0]
             uy = y - pool.arcs[e, 1]
@@ -131,4 +135,4 @@ def way_into(pool: Pool, i: int, x: float, y: float) -> tuple[float, float]:
         if distance < least:
             least = distance
             best = (fx, fy) if fx * dy - fy * dx < 0.0 else (-fx, -fy)
-    return best
+    return best[0], best[1], math.sqrt(corner)

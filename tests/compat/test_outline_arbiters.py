@@ -5,6 +5,7 @@ Against `rigidarea.overlap` at the places at which the bodies are when a frame b
 
 from __future__ import annotations
 
+import itertools
 import math
 import random
 
@@ -57,6 +58,10 @@ def _way(start: pymunk.Vec2d, end: pymunk.Vec2d, middle: pymunk.Vec2d, far: shap
     if 0 <= (middle - start).dot(along) <= (end - start).length:
         return middle - start
     tip = start if (middle - start).dot(along) < 0 else end
+    box = shapely.minimum_rotated_rectangle(far).exterior
+    slack = 0.1 * min(math.dist(*pair) for pair in itertools.pairwise(box.coords[:3]))
+    if shapely.distance(shapely.MultiPoint(shapely.get_coordinates(far)), shapely.Point(tip)) <= slack:
+        return middle - start  # at a corner what a solve has left may show any side
     near = pymunk.Vec2d(*shapely.shortest_line(far.boundary, shapely.Point(tip)).coords[0])
     way = (tip - near if far.contains(shapely.Point(tip)) else near - tip).normalized()
     return way if abs(along.cross(way)) > math.sqrt(0.02) else middle - start
