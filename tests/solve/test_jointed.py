@@ -43,9 +43,11 @@ def test_who_was_shot_is_not(seed):
 
 @pytest.mark.slow
 def test_of_many_scenes_hardly_one_shoots():
-    """Of 3,000 at most 22: measured 17. By pymunk's own response one in seven or more, the other way round: 443.
+    """Of 3,000 at most 20: measured 14. By pymunk's own response one in seven or more, the other way round: 443.
 
     (6 to 10 before faces that bear on one end took part in the search, and a crank was no sway: 13 without the first.)
+
+    (17 while what joints mend counted as if all their speeds were one's, and a capsule across a thin one was thrown.)
 
     (75 while joints that nearly contradict each other were all held, 20 while those that do gave what it took. What is
     left: paddles and platforms that wedge bodies in corners.)
@@ -54,7 +56,7 @@ def test_of_many_scenes_hardly_one_shoots():
     ours = sum(flies_off(here, there) for here, there in speeds)
     theirs = sum(flies_off(there, here) for here, there in speeds)
     print(f"of {len(speeds)} scenes a body flies off in {ours}, by pymunk's own response in {theirs}")
-    assert ours <= 22
+    assert ours <= 20
     assert theirs >= len(speeds) / 7
 
 
