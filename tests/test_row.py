@@ -87,7 +87,7 @@ def test_a_visit_solves_its_row(kernel: Any, a: Any, b: Any, c: Any, h: float, a
         + row["arm_a"] ** 2 * a["inverse_moment"] + row["arm_b"] ** 2 * b["inverse_moment"]
     )  # fmt: skip
     force = c["stiffness"] * c["area"]
-    slope = max(c["stiffness"] * c["chord"], force / 0.04)  # no less than the secant, at the depth of `row_of`
+    slope = max(c["stiffness"] * c["chord"], force / 0.04)  # no less than the secant
     damper = damping(kernel, slope, inverse, h, c["elasticity"], FOLLOWED)
     kernel.row.visit(row, a, b)
     asked = h * (force + damper * closing(row, a, b))
