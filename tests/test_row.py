@@ -30,7 +30,7 @@ def row_of(kernel: Any, a: Any, b: Any, h: float, **changes: Any) -> SimpleNames
     law = law._replace(**{n: changes.pop(n) for n in list(changes) if n in ("followed", "law", "length")})
     for name in ("friction", "elasticity", "surface_x", "surface_y"):
         pair[name] = changes.pop(name, 1.0 if name == "elasticity" else 0.0)
-    fields = dict(area=0.02, depth=0.04, chord=0.5, nx=0.0, ny=-1.0, stiffness=1e4, step=h) | changes
+    fields = dict(area=0.02, depth=DEPTH, chord=0.5, nx=0.0, ny=-1.0, stiffness=1e4, step=h) | changes
     for name, value in fields.items():
         r[name] = value
     r = r[0]
@@ -58,6 +58,7 @@ def damping(kernel: Any, stiffness: float, inverse: float, h: float, e: float, f
 
 
 FOLLOWED = 0.05
+DEPTH = 0.04  # of a row's region, unless it is said
 speeds = st.floats(-10, 10, allow_subnormal=False)
 places = st.floats(-2, 2, allow_subnormal=False)
 inverses = st.floats(1e-2, 10)
@@ -87,7 +88,7 @@ def test_a_visit_solves_its_row(kernel: Any, a: Any, b: Any, c: Any, h: float, a
         + row["arm_a"] ** 2 * a["inverse_moment"] + row["arm_b"] ** 2 * b["inverse_moment"]
     )  # fmt: skip
     force = c["stiffness"] * c["area"]
-    slope = max(c["stiffness"] * c["chord"], force / 0.04)  # no less than the secant
+    slope = max(c["stiffness"] * c["chord"], force / DEPTH)  # no less than the secant
     damper = damping(kernel, slope, inverse, h, c["elasticity"], FOLLOWED)
     kernel.row.visit(row, a, b)
     asked = h * (force + damper * closing(row, a, b))

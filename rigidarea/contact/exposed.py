@@ -246,9 +246,8 @@ def _exposed(
         there = two.tables.shapes[mover]
         x = 0.5 * (there.left + there.right)
         y = 0.5 * (there.bottom + there.top)
-        if not lies_within(
-            two, own, mover, body, x, y, look.room, Outward(0.0, 0.0), 0.0
-        ):  # it is not put into the midst of them
+        # it is not put into the midst of them
+        if not lies_within(two, own, mover, body, x, y, look.room, Outward(0.0, 0.0), 0.0):
             # all of it within neighbours, which say where the body can go
             return _turned(patch, 0.0, patch.x, patch.y, patch.nx, patch.ny, patch.reach), True, False
     if length == 0.0:

@@ -17,10 +17,9 @@ from rigidarea.flexible.tension import between
 NOT_FINITE, COARSE = -11, -12
 HALVINGS = 6  # a step is tried at h, h/2, … h/64, then given up
 IMPACT_HALVINGS = 16  # one in which bodies come together or part, so many times
-RESOLVED = (
-    0.3  # step times the highest angular frequency of a contact that it follows: a blow then comes back about
-)
-# 0.5 % too fast (from 1 on energy is multiplied), and the frequency is off by (0.3)²/24 = 0.4 %
+# Step times the highest angular frequency of a contact that it follows: a blow then comes back about 0.5 % too fast
+# (from 1 on energy is multiplied), and the frequency is off by (0.3)²/24 = 0.4 %.
+RESOLVED = 0.3
 BODY = 8  # columns of a body in a row of the record: frame, its velocity, hub's angle and its rate
 HEAD = 7  # columns before the bodies': time, iterations, halvings, strain and kinetic energy, regions, loads
 
