@@ -12,7 +12,7 @@ from ..geometry.place import Pose, overlap_of_outlines
 from .constants import FOLLOWED, MOST_ARRIVED, PUT, PUT_FOLLOWED, REST_KICKS, SMOOTH
 from .exposed import exposed_patch
 from .landing import find_other_end
-from .motion import centre_of, earlier, since_of, unseen_for
+from .motion import centre_of, earlier, since_of, soonest_touch, unseen_for
 from .neighbours import TwoShapes
 from .region import closing, fill, inverse_mass, is_face, others_push, put_closer, region_stiffness
 from .stiffness import depth_for, stiffness_of
@@ -322,6 +322,9 @@ def expect(two: TwoShapes, region: Any, ahead: float, h: float, first: bool) -> 
     region.mode = NEARING
     if is_face(region):
         ahead = _as_it_touches(two, region, ahead)
+    else:  # a part's chord may say that it is deeper than the way after first touch
+        way = u * (ahead - soonest_touch(two.pool, two.tables, pair, a, b))
+        region.depth = max(0.0, min(region.depth, way))
     region.first_speed = 0.0
     # in a stack both fall alike, and it will carry something all the same
     rest = max(law.gravity / (inverse * pair.rate), depth_for(law, pair, region, gain / inverse))

@@ -5,7 +5,6 @@ Whoever is looked at ahead leaves what parts it: it is looked at anew once the s
 
 from __future__ import annotations
 
-import math
 from typing import Any
 
 import numpy as np
@@ -20,8 +19,9 @@ from .broad import swing
 from .constants import LOOK
 from .joint import make_joint_row
 from .meet import has_seats, meet, meet_ahead
-from .motion import earlier, jumped, little, pose_of
+from .motion import closing_along_axis, earlier, jumped, little, pose_of
 from .row import make_row
+from .stiffness import allowed_depth
 from .tables import (
     BOXED,
     CONCAVE,
@@ -31,6 +31,7 @@ from .tables import (
     JOINTS,
     LAST,
     LIVE,
+    LYING,
     MORE_PAIRS,
     MORE_REGIONS,
     MOVERS,
@@ -139,16 +140,14 @@ def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
 
 
 @kernel
-def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float) -> float:
-    """How far apart a pair is in h at least (length); nothing, or less, where it may overlap then."""
+def _stays_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float, part: float) -> float:
+    """How far apart a pair is in h at least (length); nothing, or less, where it may overlap then.
+
+    part: of the kicks, what is taken off.
+    """
     if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
         return _boxes_apart(tables, pair, -h)
-    nx = a.c * pair.axis_x - a.s * pair.axis_y
-    ny = a.s * pair.axis_x + a.c * pair.axis_y
-    closing = (a.vx - b.vx) * nx + (a.vy - b.vy) * ny
-    closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
-    closing += abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
-    apart = pair.gap - h * closing
+    apart = float(pair.gap - h * closing_along_axis(pool, tables, pair, a, b, part))
     return apart if apart > 0.0 else _boxes_apart(tables, pair, -h)
 
 
@@ -159,16 +158,6 @@ def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
     if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
         return 0.0
     return float(min(least, _gap(pool, tables, pair, earlier(a, -h), earlier(b, -h))))
-
-
-@kernel
-def _farthest(pool: Pool, shape: Any, body: Any) -> float:
-    """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
-    head = pool.heads[shape.outline]
-    dx = head.x - body.cog_x
-    dy = head.y - body.cog_y
-    own = 0.0 if head.disc else head.radius
-    return float(math.sqrt(dx * dx + dy * dy) + own)
 
 
 @kernel
@@ -304,14 +293,23 @@ def _stray(tables: Tables, h: float) -> None:
         )
 
 
+@kernel(forceinline=True)
+def _lie(a: Any, b: Any) -> bool:
+    """Whether both lay on something a substep ago: that bears their kicks."""
+    return (not a.mobile or a.pushed >= LYING) and (not b.mobile or b.pushed >= LYING)
+
+
 @kernel
-def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float, seats: bool) -> bool:
+def _look_ahead(
+    pool: Pool, tables: Tables, law: Law, near: Any, a: Any, b: Any, h: float, first: bool
+) -> bool:
     """Whether a pair must be asked if it overlaps in h. If not, by how much more the two may stray until it must."""
     pair = tables.pairs[near.pair]
     if a.inverse_mass == 0.0 and b.inverse_mass == 0.0:
         near.room = np.inf
         return False
     strayed = a.strayed + b.strayed
+    seats = first and pair.seats
     near.room = 0.0
     known = 0.0
     if pair.head >= 0 or pair.covered:
@@ -326,7 +324,8 @@ def _look_ahead(pool: Pool, tables: Tables, near: Any, a: Any, b: Any, h: float,
         if way >= 0.0 or jumped(tables, pair, a, b, h) == 1:
             near.room = way - strayed
             return False  # it has met already, and turns too little to come down elsewhere
-    apart = _stays_apart(pool, tables, pair, a, b, h)
+    borne = first and _lie(a, b) and pair.gap > allowed_depth(law, a, b)
+    apart = _stays_apart(pool, tables, pair, a, b, h, 1.0 if borne else 0.0)
     if apart <= 0.0 and pair.head < 0:
         apart = _apart_then(pool, tables, pair, a, b, h)
     near.room = apart - strayed
@@ -350,9 +349,7 @@ def join(pool: Pool, tables: Tables, work: Work, law: Law, frame: int, h: float,
         if not first and a.strayed + b.strayed < near.room:
             continue
         pair = tables.pairs[near.pair]
-        if not _look_ahead(pool, tables, near, a, b, h, first and pair.seats) or not allowed(
-            tables, pair, frame
-        ):
+        if not _look_ahead(pool, tables, law, near, a, b, h, first) or not allowed(tables, pair, frame):
             continue
         old = pair.head
         if not meet_ahead(pool, tables, work, law, near.pair, h, first):

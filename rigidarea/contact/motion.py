@@ -15,7 +15,7 @@ from .broad import swing
 from .constants import LOOK, MOST_LOOKS
 from .patch import deepest_of
 from .sides import shown_sides
-from .tables import BODIES, DRIFTS, LOOKS_LEFT, Tables
+from .tables import BODIES, DRIFTS, LOOKS_LEFT, SUBSTEP, Tables
 
 #: Looks (one overlap each) of a frame: so many, and so many a body; after that FEWEST_LOOKS each time. A frame then
 #: ends in known time, but what moves by many times its size may pass another that moves unseen. What wants MOST_LOOKS
@@ -190,3 +190,33 @@ def meets_within(pool: Pool, tables: Tables, work: Work, pair: Any, h: float) ->
     looks = afford(tables.counters, jumped(tables, pair, a, b, h))
     n, _ = time_of_impact(pool, work, ia, ib, a, b, h, looks, 0.0)
     return n
+
+
+@kernel
+def _farthest(pool: Pool, shape: Any, body: Any) -> float:
+    """At most so far from the body's centre a point of its outline is turned about (length); a disc turns under it."""
+    head = pool.heads[shape.outline]
+    dx = head.x - body.cog_x
+    dy = head.y - body.cog_y
+    own = 0.0 if head.disc else head.radius
+    return float(math.sqrt(dx * dx + dy * dy) + own)
+
+
+@kernel
+def closing_along_axis(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, part: float) -> float:
+    """How fast a pair closes at most along what parts it (length/time), less `part` of the kicks."""
+    nx = a.c * pair.axis_x - a.s * pair.axis_y
+    ny = a.s * pair.axis_x + a.c * pair.axis_y
+    closing = (a.vx - b.vx - part * (a.kick_x - b.kick_x)) * nx
+    closing += (a.vy - b.vy - part * (a.kick_y - b.kick_y)) * ny
+    closing += abs(a.w) * _farthest(pool, tables.shapes[pair.a], a)
+    return closing + abs(b.w) * _farthest(pool, tables.shapes[pair.b], b)
+
+
+@kernel
+def soonest_touch(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> float:
+    """In what time a pair touches at the soonest, as far as is known of what parts it (time)."""
+    if pair.parted != tables.counters[SUBSTEP] or pair.gap <= 0.0:
+        return 0.0
+    closing = closing_along_axis(pool, tables, pair, a, b, 0.0)
+    return float(pair.gap / closing) if closing > 0.0 else 0.0
