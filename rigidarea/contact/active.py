@@ -175,27 +175,45 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
 def list_active(tables: Tables) -> None:
     """List the islands that are active, their rows, in order, and their bodies with all that nothing moves."""
     counters = tables.counters
-    n = 0
+    counters[ACTIVE] = counters[ISLANDS]
     for k in range(counters[ISLANDS]):
-        if tables.islands[k].active:
-            tables.islands[n].listed = k
+        tables.islands[k].listed = k
+    counters[QUEUE] = counters[ROWS]
+    for r in range(counters[ROWS]):
+        tables.queue[r].row = r
+        tables.queue[r].island = island_of(tables, tables.rows[r])
+    counters[MEMBERS] = counters[LIVE]
+    for k in range(counters[LIVE]):
+        tables.members[k] = tables.live[k]
+        tables.mobility[tables.live[k]].solved = 0
+    _leave_solved(tables)
+
+
+@kernel
+def _leave_solved(tables: Tables) -> None:
+    """Take islands that are active no more out of the lists."""
+    counters = tables.counters
+    n = 0
+    for k in range(counters[ACTIVE]):
+        number = tables.islands[k].listed
+        if tables.islands[number].active:
+            tables.islands[n].listed = number
             n += 1
     counters[ACTIVE] = n
     n = 0
-    for r in range(counters[ROWS]):
-        number = island_of(tables, tables.rows[r])
-        if tables.islands[number].active:
-            tables.queue[n].row = r
-            tables.queue[n].island = number
+    for k in range(counters[QUEUE]):
+        queued = tables.queue[k]
+        if tables.islands[queued.island].active:
+            tables.queue[n].row = queued.row
+            tables.queue[n].island = queued.island
             n += 1
     counters[QUEUE] = n
     n = 0
-    for k in range(counters[LIVE]):
-        i = tables.live[k]
+    for k in range(counters[MEMBERS]):
+        i = tables.members[k]
         number = tables.mobility[i].island
-        active = number < 0 or tables.islands[number].active
-        tables.mobility[i].solved = not active
-        if active:
+        tables.mobility[i].solved = number >= 0 and not tables.islands[number].active
+        if not tables.mobility[i].solved:
             tables.members[n] = i
             n += 1
     counters[MEMBERS] = n
@@ -217,7 +235,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
             island.active = 0
             dropped = True
     if dropped:
-        list_active(tables)
+        _leave_solved(tables)
 
 
 @kernel
@@ -227,4 +245,4 @@ def rest_small(tables: Tables) -> None:
         island = active_island(tables, k)
         if island.moved <= island.small and not island.still:
             island.active = 0
-    list_active(tables)
+    _leave_solved(tables)
