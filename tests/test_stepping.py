@@ -239,3 +239,20 @@ def test_a_body_put_inside_another_is_let_out_not_shot_out(depth, steps):
         heights.append(body.position.y)
     assert max(heights) < 3.5 + 8 * depth
     assert heights[-1] == pytest.approx(3.5, abs=2e-3)
+
+
+@pytest.mark.parametrize("gravity", [0.0, 900.0])
+def test_what_hardly_moves_takes_one_substep(gravity):
+    """Six crates seen from above, or on a floor, touching and at rest but for a creep: weight has no part in that."""
+    space = pymunk.Space()
+    space.gravity = 0, -gravity
+    if gravity:
+        space.add(pymunk.Segment(space.static_body, (-100, -20), (400, -20), 5))
+    for i in range(6):
+        crate = pymunk.Body(1, 150)
+        crate.position = 29.99 * i, 0
+        crate.velocity = 1e-3, 0
+        space.add(crate, pymunk.Poly.create_box(crate, (30, 30)))
+    contact = ra.attach(space)
+    contact.step(1 / 60, frames=300)
+    assert contact.step(1 / 60) == 1

@@ -10,6 +10,7 @@ from ..contact.bend import bend_again
 from ..contact.blows import blows
 from ..contact.conjugate import conjugate_gradients, search_all
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
+from ..contact.driven import lessen_driven
 from ..contact.given_energy import begin_again, contacts_give_energy, mix
 from ..contact.islands import share_kicks
 from ..contact.join import SPARE, any_pair_touches, gather, has_room, join, no_pair_comes_near
@@ -199,6 +200,7 @@ def substeps(s: Any, space: int, dt: float, n: int) -> bool:
         lap(s, ITERATIONS)
         _relax(s, tables, h, sweeps)
         _give_no_energy(tables, load_law(s), sweeps)
+        lessen_driven(tables, load_law(s))
         if joints > 0:
             free_turning(tables)
         finish(tables, load_law(s), s.frame, h, i == n - 1)

@@ -15,6 +15,7 @@ from ..compile.jit import kernel
 from ..compile.raw_memory import record
 from .constants import LEFT, MOVED, SETTLED
 from .islands import root_of, unite
+from .motion import kick_of
 from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
@@ -27,10 +28,14 @@ ISLAND = record(
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
-        ("still", "i1"),  # 1: contacts bear it, and neither speeds nor springs could do more than a kick
+        ("still", "i1"),  # 1: contacts bear it, neither speeds nor springs do more than a kick
+        ("driven", "i1"),  # 1: something that moves as it is told touches it
         ("listed", "i4"),  # number of the island that has this place among those that are active
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
         ("mass", "f8"),
+        ("extent", "f8"),  # of its smallest body (length)
+        ("pushed", "f8"),  # sum of its masses times their kicks squared
+        ("closing", "f8"),  # fastest that two close, or part, where its rows are (length/time)
         ("x", "f8"),  # momentum
         ("y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
@@ -39,6 +44,10 @@ ISLAND = record(
         ("turning", "f8"),  # and rotary ones (1/time)
         ("lifted", "f8"),  # what they do against what they bore, as they mend (energy)
         ("held", "f8"),  # what its rows' springs hold, and could give back (energy)
+        ("low_x", "f8"),  # velocities of what it touches that no impulse moves (`driven`)
+        ("low_y", "f8"),
+        ("high_x", "f8"),
+        ("high_y", "f8"),
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
@@ -136,16 +145,21 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.energy = 0.0
         island.held = 0.0
         island.still = 0
+        island.extent = math.inf
+        island.pushed = 0.0
+        island.closing = 0.0
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
         if number < 0:
             continue
         body = tables.bodies[tables.live[k]]
         island = tables.islands[number]
+        island.extent = min(island.extent, body.extent)
         vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
         if body.inverse_mass > 0.0:
             own = 1.0 / body.inverse_mass
             island.mass += own
+            island.pushed += own * (body.kick_x * body.kick_x + body.kick_y * body.kick_y)
             island.x += own * vx
             island.y += own * vy
             island.energy += 0.5 * own * (vx * vx + vy * vy)
@@ -157,9 +171,10 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island = tables.islands[island_of(tables, row)]
             island.held += row.held
             island.still = 1
+            island.closing = max(island.closing, abs(tables.regions[row.region].speed))
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        kick = law.gravity * h
+        kick = kick_of(law, island.extent, h)
         speed = 0.0
         able = 0.0
         if island.mass > 0.0:  # what is the same for all is nobody's speed
@@ -167,8 +182,9 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.energy = max(0.0, island.energy - common)
             speed = math.sqrt(2.0 * island.energy / island.mass)
             able = math.sqrt(2.0 * (island.energy + island.held) / island.mass)
+            kick = max(kick, math.sqrt(island.pushed / island.mass))
         island.small = LEFT * kick + MOVED * speed
-        island.still = island.still and able < kick
+        island.still = island.still and max(able, island.closing) < kick
 
 
 @kernel

@@ -21,7 +21,7 @@ from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
-from .motion import earlier, pose_of
+from .motion import earlier, kick_of, pose_of
 from .order import arrange, bound, enlist, turn_of
 from .sides import shown_sides
 from .tables import (
@@ -100,10 +100,10 @@ def demand(
     """
     most = 1 if free else n
     least = FINEST
-    slow = CALM * law.gravity * dt
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
+        slow = CALM * kick_of(law, body.extent, dt)
         body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
             3.0 * slow if before else slow
         )

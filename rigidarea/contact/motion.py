@@ -15,7 +15,7 @@ from .broad import swing
 from .constants import LOOK, MOST_LOOKS
 from .patch import deepest_of
 from .sides import shown_sides
-from .tables import BODIES, DRIFTS, LOOKS_LEFT, SUBSTEP, Tables
+from .tables import BODIES, DRIFTS, LOOKS_LEFT, SUBSTEP, Law, Tables
 
 #: Looks (one overlap each) of a frame: so many, and so many a body; after that FEWEST_LOOKS each time. A frame then
 #: ends in known time, but what moves by many times its size may pass another that moves unseen. What wants MOST_LOOKS
@@ -56,6 +56,12 @@ def centre_of(body: Any, pose: Pose) -> tuple[float, float]:
         pose.x + pose.c * body.cog_x - pose.s * body.cog_y,
         pose.y + pose.s * body.cog_x + pose.c * body.cog_y,
     )
+
+
+@kernel(forceinline=True)
+def kick_of(law: Law, extent: float, h: float) -> float:
+    """What gravity gives in h; without weight, what takes a body of that extent as deep as it may lie (length/time)."""
+    return float(law.gravity * h if law.gravity > 0.0 else law.penetration * extent / h)
 
 
 @kernel(forceinline=True)

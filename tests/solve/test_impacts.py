@@ -248,20 +248,26 @@ def test_momentum_of_free_bodies_with_friction(stiffness, steps, record_property
 @pytest.mark.shown
 @pytest.mark.parametrize("mu", [0.3, 0.6, 1.0])
 @pytest.mark.parametrize("angle", [0.3, 0.5, 0.7, 0.9])
-def test_a_bar_that_friction_turns_round_gains_no_energy(angle, mu, record_property):
+@pytest.mark.parametrize("gravity", [0.0, 0.01, 1.0])
+def test_a_bar_that_friction_turns_round_gains_no_energy(gravity, angle, mu, record_property):
     """A slanted bar hits the floor with its corner, sliding. Newton's restitution gave it a fifth more energy.
 
     (Kane's puzzle: where friction turns the slip round, it has work to give back.) 1 %: what a solve is let go on with.
+    Under gravity a bar that comes without turning was taken for one that lies, and gained 18 %.
     """
     for slide in (0.0, 0.3, 0.6, 1.0):
         for elasticity in (0.9, 1.0):
-            world = World(friction=mu, elasticity=elasticity)
+            world = World(gravity, friction=mu, elasticity=elasticity)
             world.floor()
-            world.box((0, 0.7), (1.0, 0.06), angle=angle, velocity=(slide, -1.0))
-            before = world.kinetic()
+            bar = world.box((0, 0.7), (1.0, 0.06), angle=angle, velocity=(slide, -1.0))
+
+            def energy(world=world, bar=bar):
+                return world.kinetic() + bar.mass * gravity * bar.position.y
+
+            before = energy()
             world.step(None, frames=60)
-            record_property("bar_energy", world.kinetic() / before)
-            assert world.kinetic() <= 1.01 * before
+            record_property("bar_energy", energy() / before)
+            assert energy() <= 1.01 * before
 
 
 @pytest.mark.shown
