@@ -10,6 +10,7 @@ from ..contact.join import may_touch
 from ..contact.motion import meets_within, start_looks
 from ..contact.space_record import load_pool, load_tables, load_work, row_of_body
 from ..contact.tables import FIXED, MORE_WORK, NEAR, TURN
+from .phases import start
 from .record import members, notice, state_of, user_data
 from .structs import function
 from .substep import near_pairs
@@ -34,6 +35,7 @@ def rouse(space: int, dt: float) -> int:
     s = state_of(space)
     if s.asleep == 0 or s.explicit or len(members(space, s.space_bodies)) == 0:
         return 1
+    start(s)
     tables = load_tables(s)
     forget_the_gone(tables)
     for address in members(space, s.space_bodies):

@@ -107,9 +107,9 @@ def _stiffen(row: Any) -> bool:
     row.was_t = row.lt
     if row.ends == 0:
         return False
-    if row.jammed:  # it bears what it must, and held overlapped by a joint it presses nobody
-        row.f1 = 0.0
-        row.f2 = 0.0
+    if row.jammed:  # held overlapped by a joint: what that bears it goes on bearing, and opens no faster
+        row.f1 = row.l1
+        row.f2 = row.l2
         row.held = 0.0
         return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:

@@ -7,6 +7,8 @@ import pymunk
 import pytest
 from solve_world import DT, ENGINE, World, overlap
 
+import rigidarea
+
 #: Speed at which overlap is taken apart, at most, in sizes of a body (its largest extent) a second. A fast hand:
 #: Box2D's bodies of a metre are parted at 3 m/s, pymunk's bias (1 - 0.1) of the depth a sixtieth of a second is faster.
 PARTING = 4.0
@@ -159,3 +161,32 @@ def test_what_is_pushed_in_by_an_impact_is_not_what_starts_inside(steps):
     body = world.box((0, 1.0), velocity=(0, -20))  # 0.33 m a frame, half a metre over the block
     world.step(steps, 20)
     assert body.velocity.y == pytest.approx(20, abs=0.002 * 20)
+
+
+@pytest.mark.skipif(ENGINE != "area", reason="pymunk's own is the one to compare with")
+@pytest.mark.parametrize("size", [(24.0, 8.0), (30.0, 6.0)])
+def test_links_that_overlap_and_collide_lie_still(size):
+    """A chain whose neighbours overlap where they are hinged, as pymunk lets them: a velocity is that of what moves.
+
+    What the joints held overlapped went on at up to 14 px/s for ever, though nothing moved.
+    """
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    floor = pymunk.Segment(space.static_body, (-400, 0), (400, 0), 5)
+    floor.friction = 0.7
+    space.add(floor)
+    before = None
+    for i in range(20):
+        link = pymunk.Body()
+        link.position = 20 * i - 200, 12
+        shape = pymunk.Poly.create_box(link, size)
+        shape.mass, shape.friction = 0.5, 0.7
+        space.add(link, shape)
+        if before:
+            space.add(pymunk.PivotJoint(before, link, (20 * i - 210, 12)))
+        before = link
+    rigidarea.attach(space)
+    for _ in range(300):
+        space.step(DT)
+    # of the 15 px/s that a kick gives
+    assert max(link.velocity.length for link in space.bodies) < 0.01
