@@ -9,9 +9,11 @@ A world is one block of memory (`chipmunk/alone.py`); geometry is shared by all.
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 import pymunk
@@ -37,6 +39,27 @@ CONTACTS = np.dtype(
 (length/time)."""
 
 
+_P = ParamSpec("_P")
+_R = TypeVar("_R")
+
+
+def _alone(call: Callable[Concatenate[Worlds, _P], _R]) -> Callable[Concatenate[Worlds, _P], _R]:
+    """The call, refused while another one of the same worlds runs: two would write over each other's memory."""
+
+    @wraps(call)
+    def guarded(self: Worlds, *args: _P.args, **kwargs: _P.kwargs) -> _R:
+        if not self._free.acquire(blocking=False):
+            raise RuntimeError(
+                f"expected one call of these worlds at a time, got {call.__name__} while another runs"
+            )
+        try:
+            return call(self, *args, **kwargs)
+        finally:
+            self._free.release()
+
+    return guarded
+
+
 class Worlds(Many):
     """n copies of an attached space, or of several, each with its own state and parameters.
 
@@ -48,7 +71,8 @@ class Worlds(Many):
     many rows of bodies and shapes as the largest needs; what a world has no body for (`mask`) is 0, or ignored.
     n: a multiple of the number of spaces; None: one of each.
     threads: how many step at once (>= 1); None: as many as there are processors.
-    Raises ValueError for a space that is not attached, or has something that worlds have not, which is named.
+    Raises ValueError for a space that is not attached, or has something that worlds have not, which is named. A call
+    raises RuntimeError while another of the same worlds runs, from another thread of Python.
     """
 
     def __init__(
@@ -71,6 +95,7 @@ class Worlds(Many):
             store.grow_joints(len(one.constraints))
             store.sync()
         super().__init__(spaces, stores, n, threads)
+        self._free = threading.Lock()
         self._kept = np.zeros(4 * self.bodies + 2 * self._shapes + 3)
         self._pool = ThreadPoolExecutor(self.threads - 1) if self.threads > 1 else None
 
@@ -91,6 +116,7 @@ class Worlds(Many):
 
     # --- stepping ---
 
+    @_alone
     def step(
         self, dt: float, forces: ArrayLike | None = None, frames: int = 1, which: ArrayLike | None = None
     ) -> NDArray[np.float64]:
@@ -127,7 +153,10 @@ class Worlds(Many):
         if not len(numbers):
             return
         running = [self._pool.submit(go, k) for k in range(1, len(parts))] if self._pool else []
-        failed = go(0) + sum(future.result() for future in running)
+        try:
+            failed = go(0) + sum(future.result() for future in running)
+        finally:
+            wait(running)  # an interrupt may come between: nothing goes on behind the next call
         if failed:
             self._try_again(numbers, forces, dt, frames, states)
 
@@ -166,12 +195,14 @@ class Worlds(Many):
     # --- states ---
 
     @property
+    @_alone
     def states(self) -> NDArray[np.float64]:
         """(n, bodies, 6): x, y of `position`, angle, vx, vy, angular velocity of each body now."""
         out = np.zeros((self.n, self.bodies, 6))
         self._call.read(ffi.from_buffer(self._at), self.n, self.bodies, ffi.from_buffer(out))
         return out
 
+    @_alone
     def put(self, states: ArrayLike, which: ArrayLike | None = None) -> None:
         """Put bodies there, moving so: (k, bodies, 6), of all worlds or of `which` (k,). Else ValueError."""
         numbers = self._numbers(which)
@@ -179,17 +210,20 @@ class Worlds(Many):
         at = self._at[numbers]
         self._call.write(ffi.from_buffer(at), len(at), self.bodies, ffi.from_buffer(given))
 
+    @_alone
     def reset(self, which: ArrayLike | None = None) -> None:
         """Worlds (all, or `which`) begin anew, as the space was when they were made; their parameters stay."""
         for first, own in self._by_space(self._numbers(which)):
             self._put(own, self._memory[self.n + first], int(self._at[self.n + first]), self._kept)
 
+    @_alone
     def snapshot(self, world: int) -> WorldSnapshot:
         """A world as it is now, parameters included, for `restore`."""
         (number,) = self._numbers([world])
         image = self._images[number % len(self._images)]
         return WorldSnapshot(self._memory[number, : image.size].copy(), int(self._at[number]), image)
 
+    @_alone
     def restore(self, snapshot: WorldSnapshot, which: ArrayLike) -> None:
         """Worlds are as the one was of which the snapshot was taken. ValueError for a snapshot of other worlds."""
         numbers = self._numbers(which)
@@ -204,12 +238,14 @@ class Worlds(Many):
     # --- parameters ---
 
     @property
+    @_alone
     def gravity(self) -> NDArray[np.float64]:
         """(n, 2), in place: set its elements (length/time^2). A view: ask for it again after a step."""
         image = self._images[0]  # spaces, bodies and shapes are at the same places in all
         return self._view(image.space_at + image.offsets_of["space_gravity"], (2,), (8,))
 
     @property
+    @_alone
     def damping(self) -> NDArray[np.float64]:
         """(n,), in place: the share of its velocity that a body keeps in a unit of time."""
         from .chipmunk.alone import WORLD
@@ -217,11 +253,13 @@ class Worlds(Many):
         return self._field(WORLD, "damping")
 
     @property
+    @_alone
     def friction(self) -> NDArray[np.float64]:
         """(n, shapes), in place; shapes in the order of `space.shapes`."""
         return self._material(8)
 
     @property
+    @_alone
     def elasticity(self) -> NDArray[np.float64]:
         """(n, shapes), in place."""
         return self._material(0)
@@ -232,15 +270,18 @@ class Worlds(Many):
         return self._view(first, (self._shapes,), (SHAPE_BYTES,))
 
     @property
+    @_alone
     def mass(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
         return np.where(self.mask, self._inertia()[:, :, 0], 0.0)
 
     @property
+    @_alone
     def moment(self) -> NDArray[np.float64]:
         """(n, bodies): a copy; `set_mass`."""
         return np.where(self.mask, self._inertia()[:, :, 2], 0.0)
 
+    @_alone
     def set_mass(self, mass: ArrayLike, moment: ArrayLike, which: ArrayLike | None = None) -> None:
         """Masses and moments (k, bodies) of all worlds, or of `which`: positive; kinematic bodies keep theirs."""
         numbers = self._numbers(which)
@@ -259,6 +300,7 @@ class Worlds(Many):
         first = image.bodies_at + image.offsets_of["body_inverse_mass"] - 8
         return self._view(first, (self.bodies, 4), (BODY_BYTES, 8))
 
+    @_alone
     def joint(self, number: int) -> NDArray[np.float64]:
         """(n, m), in place: what `space.constraints[number]` is made of, as Chipmunk keeps it (a motor: its rate).
 
@@ -273,6 +315,7 @@ class Worlds(Many):
 
     # --- contacts ---
 
+    @_alone
     def contacts(self, which: ArrayLike | None = None) -> NDArray[Any]:
         """The contacts of the last substep of a world, or of several, or of all: one CONTACTS row each, by worlds."""
         numbers = self._numbers(which)

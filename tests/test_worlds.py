@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import threading
+import time
+
 import numpy as np
 import pymunk
 import pytest
@@ -339,6 +342,21 @@ def test_what_worlds_have_not_is_named(what):
     ra.attach(space)
     with pytest.raises(ValueError, match=what):
         Worlds(space, 2)
+
+
+def test_one_call_at_a_time():
+    """From another thread while one steps: refused, and the steps are as without it."""
+    _, worlds = worlds_of(pile, 30, 4, threads=2)
+    _, alone = worlds_of(pile, 30, 4)
+    stepping = threading.Thread(target=worlds.step, args=(DT, None, 2000))  # some tenths of a second
+    stepping.start()
+    while not worlds._free.locked():
+        time.sleep(1e-4)
+    for call in (lambda: worlds.states, lambda: worlds.step(DT), worlds.reset, lambda: worlds.gravity):
+        with pytest.raises(RuntimeError, match="one call of these worlds at a time"):
+            call()
+    stepping.join()
+    np.testing.assert_array_equal(worlds.states, alone.step(DT, frames=2000))
 
 
 def test_bad_arguments_are_refused():
