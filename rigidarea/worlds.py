@@ -283,14 +283,19 @@ class Worlds(Many):
 
     @_alone
     def set_mass(self, mass: ArrayLike, moment: ArrayLike, which: ArrayLike | None = None) -> None:
-        """Masses and moments (k, bodies) of all worlds, or of `which`: positive; kinematic bodies keep theirs."""
+        """Masses and moments (k, bodies) of all worlds, or of `which`; kinematic bodies keep theirs.
+
+        Raises ValueError unless masses are positive and finite, moments positive (infinite: what never turns).
+        """
         numbers = self._numbers(which)
         own, there = self._inertia()[numbers], self.mask[numbers]
         moves = there & np.isfinite(own[:, :, 0])
         for given, k, name in ((mass, 0, "mass"), (moment, 2, "moment")):
             values = np.asarray(given, np.float64)
-            if values.shape != there.shape or not (values[there] > 0).all():
-                raise ValueError(f"{name} must be positive, {there.shape}, got {given!r:.80}")
+            fine = values.shape == there.shape and (values[there] > 0).all()
+            if not fine or (name == "mass" and not np.isfinite(values[moves]).all()):
+                wanted = "positive and finite" if name == "mass" else "positive"
+                raise ValueError(f"{name} must be {wanted}, {there.shape}, got {given!r:.80}")
             own[moves, k], own[moves, k + 1] = values[moves], 1.0 / values[moves]
         self._inertia()[numbers] = own
 

@@ -377,7 +377,15 @@ def test_bad_arguments_are_refused():
         (lambda: worlds.put(before[0]), "states must be finite numbers"),
         (lambda: worlds.restore(None, [0]), "snapshot must be one that these worlds have taken"),
         (lambda: worlds.set_mass(-worlds.mass, worlds.moment), "mass must be positive"),
+        (
+            lambda: worlds.set_mass(np.inf * worlds.mass, worlds.moment),
+            "mass must be positive and finite, .*inf",
+        ),
+        (lambda: worlds.set_mass(worlds.mass, np.nan * worlds.moment), "moment must be positive"),
     ):
         with pytest.raises(ValueError, match=message):
             call()
+    worlds.set_mass(worlds.mass, np.inf * worlds.moment)  # as pymunk has it: a body that never turns
+    worlds.set_mass(worlds.mass, np.ones((2, worlds.bodies)))
+    assert (worlds.moment == 1).all()
     np.testing.assert_array_equal(worlds.states, before)
