@@ -187,6 +187,8 @@ class Worlds(Many):
         given = np.atleast_1d(np.asarray(which))
         if given.dtype == bool and given.shape == (self.n,):
             return np.flatnonzero(given)
+        if given.shape == (0,):  # of no list numpy makes floats
+            return np.zeros(0, np.int64)
         inside = given.ndim == 1 and given.dtype.kind in "iu" and ((given >= 0) & (given < self.n)).all()
         if not (inside and len(np.unique(given)) == len(given)):
             raise ValueError(f"which must be different numbers from 0 to {self.n - 1}, got {which!r:.80}")
@@ -232,8 +234,8 @@ class Worlds(Many):
             image.family is not snapshot.image.family for image in images
         ):
             raise ValueError(f"snapshot must be one that these worlds have taken, got {snapshot!r:.80}")
-        for _, own in self._by_space(numbers):
-            self._put(own, *self._brought_over(snapshot, self._images[own[0] % len(self._images)]))
+        for first, own in self._by_space(numbers):
+            self._put(own, *self._brought_over(snapshot, self._images[first]))
 
     # --- parameters ---
 

@@ -344,6 +344,21 @@ def test_what_worlds_have_not_is_named(what):
         Worlds(space, 2)
 
 
+@pytest.mark.parametrize("none", [[], (), np.zeros(0), np.flatnonzero([0, 0])])
+@pytest.mark.parametrize("make", [lambda: worlds_of(pile, 31)[1], lambda: different(n=6)[1]])
+def test_of_none_there_is_nothing_to_do(make, none):
+    worlds = make()
+    before, snapshot = worlds.states, worlds.snapshot(0)
+    worlds.reset(none)
+    worlds.restore(snapshot, none)
+    worlds.put(np.zeros((0, worlds.bodies, 6)), none)
+    worlds.set_mass(np.zeros((0, worlds.bodies)), np.zeros((0, worlds.bodies)), none)
+    assert worlds.step(DT, which=none).shape == (0, worlds.bodies, 6)
+    assert worlds.step(DT, np.zeros((0, worlds.bodies, 3)), which=none).shape == (0, worlds.bodies, 6)
+    assert len(worlds.contacts(none)) == 0
+    np.testing.assert_array_equal(worlds.states, before)
+
+
 def test_one_call_at_a_time():
     """From another thread while one steps: refused, and the steps are as without it."""
     _, worlds = worlds_of(pile, 30, 4, threads=2)
