@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import os
 import threading
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor, wait
 from functools import wraps
 from typing import Any, Concatenate, ParamSpec, TypeVar
@@ -78,7 +78,8 @@ class Worlds(Many):
     def __init__(
         self, space: pymunk.Space | Sequence[pymunk.Space], n: int | None = None, threads: int | None = None
     ) -> None:
-        spaces = [space] if isinstance(space, pymunk.Space) else list(space)
+        given = [space] if isinstance(space, pymunk.Space) else space
+        spaces = list(given) if isinstance(given, Iterable) else []
         if not spaces or not all(isinstance(one, pymunk.Space) for one in spaces):
             raise ValueError(f"expected a space, or a sequence of them, got {space!r:.80}")
         contacts = [contact for contact in map(attached, spaces) if contact is not None]
@@ -87,7 +88,7 @@ class Worlds(Many):
         n = whole(len(spaces) if n is None else n, "n", 1)
         if n % len(spaces):
             raise ValueError(f"n must be a multiple of the number of spaces, {len(spaces)}, got {n}")
-        threads = len(os.sched_getaffinity(0)) if threads is None else whole(threads, "threads", 1)
+        threads = _processors() if threads is None else whole(threads, "threads", 1)
         stores = [contact._store for contact in contacts]
         for one, contact, store in zip(spaces, contacts, stores):
             contact._between_steps("Worlds")
@@ -353,6 +354,13 @@ class Worlds(Many):
 
     def __repr__(self) -> str:
         return f"<Worlds: {self.n} of {self.bodies} bodies, {self.threads} threads>"
+
+
+def _processors() -> int:
+    """How many this process may use, or, where the system does not say, how many there are."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
 
 
 def _finite(given: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.float64]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import threading
 import time
 
@@ -303,6 +304,8 @@ def test_bad_sets_of_spaces_are_refused():
         Worlds([])
     with pytest.raises(ValueError, match="expected a space, or a sequence of them"):
         Worlds([spaces[0], None])
+    with pytest.raises(ValueError, match="expected a space, or a sequence of them, got None"):
+        Worlds(None)
     with pytest.raises(ValueError, match="attach"):
         Worlds([spaces[0], pile(1)])
     with pytest.raises(ValueError, match="snapshot must be one that these worlds have taken"):
@@ -357,6 +360,12 @@ def test_of_none_there_is_nothing_to_do(make, none):
     assert worlds.step(DT, np.zeros((0, worlds.bodies, 3)), which=none).shape == (0, worlds.bodies, 6)
     assert len(worlds.contacts(none)) == 0
     np.testing.assert_array_equal(worlds.states, before)
+
+
+def test_threads_where_the_system_does_not_say_which_processors(monkeypatch):
+    """As on macOS and Windows: as many as there are."""
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    assert worlds_of(pile, 32)[1].threads == os.cpu_count()
 
 
 def test_one_call_at_a_time():
