@@ -9,7 +9,7 @@ import numpy as np
 import pymunk
 from pymunk import PointQueryInfo, SegmentQueryInfo, Vec2d
 
-from .geometry.arcs import Points, on_arc
+from .geometry.arcs import Points
 from .geometry.gate import numbers
 from .geometry.outline import Outline, outline_on
 from .overlap_queries import covers
@@ -29,43 +29,54 @@ class _Edges(NamedTuple):
 def _edges(outline: Outline, body: pymunk.Body) -> _Edges:
     c, s = body.rotation_vector
     turn, at = np.array([[c, s], [-s, c]]), np.array(tuple(body.position))
-    start = np.concatenate(outline.rings) @ turn + at
-    end = np.concatenate([np.roll(ring, -1, axis=0) for ring in outline.rings]) @ turn + at
+    rings = [ring @ turn + at for ring in outline.rings]
+    start, end = np.concatenate(rings), np.concatenate([np.roll(ring, -1, axis=0) for ring in rings])
     arcs = np.concatenate(outline.arcs).copy() if outline.arcs else np.zeros((len(start), 3))
     arcs[:, :2] = arcs[:, :2] @ turn + at
     return _Edges(start, end, arcs)
 
 
-def _crossings(a: Points, b: Points, edges: _Edges) -> tuple[Points, Points]:
-    """Where the way from a to b, both (2,), crosses edges: fractions of it (m,), normals (m, 2) out of the solid."""
+def _entries(a: Points, b: Points, edges: _Edges) -> list[tuple[float, Points]]:
+    """Where the way from a to b, both (2,), enters the solid: fractions of it, and normals (2,) out of the solid.
+
+    Where edges meet at least one of them has it: the side on which a corner lies is the same for both, and arcs end
+    later by what coordinates are rounded by.
+    """
     way = b - a
+    length = math.hypot(*way)
+    if length == 0:
+        return []
+    reach = max(np.abs(part).max() for part in (a, b, edges.start, edges.arcs))
+    room = 16 * math.ulp(reach)  # roundings of turns, differences and products
     found: list[tuple[float, Points]] = []
-    straight = edges.arcs[:, 2] == 0
-    p, q = edges.start[straight], edges.end[straight]
-    along = q - p
-    cross = way[0] * along[:, 1] - way[1] * along[:, 0]
-    off = p - a
-    with np.errstate(divide="ignore", invalid="ignore"):
-        t = (off[:, 0] * along[:, 1] - off[:, 1] * along[:, 0]) / cross
-        u = (off[:, 0] * way[1] - off[:, 1] * way[0]) / cross
-    inside = (t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)  # NaN and infinity, parallel, are neither
-    for i in np.flatnonzero(inside):
-        found.append((float(t[i]), np.array((along[i, 1], -along[i, 0])) / math.hypot(*along[i])))
-    for i in np.flatnonzero(~straight):
+    bent = edges.arcs[:, 2] != 0
+    side = way[0] * (edges.start[:, 1] - a[1]) - way[1] * (edges.start[:, 0] - a[0])
+    side_end = way[0] * (edges.end[:, 1] - a[1]) - way[1] * (edges.end[:, 0] - a[0])
+    for i in np.flatnonzero(~bent & (side >= 0) & (side_end <= 0) & (side > side_end)):
+        (x, y), (dx, dy) = edges.start[i] - a, edges.end[i] - edges.start[i]
+        t = (x * dy - y * dx) / (way[0] * dy - way[1] * dx)
+        found.append((t, np.array((dy, -dx)) / math.hypot(dx, dy)))
+    for i in np.flatnonzero(bent):
         x, y, r = edges.arcs[i]
         off = a - (x, y)
         square, half, rest = way @ way, off @ way, off @ off - r * r
         inside = half * half - square * rest
-        if square == 0 or inside < 0:
+        if inside < 0:
             continue
-        for sign in (-1, 1):
-            t = (-half + sign * math.sqrt(inside)) / square
-            point = a + t * way
-            if 0 <= t <= 1 and on_arc(edges.start[i], edges.end[i], r, point[None])[0]:
-                found.append((t, (point - (x, y)) / r))
-    fractions = np.array([t for t, _ in found])
-    normals = np.array([n for _, n in found]).reshape(-1, 2)
-    return fractions, normals
+        t = (-half - math.copysign(math.sqrt(inside), r)) / square  # the other crossing is where it leaves
+        point = a + t * way
+        if _near_arc(edges.start[i], edges.end[i], r, point, room):
+            found.append((t, (point - (x, y)) / r))
+    near = room / length
+    return [(min(max(t, 0.0), 1.0), normal) for t, normal in found if -near <= t <= 1 + near]
+
+
+def _near_arc(start: Points, end: Points, radius: float, point: Points, room: float) -> bool:
+    """Whether a point (2,) of a circle lies on its arc from start to end, both (2,), to within `room` (length)."""
+    chord, away = end - start, point - start
+    length = math.hypot(*chord)
+    left = math.copysign(1.0, radius) * (chord[0] * away[1] - chord[1] * away[0])
+    return bool(left <= room * length and -room <= chord @ away / length <= length + room)
 
 
 def _check(space: object, shape_filter: object) -> None:
@@ -120,12 +131,11 @@ def segment_query(
             found.append(hit)
             continue
         if _covers(shape, (float(a[0]), float(a[1]))):
-            back = (a - b) / (math.hypot(*(a - b)) or 1.0)
-            found.append(SegmentQueryInfo(shape, Vec2d(*a), Vec2d(*back), 0.0))
+            t, normal = 0.0, (a - b) / (math.hypot(*(a - b)) or 1.0)
+        elif entries := _entries(a, b, _edges(outline, shape.body)):
+            t, normal = min(entries, key=lambda entry: entry[0])
+        else:
             continue
-        fractions, normals = _crossings(a, b, _edges(outline, shape.body))
-        if len(fractions):
-            k = int(np.argmin(fractions))
-            t = float(fractions[k])
-            found.append(SegmentQueryInfo(shape, Vec2d(*(a + t * (b - a))), Vec2d(*normals[k]), t))
+        point = (a + t * (b - a)).tolist()
+        found.append(SegmentQueryInfo(shape, Vec2d(*point), Vec2d(*normal.tolist()), float(t)))
     return sorted(found, key=lambda hit: hit.alpha)

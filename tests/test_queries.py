@@ -80,6 +80,47 @@ def test_rays(name):
     assert hits > 60 and misses > 60
 
 
+CORNERED = {
+    "disc": ra.Outline.circle(10),
+    "ring": ra.shapes.ring(5, 10),
+    "bulges": ra.Outline.from_bulges([(-10, 0, 1), (10, 0, 1)]),
+    "annulus": ra.Outline.from_bulges([(-9, 0, 1), (9, 0, 1)], [[(-4, 0, 1), (4, 0, 1)]]),
+    "capsule": ra.Outline.from_pymunk(pymunk.Segment(None, (-8, 0), (8, 0), 3)),
+    "box": ra.Outline([(-10, -10), (10, -10), (10, 10), (-10, 10)]),
+}
+"""All of their corners are seen from the middle."""
+
+
+@pytest.mark.parametrize("name", CORNERED)
+def test_rays_through_corners(name):
+    """Through a point where edges or arcs meet, from outside and onto the solid: it is hit there.
+
+    What pymunk's own query of the proxies misses is not asked (rays through corners of its polygons).
+    """
+    outline, asked = CORNERED[name], 0
+    for seed in range(60):
+        draw, space = random.Random(seed), pymunk.Space()
+        body = outline.body(mass=1)
+        body.position, body.angle = (
+            (draw.choice([(0, 0), (100, 50), (3.7, -81.3)])),
+            draw.choice([0, 0.1 * seed]),
+        )
+        shape = outline.add_to(body)
+        space.add(body, shape)
+        space.step(1e-9)
+        for corner in draw.sample(outline.rings[0].tolist(), min(4, len(outline.rings[0]))):
+            start, end = (body.local_to_world(tuple(k * np.array(corner))) for k in (3, -3))
+            seen = space.segment_query(start, end, 0, pymunk.ShapeFilter())
+            if not seen:
+                continue
+            asked += 1
+            (hit,) = ra.segment_query(space, start, end)
+            # rounding of coordinates of a hundred
+            assert hit.point == pytest.approx(body.local_to_world(tuple(corner)), abs=1e-10)
+            assert hit.normal.dot(end - start) < 0 and type(hit.alpha) is type(hit.point.x) is float
+    assert asked > 50
+
+
 def test_filters_and_what_has_no_outline_are_pymunks():
     space, shape, _, _ = scene("hook", 1)
     other = pymunk.Circle(space.static_body, 500)
