@@ -16,7 +16,7 @@ import pymunk
 from ..chipmunk import AreaContact, SimulationError, attach, attached
 from ..contact.constants import MOST_SUBSTEPS
 from ..geometry.gate import fraction, one_of, positive, truth, whole
-from ..geometry.outline import Outline
+from ..geometry.outline import Outline, outline_on
 from . import elastic
 from .choose import Found, Search, budget_of
 from .part import part
@@ -311,6 +311,8 @@ def _check(
         fraction(value, name)
     else:
         positive(value, name)
+    if name == "sampling" and outline_on(target) is None:
+        raise ValueError(f"expected a shape with an outline to sample (Outline.add_to), got {target!r:.80}")
 
 
 def plan(
