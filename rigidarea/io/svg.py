@@ -90,8 +90,9 @@ def elements_from_svg(
     times `scale`. y points down as in the file, or up with `flip`. tolerance: largest sagitta of a chord in place of a
     curve (length; None: a thousandth of the element's smaller extent, of a stroke's width).
 
-    Raises ValueError, with the element and its line, for what is no SVG, for a file with entities or scripts, for rings
-    that cross, for a <use> of nothing or of itself, and for more than `limits` allow, what is used again counted again.
+    Raises ValueError, with the element and its line, for what is no SVG, for a file with entities or scripts, for path
+    data with an error in it (of which a browser would draw the beginning), for rings that cross, for a <use> of nothing
+    or of itself, and for more than `limits` allow, what is used again counted again.
     """
     allowed(limits), truth(flip, "flip"), size(scale, "scale")
     if tolerance is not None:

@@ -142,27 +142,27 @@ class Segments:
         self.arc(center, rx * axis, ry * 1j * axis, start, sweep, to)
 
     def path(self, data: str) -> None:
-        """Append SVG path data; where there is an error in it what comes before it counts (SVG 2, 9.5.4)."""
-        if not data.lstrip().startswith(("M", "m")):
+        """Append SVG path data. ValueError for an error in it, where a browser would draw what comes before it."""
+        if data.strip() in ("", "none"):
             return
+        if not data.lstrip().startswith(("M", "m")):
+            raise ValueError(f"path.d: expected M or m to begin with, got {shown(data.strip())}")
         at = start = before = 0j  # before: the last control point of the command before, of its kind
         kind = ""
-        closed = broken = False
+        closed = False
         for letter, found in map(re.Match.groups, _COMMANDS.finditer(data)):
             last, kind = kind, letter.lower()
             takes = _TAKES.get(kind)
-            if takes is None or broken:
-                return
-            given, broken = _arcs(found) if kind == "a" else _run(found)
+            if takes is None:
+                raise ValueError(f"path.d: expected one of {''.join(_TAKES)}, got {shown(letter + found)}")
+            given, more = _arcs(found) if kind == "a" else _run(found)
+            if more or (len(given) % takes or not given if takes else given):
+                wanted = f"{takes} numbers at a time" if takes else "no numbers"
+                raise ValueError(f"path.d: expected {wanted} after {letter}, got {shown(found.strip())}")
             if kind == "z":
                 self.line(start)
-                at, closed, broken = start, True, broken or bool(given)
+                at, closed = start, True
                 continue
-            if len(given) % takes or not given:
-                broken = True
-                del given[len(given) // takes * takes :]
-                if not given:
-                    return
             told = len(self.kinds) + len(given) // takes
             check(told, self.limits.points, "points")
             check(told, SEGMENTS, "segments")

@@ -5,6 +5,7 @@ import itertools
 import math
 import os
 import random
+import re
 import signal
 import socket
 import subprocess
@@ -304,7 +305,7 @@ def test_a_saw_is_thinned_in_linear_time():
         ('<path d="m1-1.5.5.5-.5.5z"/>', 0.25),  # numbers part themselves
         ('<path d="M0,0a2,2,0,114,0a2,2,0,11-4,0"/>', 4 * math.pi),  # flags without gaps
         ('<path d="M0,0 T2,2 4,0z"/>', 4 + 8 / 3),  # the first is a line, the second mirrors its control point
-        ('<path d="M0,0h2v2h-2 L3 nonsense"/>', 4),  # what comes before an error counts
+        ('<path d=" "/><path d="none"/><path d="M0,0h2v2h-2,"/>', 4),
         ('<svg x="3" width="8" height="4" viewBox="0 0 1 1"><rect width="1" height="1"/></svg>', 16),
         ('<svg width="8" height="4" viewBox="0 0 1 1" preserveAspectRatio="none"><rect width="1" height="1"/></svg>',
          32),
@@ -320,6 +321,27 @@ def test_drawings_have_the_areas_that_svg_gives_them(body, area, tmp_path):
     file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg" width="200" height="100">{body}</svg>')
     (outline,) = bring.outlines_from_svg(file, tolerance=1e-5)
     assert outline.area == pytest.approx(area, abs=1e-4 * max(1, area) ** 0.5)
+
+
+@pytest.mark.parametrize(
+    ("data", "message"),
+    [
+        ("hello", "expected M or m to begin with, got 'hello'"),
+        ("M0 0 h10 v10 h-10 z M20 0 h10 v10 foo", "expected one of mlhvcsqtaz, got 'f'"),
+        ("M0 0 h10 v10 L x", "expected 2 numbers at a time after L, got ''"),
+        ("M0 0 L 10 0 10 10 0", "expected 2 numbers at a time after L, got '10 0 10 10 0'"),
+        ("M0,0h2v2h-2 L3 #", "expected 2 numbers at a time after L, got '3 #'"),
+        ("M0,0h2v2h-2 z 3", "expected no numbers after z, got '3'"),
+        ("M0,0 a2,2,0,2,1,4,0", "expected 7 numbers at a time after a, got '2,2,0,2,1,4,0'"),
+        ("M", "expected 2 numbers at a time after M, got ''"),
+    ],
+)
+def test_an_error_in_path_data_is_told_with_its_place(data, message, tmp_path):
+    """Nothing is left out of a solid without a word."""
+    file = tmp_path / "a.svg"
+    file.write_text(f'<svg xmlns="http://www.w3.org/2000/svg">\n<path id="p" d="{data}"/></svg>')
+    with pytest.raises(ValueError, match=re.escape(f"{file}: line 2, <path id='p'>: path.d: {message}")):
+        bring.outlines_from_svg(file)
 
 
 def test_random_paths_as_svgelements_reads_them(tmp_path):
