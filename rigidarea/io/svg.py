@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import os
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from typing import Any, NamedTuple, Unpack
@@ -26,6 +27,12 @@ REFUSED = ("script", "foreignObject")
 #: What is inside these is drawn only where something else asks for it.
 ASIDE = ("defs", "symbol", "clipPath", "mask", "marker", "pattern")
 NAMESPACE = "http://www.w3.org/2000/svg"
+_QUOTED = r"""\s++(?>"[^"]*+"|'[^']*+')"""
+#: What may come before the root; in group 2 a document type that names a DTD, which is not read, and declares nothing.
+_PROLOG = re.compile(
+    rf"((?>\s|<\?.*?\?>|<!--.*?-->)*+)(<!DOCTYPE\s++svg(?>\s++PUBLIC{_QUOTED}{_QUOTED}|\s++SYSTEM{_QUOTED})?\s*+>)",
+    re.DOTALL,
+)
 
 #: Attributes that a style may set too.
 _STYLED = {"display", "transform", "x", "y", "width", "height", "rx", "ry", "cx", "cy", "r"}
@@ -333,6 +340,8 @@ def _parsed(content: str, reader: _Tree) -> None:
     parser.StartElementHandler = lambda name, given: reader.start(name, given, parser.CurrentLineNumber)
     parser.EndElementHandler = reader.end
     parser.CharacterDataHandler = reader.words
+    if named := _PROLOG.match(content):  # without it a name that it may declare is an error, not passed over
+        content = named[1] + "\n" * named[2].count("\n") + content[named.end() :]
     parser.Parse(content, True)
 
 
