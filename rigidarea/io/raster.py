@@ -17,6 +17,9 @@ from .formats import stripped
 from .limits import LIMITS, Limits, allowed, check, read, shown
 from .rings import outlines_of_polygons
 
+ROUNDED = 1e-5
+"""What a soft mask may be off 0 and 1 by: some roundings of float32."""
+
 
 def outlines_from_image(
     source: str | os.PathLike[str],
@@ -87,7 +90,8 @@ def outlines_from_mask(
     (length a pixel); y points down, or up with `flip`. tolerance: largest distance of a contour point that is dropped
     (length; None: half a pixel). Solids smaller than one pixel are dropped as specks.
 
-    Raises ValueError for other shapes, values that are not finite, a threshold outside 0 to 1, too many pixels.
+    Raises ValueError for other shapes, values that are not finite or outside 0 to 1 (of 0 to 255: `mask / 255`), a
+    threshold outside 0 to 1, too many pixels.
     """
     allowed(limits)
     _check_options(threshold, scale, flip, tolerance)
@@ -100,6 +104,10 @@ def outlines_from_mask(
     check(given.size, limits.pixels, "pixels")
     if not np.isfinite(given).all():
         raise ValueError("mask must be finite, got NaN or infinity")
+    low, high = float(given.min()), float(given.max())
+    if low < -ROUNDED or high > 1 + ROUNDED:
+        hint = "; divide it by 255" if 1 < high <= 255 and low >= 0 else ""
+        raise ValueError(f"mask must be from 0 to 1, got {low:g} to {high:g}{hint}")
     return _outlines(np.pad(given, 1), threshold, scale, flip, tolerance, limits)
 
 

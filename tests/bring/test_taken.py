@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 
 from rigidarea import bring
@@ -59,3 +60,22 @@ def test_a_long_beginning_costs_no_more_than_its_length(tmp_path):
         file.write_text(part * (10**6 // len(part)) + "x")
         with pytest.raises(ValueError, match="expected"):
             bring.outlines_from_svg(file)
+
+
+def test_a_mask_is_from_0_to_1():
+    """Of 0 and 255 it would come out larger, by nearly half a pixel on each side."""
+    pytest.importorskip("contourpy")
+    mask = np.zeros((40, 40))
+    mask[10:30, 10:30] = 1
+    areas = [
+        bring.outlines_from_mask(one, tolerance=0.01)[0].area
+        for one in (mask, mask > 0, mask.astype(np.uint8), mask.tolist(), mask * np.float32(1 + 1e-6))
+    ]
+    assert areas == pytest.approx(5 * [areas[0]], rel=1e-4)  # of a millionth more than 1
+    for one, message in (
+        (255 * mask.astype(np.uint8), "mask must be from 0 to 1, got 0 to 255; divide it by 255"),
+        (1000 * mask, "mask must be from 0 to 1, got 0 to 1000$"),
+        (mask - 3, "mask must be from 0 to 1, got -3 to -2"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            bring.outlines_from_mask(one)
