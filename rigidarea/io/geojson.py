@@ -29,6 +29,8 @@ def outlines_from_geojson(
 ) -> list[Outline]:
     """One outline for every polygon of a GeoJSON file, or of an object already parsed, in its order.
 
+    Such an object may have tuples for lists, as shapely's `__geo_interface__` has.
+
     Coordinates are taken as plane lengths and multiplied by `scale` (longitudes and latitudes have to be projected
     first); a third one is dropped. tolerance: largest distance of a point that may be dropped (length, after scale).
     Points and lines are passed over.
@@ -75,6 +77,8 @@ def _walk(
 
 
 def _list(found: Any, what: str) -> list[Any]:
+    if isinstance(found, tuple):  # of a `__geo_interface__`
+        return list(found)
     if not isinstance(found, list):
         raise ValueError(f"expected {what} as a list, got {shown(found, 80)}")
     return found
@@ -86,6 +90,8 @@ def _ring(found: Any, points: list[int], scale: float, limits: Limits) -> Ring:
     check(points[0], limits.points, "points")
     if len(ring) < 4:
         raise ValueError(f"expected a ring of at least 4 points, the last one the first, got {len(ring)}")
+    if tuple in set(map(type, ring)):
+        ring = [list(point) if isinstance(point, tuple) else point for point in ring]
     placed = coordinates(ring, (2, 3))
     if placed is None:
         plane = [point[:2] if isinstance(point, list) else point for point in ring]  # of more dimensions

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+import shapely
 
 from rigidarea import bring
 
@@ -79,3 +80,29 @@ def test_a_mask_is_from_0_to_1():
     ):
         with pytest.raises(ValueError, match=message):
             bring.outlines_from_mask(one)
+
+
+@pytest.mark.parametrize(
+    ("geometry", "areas"),
+    [
+        (shapely.box(0, 0, 2, 1), [2]),
+        (shapely.Polygon([(0, 0, 5), (4, 0, 5), (0, 4, 5)], [[(1, 1, 5), (1, 2, 5), (2, 1, 5)]]), [7.5]),
+        (shapely.MultiPolygon([shapely.box(0, 0, 1, 1), shapely.box(3, 0, 5, 1)]), [1, 2]),
+        (shapely.GeometryCollection([shapely.Point(0, 0), shapely.box(0, 0, 1, 3)]), [3]),
+    ],
+)
+def test_what_shapely_hands_over(geometry, areas):
+    found = geometry.__geo_interface__
+    assert [o.area for o in bring.outlines_from_geojson(found)] == areas
+    feature = {"type": "Feature", "properties": {}, "geometry": found}
+    assert [o.area for o in bring.outlines_from_geojson(feature)] == areas
+
+
+def test_bad_tuples_are_refused():
+    for ring, message in (
+        (((0, 0), (1, 0), (0, "1"), (0, 0)), r"expected a point as \[x, y\], got \[0, '1'\]"),
+        (((0, 0), (1, 0), (0, 10**400), (0, 0)), "expected finite coordinates"),
+        (((0, 0), (1,), (0, 1), (0, 0)), r"expected a point as \[x, y\], got \[1\]"),
+    ):
+        with pytest.raises(ValueError, match=message):
+            bring.outlines_from_geojson({"type": "Polygon", "coordinates": (ring,)})
