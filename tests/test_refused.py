@@ -60,6 +60,24 @@ def test_a_contact_is_made_by_attach():
         ra.AreaContact(pymunk.Space(), {})
 
 
+def test_what_has_no_area_is_named_and_a_contact_still_shows():
+    space, contact = attached_space()
+    (body,) = space.bodies
+    flat, fixed = pymunk.Circle(body, 0), pymunk.Circle(space.static_body, 0)
+    space.add(flat, fixed)
+    told = r"shapes\[2\], a Circle of bodies\[0\]: radius of a pymunk shape must be positive and finite, got 0\.0"
+    for step in (lambda: space.step(1 / 60), lambda: contact.step(1 / 60), lambda: contact.regions):
+        with pytest.raises(ValueError, match=told):
+            step()
+        assert repr(contact) == "<AreaContact of 1 bodies, 4 shapes, penetration 0.0002>"
+    space.remove(flat)
+    with pytest.raises(ValueError, match=r"shapes\[2\], a Circle of static_body: radius"):
+        space.step(1 / 60)
+    space.remove(fixed)
+    space.step(1 / 60)
+    assert "1 regions" in repr(contact)
+
+
 @pytest.mark.parametrize("value", [5, 1, True, 0, "1e-3"])
 def test_a_penetration_is_a_fraction(value):
     with pytest.raises(ValueError, match=f"penetration.*{value}"):

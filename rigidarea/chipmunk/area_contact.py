@@ -7,6 +7,7 @@ import os
 import time
 import weakref
 from collections.abc import Callable
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -345,11 +346,12 @@ class AreaContact:
         if self._space is None:
             return "<AreaContact, detached>"
         bodies, shapes = len(self._space.bodies), len(self._space.shapes)
-        regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
-        firm = (
-            f"penetration {self.penetration:g}" if self.stiffness is None else f"stiffness {self.stiffness:g}"
-        )
-        return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{firm}>"
+        regions, name = "", "penetration" if self.stiffness is None else "stiffness"
+        with suppress(
+            Exception
+        ):  # what is wrong with a shape that has come is said when the space is stepped
+            regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
+        return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{name} {getattr(self, name):g}>"
 
     # --- snapshots, copies ---
 

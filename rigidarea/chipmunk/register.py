@@ -192,7 +192,10 @@ class Register:
         heads = ffi.new("int[]", [self._packed(one) if one else -1 for one in given])
         bad = read_outlines(self._store, address_of(addresses), address_of(heads), len(shapes))
         if bad >= 0:
-            Outline.from_pymunk(shapes[bad])  # says what is wrong
+            try:
+                Outline.from_pymunk(shapes[bad])  # says what is wrong
+            except ValueError as error:
+                raise ValueError(f"{_named(shapes[bad])}: {error}") from None
             raise ValueError(f"expected shapes with an area, got {shapes[bad]!r:.80}")
         return addresses, heads, given
 
@@ -269,3 +272,15 @@ def _pointers(cdata: Iterable[Any]) -> Any:
 
 def _words(values: Iterable[Any]) -> np.ndarray:
     return np.array(list(values), np.uint64)
+
+
+def _named(shape: pymunk.Shape) -> str:
+    """Which shape of its space it is, and of which body."""
+    space, body, kind = shape.space, shape.body, type(shape).__name__
+    if space is None or body is None:
+        return kind
+    bodies = list(space.bodies)
+    whose = f"bodies[{bodies.index(body)}]" if body in bodies else "a body that is not in the space"
+    if body is space.static_body:
+        whose = "static_body"
+    return f"shapes[{list(space.shapes).index(shape)}], a {kind} of {whose}"
