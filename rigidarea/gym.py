@@ -120,7 +120,7 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         """One action for FRAME seconds. ValueError for another shape, and for values that are not finite."""
         try:
             given = np.asarray(action, dtype=np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ValueError(f"action must be 3 finite numbers, got {action!r:.80}") from None
         if given.shape != (3,) or not np.isfinite(given).all():
             raise ValueError(f"action must be 3 finite numbers, got {action!r:.80}")

@@ -103,7 +103,7 @@ def _pose(place: Sequence[float], name: str) -> tuple[float, float, float, float
     """x, y, cosine, sine."""
     try:
         x, y, angle = map(float, place)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         x = y = angle = math.nan
     if not (isfinite(x) and isfinite(y) and isfinite(angle)):
         raise ValueError(f"{name} must be finite (x, y, angle), got {place!r}")
@@ -259,7 +259,7 @@ def overlaps(outline_a: Outline, places_a: ArrayLike, outline_b: Outline, places
 def _places(places: ArrayLike, name: str) -> np.ndarray:
     try:
         given = np.asarray(places, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         given = np.empty(0)
     if (given.shape != (3,) and (given.ndim != 2 or given.shape[1] != 3)) or not np.isfinite(given).all():
         raise ValueError(f"{name} must be finite (n, 3) of x, y, angle, or one (3,), got {places!r:.80}")

@@ -197,7 +197,7 @@ class TaskVectorEnv(VectorEnv[Any, Any, Any]):
         """One action of each for FRAME seconds. ValueError for another shape, and for values that are not finite."""
         try:
             given = np.asarray(actions, np.float64)
-        except (TypeError, ValueError):
+        except (TypeError, ValueError, OverflowError):
             raise ValueError(f"actions must be finite numbers, got {actions!r:.80}") from None
         if given.shape != self.action_space.shape or not np.isfinite(given).all():
             raise ValueError(f"actions must be finite, {self.action_space.shape}, got {actions!r:.80}")

@@ -367,7 +367,7 @@ def _finite(given: ArrayLike, shape: tuple[int, ...], name: str) -> NDArray[np.f
     """An array of just that shape."""
     try:
         values = np.ascontiguousarray(given, np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be finite numbers, {shape}, got {given!r:.80}") from None
     if values.shape != shape or not np.isfinite(values).all():
         raise ValueError(f"{name} must be finite numbers, {shape}, got {values.shape}")

@@ -8,6 +8,7 @@ import pymunk
 import pytest
 
 import rigidarea as ra
+from rigidarea import bring
 
 SQUARE = [(0, 0), (1, 0), (1, 1), (0, 1)]
 
@@ -43,6 +44,20 @@ def test_complex_points_are_none(points):
         ra.Outline(points)
     with pytest.raises(ValueError, match="ring must be numbers"):
         ra.Outline.from_bulges(np.column_stack((np.array(points), np.zeros(len(points)))))
+
+
+def test_whole_numbers_beyond_a_double_are_refused():
+    huge = 10**400
+    for call in (
+        lambda: ra.Outline([(0, 0), (huge, 0), (1, 1)]),
+        lambda: ra.Outline(SQUARE, [[(0, 0), (huge, 0), (1, 1)]]),
+        lambda: ra.Outline.from_bulges([(0, 0, 0), (1, 0, huge), (1, 1, 0)]),
+        lambda: ra.overlap(ra.Outline(SQUARE), (huge, 0, 0), ra.Outline(SQUARE), (0, 0, 0)),
+        lambda: ra.overlaps(ra.Outline(SQUARE), [(huge, 0, 0)], ra.Outline(SQUARE), (0, 0, 0)),
+        lambda: bring.outlines_from_mask([[huge]]),
+    ):
+        with pytest.raises(ValueError, match="must be"):
+            call()
 
 
 @pytest.mark.parametrize("name", ["steps", "iterations", "tolerance"])

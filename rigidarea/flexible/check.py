@@ -63,7 +63,7 @@ def of_pairs(name: str, values: float | Sequence[float], pairs: int) -> NDArray[
     """One value a pair (p,) of one for all or one each: finite and not negative."""
     try:
         given = np.array(values, float)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"{name} must be a number or {pairs}, one a pair, got {values!r:.80}") from None
     if given.shape not in ((), (pairs,)):
         raise ValueError(f"{name} must be a number or {pairs}, one a pair, got shape {given.shape}")

@@ -151,7 +151,7 @@ def checked_ring(points: ArrayLike, name: str) -> Points:
     """
     try:
         ring = _floats(points)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} must be numbers of shape (n, 2), got {points!r:.80}") from error
     if ring.ndim != 2 or ring.shape[1] != 2:
         raise ValueError(f"{name} must have shape (n, 2) with n >= 3, got shape {ring.shape}")
@@ -193,7 +193,7 @@ def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
     """(points (n, 2), arcs (n, 3)) of a ring of x, y, bulge; ValueError naming what is wrong with it."""
     try:
         rows = _floats(ring)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{name} must be numbers of shape (n, 3), got {ring!r:.80}") from error
     if rows.ndim != 2 or rows.shape[1] != 3 or len(rows) < 2:
         raise ValueError(f"{name} must have shape (n, 3) with n >= 2, got shape {rows.shape}")

@@ -97,7 +97,7 @@ def outlines_from_mask(
     _check_options(threshold, scale, flip, tolerance)
     try:
         given = np.asarray(mask, dtype=np.float64)
-    except (TypeError, ValueError):
+    except (TypeError, ValueError, OverflowError):
         raise ValueError(f"mask must be numbers of shape (rows, columns), got {shown(mask, 80)}") from None
     if given.ndim != 2 or 0 in given.shape:
         raise ValueError(f"mask must have shape (rows, columns), got {given.shape}")
