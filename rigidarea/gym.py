@@ -68,7 +68,7 @@ class PegInSlot(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     ) -> None:
         if not (render_mode is None or (isinstance(render_mode, str) and render_mode == "rgb_array")):
             raise ValueError(f"render_mode must be None or 'rgb_array', got {render_mode!r}")
-        if not (isinstance(clearance, int | float) and 0 < clearance < PEG[0]):
+        if not (isinstance(clearance, int | float | np.integer | np.floating) and 0 < clearance < PEG[0]):
             raise ValueError(f"clearance must be between 0 and {PEG[0]:g}, got {clearance!r}")
         self.render_mode = render_mode
         self.clearance, self.friction = float(clearance), not_negative(friction, "friction")

@@ -97,6 +97,10 @@ def test_bad_settings_are_refused(arguments, message):
         PegInSlot(**arguments)
 
 
+def test_a_clearance_may_be_numpys():
+    assert PegInSlot(clearance=np.float32(0.125)).clearance == PegInSlot(clearance=0.125).clearance
+
+
 @pytest.mark.parametrize("action", [[0, 0], [0, 0, math.nan], "push"])
 def test_bad_actions_are_refused(action):
     env = PegInSlot()
