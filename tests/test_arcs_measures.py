@@ -165,3 +165,16 @@ def test_thin_curved_frames_keep_their_hollow(kernel: Any) -> None:
             found = kernel.one(one, pose_one, other, pose_other)
             assert found.count.tolist() == [2]
             assert found.area.sum() == pytest.approx(want, abs=1e-6)
+
+
+@pytest.mark.parametrize("bulge", [5e-324, 1e-310, 1e-200, 1e-16, 9e-9, -9e-9])
+def test_what_is_straight_to_rounding_is_straight(bulge):
+    """Its radius is rounded by more than it rises over its chord; smaller ones overflowed."""
+    square = [(0, 0, 0), (10, 0, bulge), (10, 10, 0), (0, 10, 0)]
+    outline = ra.Outline.from_bulges(square)
+    assert (outline.area, outline.bounds) == (100, (0, 0, 10, 10))
+    assert not any(arc[:, 2].any() for arc in outline.arcs)
+    with pytest.raises(ValueError, match="ring must enclose an area"):
+        ra.Outline.from_bulges([(0, 0, bulge), (10, 0, 0)])
+    (x, _, r) = ra.Outline.from_bulges([(px, py, 2e-8 * (b != 0)) for px, py, b in square]).arcs[0][1]
+    assert r == pytest.approx(10 / 8e-8) and x == pytest.approx(10 - r)  # the least arcs are still arcs

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike
 from .arcs import Points, area_and_first_moment, bulging
 
 _EPS = float(np.finfo(np.float64).eps)
+FLATTEST = 1e-8
+"""Least bulge of an arc. A smaller one rises over its chord (by b / 2 chords) less than its radius (1 / 4b chords) is
+rounded by: a straight edge is nearer to it."""
 LARGEST = 1e75  # coordinates; their fourth powers, in the moments, stay finite
 
 
@@ -203,6 +206,7 @@ def checked_bulges(ring: ArrayLike, name: str) -> tuple[Points, Points]:
     apart = np.abs(rows[:, :2] - np.roll(rows[:, :2], -1, axis=0)) > 2 * _EPS * np.abs(rows[:, :2]).max()
     if not apart.any(axis=1).all():
         raise ValueError(f"{name} must not repeat a point, nor its first at the end")
+    rows[np.abs(rows[:, 2]) < FLATTEST, 2] = 0.0
     if len(rows) == 2 and rows[:, 2].sum() == 0:
         raise ValueError(f"{name} must enclose an area, got two edges on each other")
     return bulging(rows[:, :2], rows[:, 2])

@@ -105,7 +105,8 @@ class Outline(Solid):
         """From rings of points and bulges, as CAD exchanges them: arrays (n, 3) of x, y, bulge.
 
         The edge from point i to the next is an arc that turns by 4 atan(bulge), to the left if bulge > 0; 0 is a
-        straight edge, 1 a half circle to the right of its chord. Two points are enough for a ring with an arc.
+        straight edge, and so is less than 1e-8, to rounding; 1 a half circle to the right of its chord. Two points are
+        enough for a ring with an arc.
         Raises ValueError as the constructor does; crossings are those of the arcs themselves (`simple.py`).
         """
         found = [checked_bulges(ring, "ring")] + [
