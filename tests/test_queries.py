@@ -101,10 +101,8 @@ def test_rays_through_corners(name):
     for seed in range(60):
         draw, space = random.Random(seed), pymunk.Space()
         body = outline.body(mass=1)
-        body.position, body.angle = (
-            (draw.choice([(0, 0), (100, 50), (3.7, -81.3)])),
-            draw.choice([0, 0.1 * seed]),
-        )
+        body.position = draw.choice([(0, 0), (100, 50), (3.7, -81.3)])
+        body.angle = draw.choice([0, 0.1 * seed])
         shape = outline.add_to(body)
         space.add(body, shape)
         space.step(1e-9)
