@@ -146,6 +146,19 @@ def test_a_plan_overrides_its_own_bodies_only():
     assert made.overrides == {}
 
 
+def test_a_plan_samples_what_has_an_outline():
+    space, contact = attached_space()
+    contact.detach()
+    made = ra.plan(space, "10%", 0.5)
+    for shape in list(space.shapes):
+        with pytest.raises(
+            ValueError, match=f"expected a shape with an outline .*got <.*{type(shape).__name__}"
+        ):
+            made.override(shape, sampling=0.1)
+    assert made.overrides == {}
+    made.override(level="rigid").apply()
+
+
 def test_queries_want_a_space_and_a_filter():
     for query, places in ((ra.point_query, ((0, 0),)), (ra.segment_query, ((0, 0), (1, 0)))):
         with pytest.raises(ValueError, match=r"space must be a pymunk\.Space, got None"):

@@ -178,18 +178,6 @@ def test_a_shape_sampled_as_asked():
     assert len(shape.outline.rings[0]) == len(gear.sample(1e-3).rings[0]) < len(gear.rings[0])
 
 
-def test_what_has_no_outline_is_not_sampled():
-    space, bodies = stack()
-    made = ra.plan(space, 0.01)
-    for shape in (*bodies[0].shapes, *space.static_body.shapes):
-        with pytest.raises(
-            ValueError, match=f"expected a shape with an outline .*got <.*{type(shape).__name__}"
-        ):
-            made.override(shape, sampling=0.1)
-    assert made.overrides == {}
-    made.override(level="rigid").apply()
-
-
 @pytest.mark.parametrize(
     ("target", "settings", "message"),
     [
