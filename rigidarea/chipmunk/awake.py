@@ -76,6 +76,9 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         x, y, angle, w = body.x, body.y, body.angle, body.w
         body.left_vx = body.vx
         body.left_vy = body.vy
+        body.gained = (
+            abs(body.vx - body.old_vx) + abs(body.vy - body.old_vy) + abs(body.w - body.old_w) * body.extent
+        )
         notice(s, address, body)
         told = met and body.inverse_mass == 0.0 and body.inverse_moment == 0.0
         # a new velocity has it ahead, by half a substep, of who goes along as fast as it went
@@ -96,7 +99,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.old_w = body.w
         body.old_since = body.since
         body.stamp = s.frame
-        body.was_calm = 1 if body.calm > 0 else 0
+        body.was_calm = 1 if body.calm > 0 or body.calm == -2 else 0
         mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         body.changed = 1 if mobile != body.mobile or not body.awake else 0
         body.mobile = mobile

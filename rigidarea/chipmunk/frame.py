@@ -22,7 +22,7 @@ from .begin import listened
 from .explicit import explicit_frame
 from .frame_end import finish_frame
 from .frame_start import start_frame
-from .joints import keep_jointed_busy, start_joints
+from .joints import note_jointed, start_joints
 from .phases import REPORTING, WATCHING, lap, start
 from .record import BROKEN, GROW, ask, time_step
 from .substep import near_pairs, substeps
@@ -98,7 +98,7 @@ def _substeps(s: Any, space: int, dt: float) -> int:
     """
     tables = load_tables(s)
     n, least = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
-    keep_jointed_busy(s, tables)
+    note_jointed(s, tables)
     if s.tolerance > 0.0:
         all_in_one_group(tables)
         return int(substeps_to_tolerance(s, space, dt, n))

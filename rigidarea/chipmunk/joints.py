@@ -233,12 +233,20 @@ def own_joints(s: Any, tables: Tables) -> int:
 
 
 @kernel
-def keep_jointed_busy(s: Any, tables: Tables) -> None:
-    """What hangs in a joint is never at rest: it is held the better the shorter the step."""
+def note_jointed(s: Any, tables: Tables) -> None:
+    """Note who hangs in a joint; nobody does so calmly with one that moves."""
     for joint in joints_of(s):
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0 and tables.bodies[i].mobile:
-                tables.bodies[i].calm = -1
+                body = tables.bodies[i]
+                body.calm = -2 if body.calm > 0 or body.calm == -2 else -1
+    for joint in joints_of(s):
+        if joint.taken and joint.a >= 0 and joint.b >= 0:
+            a = tables.bodies[joint.a]
+            b = tables.bodies[joint.b]
+            if a.calm == -1 or b.calm == -1:
+                a.wants = max(a.wants, s.substeps if a.calm == -2 else 1)
+                b.wants = max(b.wants, s.substeps if b.calm == -2 else 1)
 
 
 @kernel

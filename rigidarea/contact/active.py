@@ -20,10 +20,7 @@ from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 ISLAND = record(
     [
-        (
-            "again",
-            "i1",
-        ),  # bits, why it is solved a second time: contacts, joints give energy (`given_energy`)
+        ("again", "i1"),  # bits, why it is solved anew: contacts, joints give energy (`given_energy`)
         ("active", "i1"),  # 1: it is not solved yet
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors

@@ -17,7 +17,7 @@ BODY = record(
         ("awake", "i1"),  # 1: it is in `Tables.awake`
         ("mobile", "i1"),  # 1: contacts may move it (when it is awake)
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
-        ("calm", "i1"),  # 1: it hardly moved when the last frame began; -1: it hangs in a joint
+        ("calm", "i1"),  # 1: it hardly moved when the frame began; -1: it hangs in a joint; -2: both
         ("was_calm", "i1"),  # 1: calm, a frame before
         ("pushed", "i1"),  # COMING, LYING: how contacts have pushed it in the substep before; 0: not at all
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
@@ -50,6 +50,7 @@ BODY = record(
         ("kick_x", "f8"),  # velocity that everything but contacts and joints adds in a substep
         ("kick_y", "f8"),
         ("kick_w", "f8"),
+        ("gained", "f8"),  # by what the last frame has changed its velocity (length/time)
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
         ("came_vy", "f8"),
         ("came_w", "f8"),

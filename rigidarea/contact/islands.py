@@ -104,9 +104,9 @@ def demand(
         body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
         slow = CALM * kick_of(law, body.extent, dt)
-        body.calm = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent <= (
-            3.0 * slow if before else slow
-        )
+        # what turns back moves no more than what lies, for a moment
+        fast = max(body.gained, abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent)
+        body.calm = fast <= (3.0 * slow if before else slow)
         body.wants = max(1 if free and before and body.calm else n, body.asked)
         most = max(most, body.wants)
         least = min(least, body.wants)

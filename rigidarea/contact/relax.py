@@ -17,7 +17,7 @@ from ..compile.jit import kernel
 from ..geometry.place import turn
 from .active import island_of, list_active, measure
 from .row import take_inverse
-from .tables import DRIFTS, ISLANDS, LED, LIVE, ROWS, Law, Tables
+from .tables import DRIFTS, ISLANDS, JOINTS, LED, LIVE, ROWS, Law, Tables
 
 
 @kernel
@@ -30,8 +30,9 @@ def begin_to_relax(tables: Tables, law: Law, h: float) -> bool:
     for k in range(tables.counters[ISLANDS]):
         tables.islands[k].active = 0
     for i in range(tables.counters[ROWS]):
-        if _stiffen(tables.rows[i]):
-            tables.islands[island_of(tables, tables.rows[i])].active = 1
+        row = tables.rows[i]
+        if _stiffen(row, row.ends > 0 and row.jammed == 1 and _hinged(tables, row.a, row.b)):
+            tables.islands[island_of(tables, row)].active = 1
             bears = True
     if bears:
         list_active(tables)
@@ -99,17 +100,27 @@ def _turn_back(row: Any, a: Any, b: Any, h: float) -> None:
         b.w += back if ib > 0.0 else 0.0
 
 
+@kernel
+def _hinged(tables: Tables, a: int, b: int) -> bool:
+    """Whether a joint holds two bodies to each other."""
+    for k in range(tables.counters[JOINTS]):
+        joint = tables.joints[k]
+        if joint.mine and ((joint.a == a and joint.b == b) or (joint.a == b and joint.b == a)):
+            return True
+    return False
+
+
 @kernel(forceinline=True)
-def _stiffen(row: Any) -> bool:
+def _stiffen(row: Any, hinged: bool) -> bool:
     """The row as of a rigid contact, as far as the step is too long for its spring; whether it bears as such."""
     row.was1 = row.l1
     row.was2 = row.l2
     row.was_t = row.lt
     if row.ends == 0:
         return False
-    if row.jammed:  # held overlapped by a joint: what that bears it goes on bearing, and opens no faster
-        row.f1 = row.l1
-        row.f2 = row.l2
+    if row.jammed:  # held overlapped it presses nobody; what a joint of the two bears it goes on bearing
+        row.f1 = row.l1 if hinged else 0.0
+        row.f2 = row.l2 if hinged else 0.0
         row.held = 0.0
         return bool(row.l1 + row.l2 > 0.0)
     if row.theta == 0.0:
