@@ -347,9 +347,8 @@ class AreaContact:
             return "<AreaContact, detached>"
         bodies, shapes = len(self._space.bodies), len(self._space.shapes)
         regions, name = "", "penetration" if self.stiffness is None else "stiffness"
-        with suppress(
-            Exception
-        ):  # what is wrong with a shape that has come is said when the space is stepped
+        # what is wrong with a shape that has come is said when the space is stepped
+        with suppress(ValueError):
             regions = f"{len(self.regions)} regions, " if not self._space._locked else ""
         return f"<AreaContact of {bodies} bodies, {shapes} shapes, {regions}{name} {getattr(self, name):g}>"
 
