@@ -256,3 +256,24 @@ def test_what_hardly_moves_takes_one_substep(gravity):
     contact = ra.attach(space)
     contact.step(1 / 60, frames=300)
     assert contact.step(1 / 60) == 1
+
+
+@pytest.mark.parametrize("elasticity", [0.0, 1.0])
+def test_without_weight_a_blow_is_the_same_at_any_speed(elasticity):
+    """A disc hits a row of six that touch at 20, 1, .05 px/s: the same parts of its speed (no scale but rounding's)."""
+    found = []
+    for speed in (20.0, 1.0, 0.05):
+        space = pymunk.Space()
+        discs = []
+        for i in range(7):
+            disc = pymunk.Body(1, 50)
+            disc.position = 20.0 * i + (0 if i else -1e-3 - 0.02 * speed), 0
+            shape = pymunk.Circle(disc, 10)
+            shape.elasticity = elasticity
+            space.add(disc, shape)
+            discs.append(disc)
+        discs[0].velocity = speed, 0
+        ra.attach(space).step(1 / 60, frames=30)
+        found.append([disc.velocity.x / speed for disc in discs])
+    assert found[0] == pytest.approx(found[1], abs=0.005)  # of the tolerances of a solve
+    assert found[0] == pytest.approx(found[2], abs=0.005)

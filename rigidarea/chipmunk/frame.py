@@ -98,7 +98,7 @@ def _substeps(s: Any, space: int, dt: float) -> int:
     """
     tables = load_tables(s)
     n, least = demand(load_pool(s), tables, load_work(s), load_law(s), dt, s.substeps, s.steps_given == 0)
-    note_jointed(s, tables)
+    note_jointed(s, tables, load_law(s))
     if s.tolerance > 0.0:
         all_in_one_group(tables)
         return int(substeps_to_tolerance(s, space, dt, n))

@@ -25,6 +25,7 @@ from ..contact.joint_record import (
     DIRECTION,
     JOINT,
     KINDS,
+    LIMIT,
     PARAMETERS,
     PIN,
     PIVOT,
@@ -32,9 +33,14 @@ from ..contact.joint_record import (
     ROTARY_SPRING,
     SPRING,
 )
+from ..contact.motion import kick_of
 from ..contact.space_record import EXTREME, row_of_body
-from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Tables
+from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Law, Tables
 from .record import state_of, words
+
+#: A joint gives way to what it bears by the square of a substep: one that bears more than so many times its bodies' own
+#: weight takes no other number of them when they lie still, since that would move them.
+BORNE = 4.0
 
 _call_user = caller("void(uintp, uintp)")
 _call_force = caller("float64(uintp, float64)")
@@ -232,9 +238,26 @@ def own_joints(s: Any, tables: Tables) -> int:
     return count
 
 
+@kernel(forceinline=True)
+def _bears_more(joint: Any, a: Any, b: Any, law: Law) -> bool:
+    """Whether a joint has borne more than BORNE times what its two bodies weigh."""
+    if joint.step <= 0.0:
+        return True
+    turns = joint.kind >= LIMIT or joint.kind == ROTARY_SPRING
+    own = 0.0
+    extent = math.inf
+    for body in (a, b):
+        inverse = body.inverse_moment if turns else body.inverse_mass
+        if inverse > 0.0:
+            own += 1.0 / inverse
+            extent = min(extent, body.extent)
+    speed = math.hypot(joint.jx, joint.jy) * (extent if turns else 1.0)
+    return bool(speed > BORNE * kick_of(law, extent, joint.step) * own)
+
+
 @kernel
-def note_jointed(s: Any, tables: Tables) -> None:
-    """Note who hangs in a joint; nobody does so calmly with one that moves."""
+def note_jointed(s: Any, tables: Tables, law: Law) -> None:
+    """Note who hangs in a joint; nobody does so calmly with one that moves, nor under a load."""
     for joint in joints_of(s):
         for i in (joint.a, joint.b):
             if joint.taken and i >= 0 and tables.bodies[i].mobile:
@@ -244,9 +267,12 @@ def note_jointed(s: Any, tables: Tables) -> None:
         if joint.taken and joint.a >= 0 and joint.b >= 0:
             a = tables.bodies[joint.a]
             b = tables.bodies[joint.b]
-            if a.calm == -1 or b.calm == -1:
-                a.wants = max(a.wants, s.substeps if a.calm == -2 else 1)
-                b.wants = max(b.wants, s.substeps if b.calm == -2 else 1)
+            heavy = _bears_more(joint, a, b, law)
+            if heavy or a.calm == -1 or b.calm == -1:
+                for body in (a, b):
+                    if body.calm == -2:
+                        body.calm = -1 if heavy else -2
+                        body.wants = max(body.wants, s.substeps)
 
 
 @kernel

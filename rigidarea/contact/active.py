@@ -18,6 +18,10 @@ from .islands import root_of, unite
 from .motion import kick_of
 from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
+#: Without weight a speed is none with which a body goes this part of the depth at which it may lie in a step: one of
+#: 20 px goes a pixel in half an hour.
+UNSEEN = 1e-3
+
 ISLAND = record(
     [
         ("again", "i1"),  # bits, why it is solved anew: contacts, joints give energy (`given_energy`)
@@ -171,7 +175,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.closing = max(island.closing, abs(tables.regions[row.region].speed))
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
-        kick = kick_of(law, island.extent, h)
+        kick = kick_of(law, island.extent, h) * (1.0 if law.gravity > 0.0 else UNSEEN)
         speed = 0.0
         able = 0.0
         if island.mass > 0.0:  # what is the same for all is nobody's speed
@@ -179,7 +183,9 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.energy = max(0.0, island.energy - common)
             speed = math.sqrt(2.0 * island.energy / island.mass)
             able = math.sqrt(2.0 * (island.energy + island.held) / island.mass)
-            kick = max(kick, math.sqrt(island.pushed / island.mass))
+            pushed = math.sqrt(island.pushed / island.mass)
+            island.still = island.still and pushed > 0.0  # without load a small change is small at rest too
+            kick = max(kick, pushed)
         island.small = LEFT * kick + MOVED * speed
         island.still = island.still and max(able, island.closing) < kick
 

@@ -22,6 +22,11 @@ from .tables import ISLANDS, LIVE, ROWS, Law, Tables
 DRIVE = 2.0
 
 
+#: How something that moves as it is told drives an island: it touches it, or a joint of it: what that is told by is not
+#: to be kept back (a servo, a crane, the hand that drags).
+PRESSED, LED_BY_JOINT = 1, 2
+
+
 @kernel(forceinline=True)
 def _drive(island: Any, row: Any, body: Any, arm: float, lean: float) -> None:
     """Note the velocity of a point of a body that no impulse moves, and of its surface."""
@@ -38,7 +43,7 @@ def _drive(island: Any, row: Any, body: Any, arm: float, lean: float) -> None:
 
 @kernel
 def _find_drivers(tables: Tables, law: Law) -> bool:
-    """Whether islands are driven; between what velocities (`low_x` to `high_y` of each)."""
+    """Whether islands are pressed by what moves; between what velocities (`low_x` to `high_y` of each)."""
     driven = False
     for k in range(tables.counters[ISLANDS]):
         island = tables.islands[k]
@@ -49,16 +54,16 @@ def _find_drivers(tables: Tables, law: Law) -> bool:
         row = tables.rows[i]
         a = tables.bodies[row.a]
         b = tables.bodies[row.b]
-        if row.nx == 0.0 and row.ny == 0.0:
-            continue
         island = tables.islands[island_of(tables, row)]
-        if not moves(a):
-            _drive(island, row, a, row.arm_a, row.lean_a)
-            island.driven |= drives(law, a)
-        if not moves(b):
-            _drive(island, row, b, row.arm_b, row.lean_b)
-            island.driven |= drives(law, b)
-        driven |= island.driven == 1
+        by = PRESSED if row.ends > 0 else LED_BY_JOINT
+        for body, arm, lean in ((a, row.arm_a, row.lean_a), (b, row.arm_b, row.lean_b)):
+            if not moves(body):
+                _drive(island, row, body, arm, lean)
+                if drives(law, body) and (body.vx != 0.0 or body.vy != 0.0 or body.w != 0.0):
+                    island.driven |= by
+                    driven |= by == PRESSED
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].driven = tables.islands[k].driven == PRESSED
     return driven
 
 

@@ -92,3 +92,30 @@ def test_a_driver_gives_its_own_speed() -> None:
     for _ in range(30):
         space.step(DT)
     assert ball.velocity.x == pytest.approx(600, rel=1e-3)  # as of any bounce (`test_impacts`)
+
+
+@pytest.mark.parametrize("kind", ["gear", "limit", "spring"])
+def test_what_a_servo_turns_goes_along(kind: str) -> None:
+    """A body pivoted on a kinematic one that turns at 10 rad/s all at once: what a joint leads is not kept back.
+
+    (It was at 2.8 rad/s in the end, while only points' velocities counted.)
+    """
+    space = pymunk.Space()
+    servo = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    arm = pymunk.Body(1, 100)
+    space.add(servo, pymunk.Circle(servo, 5), arm, pymunk.Poly.create_box(arm, (60, 6)))
+    space.add(pymunk.PivotJoint(servo, arm, (0, 0)))
+    held = {
+        "gear": pymunk.GearJoint(servo, arm, 0, 1),
+        "limit": pymunk.RotaryLimitJoint(servo, arm, 0, 0),
+        "spring": pymunk.DampedRotarySpring(servo, arm, 0, 1e5, 1e3),
+    }
+    space.add(held[kind])
+    for joint in space.constraints:
+        joint.collide_bodies = False
+    rigidarea.attach(space)
+    space.step(DT)
+    servo.angular_velocity = 10
+    for _ in range(120):
+        space.step(DT)
+    assert arm.angular_velocity == pytest.approx(10, rel=0.01)  # the spring has swung out by then
