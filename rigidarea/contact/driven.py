@@ -20,10 +20,8 @@ from .tables import ISLANDS, LIVE, ROWS, Law, Tables
 #: An island's speed (root of the mean square by mass) grows in a substep by no more than so many times what its drivers
 #: differ by: an elastic body between two walls that close in comes back faster by twice that.
 DRIVE = 2.0
-
-
-#: How something that moves as it is told drives an island: it touches it, or a joint of it: what that is told by is not
-#: to be kept back (a servo, a crane, the hand that drags).
+#: How a kinematic body that moves drives an island: by contacts; by a joint, whose lead is not to be kept back (servos,
+#: cranes, the hand that drags).
 PRESSED, LED_BY_JOINT = 1, 2
 
 
