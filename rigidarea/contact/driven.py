@@ -30,9 +30,10 @@ def _drive(island: Any, row: Any, body: Any, arm: float, lean: float) -> None:
     """Note the velocity of a point of a body that no impulse moves, and of its surface."""
     v = body.vx * row.nx + body.vy * row.ny + body.w * arm
     slip = body.vy * row.nx - body.vx * row.ny + body.w * lean
-    for surface in (row.tt if row.ends > 0 else 0.0, -row.tt if row.ends > 0 else 0.0):
-        x = v * row.nx - (slip + surface) * row.ny
-        y = v * row.ny + (slip + surface) * row.nx
+    surface = row.tt if row.ends > 0 else 0.0
+    for along in (slip + surface, slip - surface):
+        x = v * row.nx - along * row.ny
+        y = v * row.ny + along * row.nx
         island.low_x = min(island.low_x, x)
         island.low_y = min(island.low_y, y)
         island.high_x = max(island.high_x, x)
@@ -129,15 +130,13 @@ def lessen_driven(tables: Tables, law: Law) -> None:
         if not island.driven:
             continue
         differ = math.hypot(island.high_x - island.low_x, island.high_y - island.low_y)
-        had = island.energy + island.ahead + island.held + 0.5 * island.mending
+        # what joints bore here may be what a driver has pinched: no load to be lifted
+        had = island.energy + island.ahead + island.held + 0.5 * island.mending - island.lifted
         root = math.sqrt(had) + DRIVE * differ * math.sqrt(0.5 * island.mass)
-        over = root * root - island.energy
+        over = max(0.0, root * root - island.energy)  # alone with one driver it is nothing, but for rounding
         if island.product + island.curvature > over:
-            # the positive root of energy(part) = what it may have
-            below = island.product + math.sqrt(
-                island.product * island.product + 4.0 * island.curvature * over
-            )
-            island.part = min(1.0, 2.0 * over / below) if below > 0.0 else 1.0
+            reach = math.sqrt(island.product * island.product + 4.0 * island.curvature * over)
+            island.part = min(1.0, (reach - island.product) / (2.0 * island.curvature))
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
         if number >= 0 and tables.islands[number].driven:
