@@ -94,6 +94,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             body.trend_x = 0.0
             body.trend_y = 0.0
             body.trend_w = 0.0
+            body.lead_x = body.lead_y = body.lead_w = 0.0
         body.old_vx = body.vx
         body.old_vy = body.vy
         body.old_w = body.w

@@ -54,7 +54,7 @@ def whole_frame(s: Any, space: int) -> None:
         tables.counters[COUNTED] = s.frame
     else:
         undo_frame(s, tables)
-    finish_frame(s, tables, good, dt)
+    finish_frame(s, space, tables, good, dt)
     lap(s, REPORTING)
 
 

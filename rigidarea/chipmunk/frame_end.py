@@ -7,21 +7,24 @@ from typing import Any
 from ..compile.jit import kernel
 from ..contact.tables import AWAKE, DRIFTS, LED, Tables
 from ..geometry.place import place
+from .frame_start import leads
 from .joints import joints_of
-from .record import cache_boxes, words, write_bias, write_motion, write_place
+from .record import cache_boxes, floats, words, write_bias, write_motion, write_place
 
 
 @kernel
-def finish_frame(s: Any, tables: Tables, good: bool, dt: float) -> None:
+def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> None:
     """Give everything back to Chipmunk: velocities, places, and the shapes' boxes that queries look at.
 
     Of a frame that failed also what the user's position functions have moved.
     """
+    g = floats(space + s.space_gravity, 2)
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         if body.stamp != s.frame:
             continue
         if good:  # a frame that is run again, or fails, has not been
+            body.lead_x, body.lead_y, body.lead_w = leads(body, g[0], g[1], dt)
             body.trend_x = body.forced_x - body.was_x
             body.trend_y = body.forced_y - body.was_y
             body.trend_w = body.forced_w - body.was_w

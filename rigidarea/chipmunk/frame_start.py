@@ -66,15 +66,29 @@ def _look_ahead(body: Any, x: float, y: float) -> None:
 
 
 @kernel(forceinline=True)
-def _add_trend(body: Any, dt: float) -> None:
+def _lead(given: float, force: float, change: float, before: float, dt: float) -> float:
+    """What a force has given ahead when a frame of dt ends, no more than half of what it gives in one (length/time).
+
+    given: until now; force, change, before: its acceleration, by how much that has changed, and in the frame before.
+    """
+    given += dt * _half_on(change, before)
+    most = 0.5 * dt * force
+    return min(max(given, min(most, 0.0)), max(most, 0.0))
+
+
+@kernel(forceinline=True)
+def leads(body: Any, gx: float, gy: float, dt: float) -> tuple[float, float, float]:
     """Forces were told where the body was when the frame began, and act in its middle: as they change, they go on.
 
     Else springs and rafts that a program makes of forces would swing higher and higher: a force that lags by half a
-    frame gives energy. (The second order of Adams and Bashforth; a thruster gives what it is told and nothing else.)
+    frame gives energy. (The second order of Adams and Bashforth.) What has been given ahead is taken back as the force
+    goes: a thruster gives what it is told and nothing else.
     """
-    body.gain_x += dt * _half_on(body.forced_x - body.was_x, body.trend_x)
-    body.gain_y += dt * _half_on(body.forced_y - body.was_y, body.trend_y)
-    body.gain_w += dt * _half_on(body.forced_w - body.was_w, body.trend_w)
+    return (
+        _lead(body.lead_x, body.forced_x - gx, body.forced_x - body.was_x, body.trend_x, dt),
+        _lead(body.lead_y, body.forced_y - gy, body.forced_y - body.was_y, body.trend_y, dt),
+        _lead(body.lead_w, body.forced_w, body.forced_w - body.was_w, body.trend_w, dt),
+    )
 
 
 @kernel(forceinline=True)
@@ -163,7 +177,8 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
     concave = tables.counters[CONCAVE] > 0
     dt = time_step(space)
     rate = 1.0 / dt if dt > 0.0 else 0.0
-    damped = 1.0 - floats(space + s.space_gravity, 3)[2] ** dt  # Chipmunk's damping stands behind its gravity
+    g = floats(space + s.space_gravity, 3)
+    damped = 1.0 - g[2] ** dt  # Chipmunk's damping stands behind its gravity
     pressed = False
     i = -1
     for address in members(space, s.space_bodies):
@@ -195,18 +210,19 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         body.forced_x = rate * (x + lost * body.old_vx)
         body.forced_y = rate * (y + lost * body.old_vy)
         body.forced_w = rate * (w + lost * body.old_w)
-        body.gain_x = 0.0
-        body.gain_y = 0.0
-        body.gain_w = 0.0
-        if (
-            s.explicit or not own
-        ):  # of an explicit frame it has been given, and contacts want to know it all the same
+        body.gain_x = body.gain_y = body.gain_w = 0.0
+        # of an explicit frame it has been given, and contacts want to know it all the same
+        if s.explicit or not own:
             body.gain_x = x
             body.gain_y = y
             body.gain_w = w
-            if not s.explicit:
-                _add_trend(body, dt)
-        if not (s.explicit or own):
+        if s.explicit or own:
+            body.lead_x = body.lead_y = body.lead_w = 0.0
+        else:
+            ahead_x, ahead_y, ahead_w = leads(body, g[0], g[1], dt)
+            body.gain_x += ahead_x - body.lead_x
+            body.gain_y += ahead_y - body.lead_y
+            body.gain_w += ahead_w - body.lead_w
             body.vx = body.old_vx
             body.vy = body.old_vy
             body.w = body.old_w

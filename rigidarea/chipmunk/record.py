@@ -151,6 +151,8 @@ def notice(s: Any, address: int, body: Any) -> None:
     read_place(s, address, body)
     read_motion(s, address, body)
     set_place = x != body.x or y != body.y or angle != body.angle
+    if vx != body.vx or vy != body.vy or w != body.w:  # set anew: nothing of it is taken back
+        body.lead_x = body.lead_y = body.lead_w = 0.0
     if body.stamp >= 0 and (set_place or vx != body.vx or vy != body.vy or w != body.w):
         body.since = 0.0
 

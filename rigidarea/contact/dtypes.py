@@ -74,6 +74,9 @@ BODY = record(
         ("trend_x", "f8"),  # and by how much it was more than in the one before that
         ("trend_y", "f8"),
         ("trend_w", "f8"),
+        ("lead_x", "f8"),  # what forces that go on as they change have given ahead (length/time; 1/time)
+        ("lead_y", "f8"),
+        ("lead_w", "f8"),
         # how long it has moved by itself: since the user last set its place or velocity (time)
         ("since", "f8"),
         ("left_vx", "f8"),  # velocity with which the last frame has left it (length/time)
