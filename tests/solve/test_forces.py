@@ -154,7 +154,6 @@ def test_what_attracts_one_another_goes_nowhere():
     ra.attach(space)
     fastest = ahead = 0.0
     for _ in frames(10.0):
-        most = 0.0
         for i, a in enumerate(bodies):
             for b in bodies[:i]:
                 apart = b.position - a.position
