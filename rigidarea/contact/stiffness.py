@@ -9,9 +9,9 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .constants import DEEPER, LOAD_TIME, RELEASE_STEPS, WEIGHTLESS_PHASE2
+from .constants import DEEPER, LOAD_TIME, PLACED_LOADS, RELEASE_STEPS, WEIGHTLESS_PHASE2
 from .region import closing, growth, least_extent, put_closer, region_stiffness
-from .tables import AWAKE, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
+from .tables import AWAKE, FIXED, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
 
 @kernel(forceinline=True)
@@ -164,4 +164,7 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
 @kernel(forceinline=True)
 def _most(a: Any, b: Any, most: float) -> float:
     """The most that a contact of two bodies may bear, where nobody who is free bears more than `most` (force)."""
-    return math.inf if a.kind == LED or b.kind == LED or a.calm < 0 or b.calm < 0 else most
+    driven = (a.kind != FIXED and not a.mobile) or (b.kind != FIXED and not b.mobile)
+    if a.kind == LED or b.kind == LED or a.calm < 0 or b.calm < 0:
+        return math.inf
+    return PLACED_LOADS * most if driven else most
