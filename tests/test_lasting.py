@@ -33,7 +33,7 @@ SCRATCH = ("rows", "factors", "mobility", "islands", "queue", "members", "told",
 OWN = {"bodies": memory._OWN, "shapes": {*memory._OWN, "asked"}, "pairs": {"arbiter"}, "near": {"a", "b"}}
 #: Numbers of frames: a space goes on counting after a restore.
 FRAMES = {
-    ("bodies", "stamp"),
+    *(("bodies", name) for name in ("stamp", "disturbed")),
     ("shapes", "seen"),
     *(("pairs", name) for name in ("stamp", "lasting", "waiting")),
 }

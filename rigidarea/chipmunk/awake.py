@@ -30,7 +30,7 @@ def _list_shapes(s: Any, tables: Tables, body: Any, anew: bool) -> bool:
         tables.movers[counters[MOVERS]] = i
         counters[MOVERS] += 1
         sensor = shape.sensor
-        changed = read_shape(s, shape)
+        changed = read_shape(s, shape, body)
         if changed or anew:
             ask_about(tables, i)
             counters[UNSORTED] = 1
@@ -79,6 +79,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.gained = (
             abs(body.vx - body.old_vx) + abs(body.vy - body.old_vy) + abs(body.w - body.old_w) * body.extent
         )
+        body.went = abs(x - body.old_x) + abs(y - body.old_y) + abs(angle - body.old_a) * body.extent
         notice(s, address, body)
         told = met and body.inverse_mass == 0.0 and body.inverse_moment == 0.0
         # a new velocity has it ahead, by half a substep, of who goes along as fast as it went
@@ -101,6 +102,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body.old_since = body.since
         body.stamp = s.frame
         body.was_calm = 1 if body.calm > 0 or body.calm == -2 else 0
+        body.has_rested = body.rests
         mobile = 1 if body.inverse_mass > 0.0 or body.inverse_moment > 0.0 else 0
         body.changed = 1 if mobile != body.mobile or not body.awake else 0
         body.mobile = mobile

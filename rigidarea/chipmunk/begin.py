@@ -69,8 +69,12 @@ def look_at_jointed(s: Any, tables: Tables) -> None:
         for i in (joint.a, joint.b):
             if i >= 0 and not tables.bodies[i].awake:
                 body = tables.bodies[i]
+                x, y, angle, vx, vy, w = body.x, body.y, body.angle, body.vx, body.vy, body.w
                 read_place(s, body.address, body)
                 put_to_rest(s, body)
+                moved = x != body.x or y != body.y or angle != body.angle
+                if moved or vx != body.vx or vy != body.vy or w != body.w:
+                    body.disturbed = s.frame
                 if (
                     space_of(body.address) == 0
                 ):  # in no space: nobody moves it, but joints change its velocity

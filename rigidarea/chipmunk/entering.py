@@ -80,6 +80,7 @@ def _row_of_body(s: Any, tables: Tables, address: int) -> int:
     body.address = address
     body.stamp = -1
     body.replaced = -1
+    body.disturbed = -1
     enter_body(s, address, i)
     read_place(s, address, body)
     put_to_rest(s, body)
@@ -131,6 +132,7 @@ def _come(s: Any, tables: Tables, address: int, head: int) -> int:
         read_place(s, own, body)
     body.held += 1
     body.unmeasured = 1
+    body.disturbed = s.frame + 1
     i = counters[FREE_SHAPE]
     if i >= 0:
         counters[FREE_SHAPE] = tables.shapes[i].body

@@ -16,7 +16,7 @@ from ..contact.passed import any_body_left_its_margin, left_its_margin, recover_
 from ..contact.solve import finite
 from ..contact.space_record import load_law, load_pool, load_tables, load_work
 from ..contact.stiffness import adapt_stiffness
-from ..contact.tables import COUNTED, REJOINED, TOOTHED, TURN, UNSORTED
+from ..contact.tables import AWAKE, COUNTED, REJOINED, TOOTHED, TURN, UNSORTED
 from ..contact.verdict import wait_for_verdicts
 from .begin import listened
 from .explicit import explicit_frame
@@ -80,6 +80,8 @@ def _begin(s: Any, space: int, dt: float) -> bool:
     start_joints(s)
     if tables.counters[REJOINED]:
         order_joints(tables)
+        for k in range(tables.counters[AWAKE]):  # whoever a joint held is among them
+            tables.bodies[tables.awake[k]].disturbed = s.frame
     if tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0:  # teeth ask before the first substep looks
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):

@@ -23,6 +23,9 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
         body = tables.bodies[tables.awake[k]]
         if body.stamp != s.frame:
             continue
+        if body.steps == 0 and good and s.explicit == 0 and body.kind == DRIFTS:  # at rest, as it was
+            write_motion(s, body)
+            continue
         if good:  # a frame that is run again, or fails, has not been
             body.lead_x, body.lead_y, body.lead_w = leads(body, g[0], g[1], dt)
             body.trend_x = body.forced_x - body.was_x

@@ -34,7 +34,7 @@ from ..contact.joint_record import (
     SPRING,
 )
 from ..contact.motion import kick_of
-from ..contact.space_record import EXTREME, row_of_body
+from ..contact.space_record import EXTREME, load_tables, row_of_body
 from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Law, Tables
 from .record import state_of, words
 
@@ -186,14 +186,20 @@ def read_joint(s: Any, joint: Any) -> None:
     if joint.kind < 0:
         return
     limits = array_at(joint.address + s.constraint_collide - 24, (3,), np.float64)
+    changed = joint.max_force != limits[0] or joint.error_bias != limits[1] or joint.max_bias != limits[2]
     joint.max_force = limits[0]
     joint.error_bias = limits[1]
     joint.max_bias = limits[2]
     kind = array_at(s.kinds_at, (KINDS, KIND_WORDS), np.int64)[joint.stored]
     given = array_at(joint.address + kind[3], (kind[4],), np.float64)
     for i in range(kind[4]):
+        changed |= joint.p[i] != given[i] and i < DIRECTION
         joint.p[i] = given[i]
         s.fragile |= abs(given[i]) > EXTREME
+    if changed:
+        for i in (joint.a, joint.b):
+            if i >= 0:
+                load_tables(s).bodies[i].disturbed = s.frame
     impulse = array_at(joint.address + kind[1], (kind[2],), np.float64)
     joint.jx = impulse[0]
     joint.jy = impulse[kind[2] - 1]
@@ -255,6 +261,25 @@ def _bears_more(joint: Any, a: Any, b: Any, law: Law) -> bool:
     return bool(speed > BORNE * kick_of(law, extent, joint.step) * own)
 
 
+@kernel(forceinline=True)
+def _disturbed(tables: Tables, joint: Any, frame: int) -> bool:
+    """Whether something about one of its bodies has been changed before this frame."""
+    for i in (joint.a, joint.b):
+        if i >= 0 and max(tables.bodies[i].disturbed, tables.bodies[i].replaced) == frame:
+            return True
+    return False
+
+
+@kernel
+def rest_joints(s: Any, tables: Tables, dt: float) -> None:
+    """Joints of bodies at rest bear for a frame of dt what they bore."""
+    for joint in joints_of(s):
+        ours = joint.taken and joint.kind >= 0 and joint.a >= 0 and joint.b >= 0
+        if ours and _substeps_of(tables, joint) == 0 and joint.step > 0.0:
+            joint.x = dt / joint.step * joint.jx
+            joint.y = dt / joint.step * joint.jy
+
+
 @kernel
 def note_jointed(s: Any, tables: Tables, law: Law) -> None:
     """Note who hangs in a joint; nobody does so calmly with one that moves, nor under a load."""
@@ -263,6 +288,8 @@ def note_jointed(s: Any, tables: Tables, law: Law) -> None:
             if joint.taken and i >= 0 and tables.bodies[i].mobile:
                 body = tables.bodies[i]
                 body.calm = -2 if body.calm > 0 or body.calm == -2 else -1
+                if joint.asked or _disturbed(tables, joint, s.frame):
+                    body.wants = max(s.substeps, body.wants)
     for joint in joints_of(s):
         if joint.taken and joint.a >= 0 and joint.b >= 0:
             a = tables.bodies[joint.a]
@@ -272,7 +299,7 @@ def note_jointed(s: Any, tables: Tables, law: Law) -> None:
                 for body in (a, b):
                     if body.calm == -2:
                         body.calm = -1 if heavy else -2
-                        body.wants = max(body.wants, s.substeps)
+                        body.wants = max(body.wants, s.substeps) if body.wants > 0 else 0
 
 
 @kernel

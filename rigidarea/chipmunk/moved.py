@@ -232,6 +232,8 @@ def _delay(tables: Tables, late: int) -> None:
     for i in range(counters[BODIES]):
         if tables.bodies[i].stamp >= 0:
             tables.bodies[i].stamp += late
+        if tables.bodies[i].disturbed >= 0:
+            tables.bodies[i].disturbed += late
         if tables.bodies[i].replaced >= 0:
             tables.bodies[i].replaced += late
     for i in range(counters[SHAPES]):

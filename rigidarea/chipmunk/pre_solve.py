@@ -118,6 +118,8 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     if pair.waiting >= tables.counters[COUNTED]:  # frames between have failed
         pair.waiting = now - 1
     pair.arbiter = arbiter
+    friction, elasticity, verdict = pair.friction, pair.elasticity, pair.verdict
+    surface_x, surface_y, c, d = pair.surface_x, pair.surface_y, pair.steer_c, pair.steer_s
     pair.swapped = 0 if pair.a == a else 1
     pair.verdict = 1 if solid and array_at(arbiter + s.arbiter_process, (1,), np.uint8)[0] else 0
     pair.jx = 0.0
@@ -136,3 +138,9 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     pair.surface_y = sign * y
     s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.rate > EXTREME
     _note_normal(s, pair, arbiter)
+    same = friction == pair.friction and elasticity == pair.elasticity and verdict == pair.verdict
+    same = same and surface_x == pair.surface_x and surface_y == pair.surface_y
+    if not (same and c == pair.steer_c and d == pair.steer_s):
+        for i in (sa.body, sb.body):
+            if tables.bodies[i].mobile:
+                tables.bodies[i].disturbed = now

@@ -148,8 +148,12 @@ def notice(s: Any, address: int, body: Any) -> None:
     """A body that is awake, as it is now, and whether it has been set so by the user."""
     x, y, angle = body.x, body.y, body.angle
     vx, vy, w = body.vx, body.vy, body.w
+    mass, moment, cog_x, cog_y = body.inverse_mass, body.inverse_moment, body.cog_x, body.cog_y
     read_place(s, address, body)
     read_motion(s, address, body)
+    same = mass == body.inverse_mass and moment == body.inverse_moment
+    if not (same and cog_x == body.cog_x and cog_y == body.cog_y):
+        body.disturbed = s.frame
     set_place = x != body.x or y != body.y or angle != body.angle
     if vx != body.vx or vy != body.vy or w != body.w:  # set anew: nothing of it is taken back
         body.lead_x = body.lead_y = body.lead_w = 0.0
@@ -180,15 +184,18 @@ def _heard(s: Any, kind: int) -> int:
 
 
 @kernel
-def read_shape(s: Any, shape: Any) -> bool:
+def read_shape(s: Any, shape: Any, body: Any) -> bool:
     """What the user may set of a shape, as it is now. Whether it may collide with others than before."""
     shape.seen = s.frame
     material = floats(shape.address + s.shape_elasticity, 2)
+    surface = floats(shape.address + s.shape_surface_velocity, 2)
+    before = shape.elasticity, shape.friction, shape.surface_x, shape.surface_y
     shape.elasticity = material[0]
     shape.friction = material[1]
-    surface = floats(shape.address + s.shape_surface_velocity, 2)
     shape.surface_x = surface[0]
     shape.surface_y = surface[1]
+    if before != (shape.elasticity, shape.friction, shape.surface_x, shape.surface_y):
+        body.disturbed = s.frame
     kind = words(shape.address + s.shape_type, 1)[0]
     if kind != shape.type or shape.epoch != s.heard_epoch:
         shape.type = kind
@@ -204,6 +211,7 @@ def read_shape(s: Any, shape: Any) -> bool:
         and masks[1] == shape.mask
     ):
         return False
+    body.disturbed = s.frame
     shape.sensor = sensor
     shape.group = group
     shape.categories = masks[0]
@@ -221,8 +229,11 @@ def look_at_partners(s: Any, tables: Tables) -> None:
         for i in (pair.a, pair.b):
             shape = tables.shapes[i]
             if shape.seen != s.frame:
-                if read_shape(s, shape):
-                    tables.counters[UNSORTED] = 1
                 body = tables.bodies[shape.body]
+                if read_shape(s, shape, body):
+                    tables.counters[UNSORTED] = 1
+                vx, vy, w = body.vx, body.vy, body.w
                 _read_velocity(s, body.address, body)
+                if vx != body.vx or vy != body.vy or w != body.w:
+                    body.disturbed = s.frame
     tables.counters[KNOWN] = tables.counters[BOXED]

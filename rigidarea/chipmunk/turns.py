@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
+from ..contact.at_rest import disturb_partners, rest
 from ..contact.islands import (
     FINEST,
     all_in_one_group,
@@ -17,9 +18,10 @@ from ..contact.islands import (
     sort_by_turns,
     spare,
 )
+from ..contact.order import bound
 from ..contact.space_record import load_tables
-from ..contact.tables import AWAKE, SUBSTEP, TURN
-from .joints import joints_of
+from ..contact.tables import AWAKE, FIRST, LAST, NEAR, ROWS, SUBSTEP, TURN
+from .joints import joints_of, rest_joints
 from .record import floats
 from .substep import near_pairs, substeps
 
@@ -35,6 +37,7 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
     tables.counters[TURN] = 0
     if not near_pairs(s, space, dt, dt, False):
         return 0
+    disturb_partners(tables, s.frame, s.substeps)
     # substeps are for contacts: what only joints hold goes as in Chipmunk's own step
     if s.steps_given == 0 and s.joint_count > 0:
         mark_bodies_with_neighbours(tables)
@@ -49,9 +52,17 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
     differ = number(tables)
     if differ and connect_in_reach(tables, dt):
         differ = number(tables)
+    then = tables.counters[SUBSTEP]
+    taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
+    if not differ and taken == 0:
+        tables.counters[ROWS] = 0
+        tables.counters[FIRST] = 0
+        tables.counters[LAST] = tables.counters[NEAR]
+        s.contacts += rest(tables, then, dt)
+        rest_joints(s, tables, dt)
+        return 1
     if not differ:
-        all_in_one_group(load_tables(s))
-        taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps
+        all_in_one_group(tables)
         return int(taken) if substeps(s, space, dt, taken) else 0
     sort_by_turns(tables, g[0], g[1])
     turn = next_turn(tables, FINEST)
@@ -63,4 +74,7 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
         if not substeps(s, space, dt, turn):
             return 0
         turn = next_turn(tables, turn)
+    bound(tables)
+    s.contacts += rest(tables, then, dt)
+    rest_joints(s, tables, dt)
     return int(taken)

@@ -99,6 +99,12 @@ ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.05
+#: At rest is what changes its velocity in a frame by no more than this part of what pushes gives: a stick that stands
+#: by less than this off its balance (rad) does not fall.
+STILL_KICK = 1e-7
+#: And goes no farther in one than this part of the depth to which it may sink: a box of 20 px, a pixel in two days. It
+#: then lies within a thousandth of where it would come to lie, since its load is averaged (LOAD_TIME).
+STILL_WAY = 2e-5
 #: Of what a solve has taken from a contact's impulse, the next takes this part again before it begins: bodies that
 #: brace one another go on with less in a few substeps, where the sweeps alone would need hundreds.
 OVERTAKE = 0.3

@@ -19,6 +19,11 @@ BODY = record(
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
         ("calm", "i1"),  # 1: it hardly moved when the frame began; -1: it hangs in a joint; -2: both
         ("was_calm", "i1"),  # 1: calm, a frame before
+        (
+            "rests",
+            "i1",
+        ),  # for so many frames it has not moved, nor what pushes it changed, to RESTED (`at_rest`)
+        ("has_rested", "i1"),  # that, a frame before
         ("pushed", "i1"),  # COMING, LYING: how contacts have pushed it in the substep before; 0: not at all
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("joined", "i1"),  # 1: a joint keeps it from colliding with somebody
@@ -51,6 +56,7 @@ BODY = record(
         ("kick_y", "f8"),
         ("kick_w", "f8"),
         ("gained", "f8"),  # by what the last frame has changed its velocity (length/time)
+        ("went", "f8"),  # and how far it has moved it (length)
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
         ("came_vy", "f8"),
         ("came_w", "f8"),
@@ -91,6 +97,10 @@ BODY = record(
         ("old_fx", "f8"),  # force and torque that the user has given it
         ("old_fy", "f8"),
         ("old_torque", "f8"),
+        (
+            "disturbed",
+            "i8",
+        ),  # last frame before which the user has changed what it does to whom it touches; -1: none
         ("replaced", "i8"),  # frame before which the user has put it elsewhere, if nothing moves it; -1: none
         # by how much the user has moved it before this frame, if contacts do not; by how much they ask a function of
         # the user's to, in the next (length)

@@ -19,6 +19,7 @@ from ..geometry.clearance import clearance
 from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
+from .at_rest import RESTED, is_at_rest
 from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .motion import earlier, kick_of, pose_of
@@ -95,19 +96,22 @@ def demand(
     """How many substeps each body wants in a frame of dt; the most and the least that any does.
 
     n, or what it has been asked for (`asked`). Where that is free also: one, if it hardly moves, now and a frame ago;
-    and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are met wherever they come
-    (`meet`); teeth, slots and hooks move under a contact that is there already.
+    none, if nothing changes; and as many as no outline needs to pass a tooth of a concave one unseen. Convex bodies are
+    met wherever they come (`meet`); teeth, slots and hooks move under a contact that is there already.
     """
     most = 1 if free else n
     least = FINEST
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
+        body.rests = min(body.has_rested + 1, RESTED) if free and is_at_rest(law, body, dt) else 0
         slow = CALM * kick_of(law, body.extent, dt)
         # what turns back moves no more than what lies, for a moment
         fast = max(body.gained, abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent)
-        body.calm = fast <= (3.0 * slow if before else slow)
+        body.calm = fast <= (3.0 * slow if before else slow) and body.disturbed != law.frame
         body.wants = max(1 if free and before and body.calm else n, body.asked)
+        if body.rests == RESTED:
+            body.wants = 0
         most = max(most, body.wants)
         least = min(least, body.wants)
     if not free or tables.counters[TOOTHED] == 0:
@@ -133,6 +137,9 @@ def all_in_one_group(tables: Tables) -> None:
         counters[UNSORTED] = 1
     counters[FIRST] = 0
     counters[LAST] = counters[NEAR]
+    for k in range(counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        body.steps = max(1, body.steps)
     enlist(tables)
 
 
@@ -154,7 +161,7 @@ def spare(tables: Tables, i: int, n: int) -> None:
     """
     if i >= 0:
         body = tables.bodies[i]
-        if body.kind != FIXED and body.steps == 0 and body.wants <= n:
+        if body.kind != FIXED and body.steps == 0 and 0 < body.wants <= n:
             body.wants = max(1, body.asked)
 
 

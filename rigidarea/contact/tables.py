@@ -306,6 +306,9 @@ def forget_pair(tables: Tables, p: int) -> None:
 def end_pair(tables: Tables, p: int) -> None:
     """Forget the pair and its regions."""
     pair = tables.pairs[p]
+    if pair.head >= 0:  # nobody whom it has borne is at rest
+        tables.bodies[tables.shapes[pair.a].body].rests = 0
+        tables.bodies[tables.shapes[pair.b].body].rests = 0
     _leave(tables, pair.a, pair.b)
     free_regions(tables.regions, tables.counters, pair.head)
     pair.head = -1

@@ -78,7 +78,10 @@ def test_places_and_materials_are_pymunks_own(seed, phase):
 @pytest.mark.parametrize("engine", ["pymunk", "area"])
 @pytest.mark.parametrize("seed", SEEDS)
 def test_the_impulse_is_what_changes_the_momentum(seed, engine):
-    """Down a slope, from frame to frame: m (v' - v) - m g dt is the arbiter's impulse, to rounding."""
+    """Down a slope, from frame to frame: m (v' - v) - m g dt is the arbiter's impulse.
+
+    To rounding, but for who comes to rest: it loses the last 1e-6 of what its weight gives in a frame.
+    """
     space, body, *_ = landed(seed, engine, angle=0.3)
     frame = []
 
@@ -96,7 +99,7 @@ def test_the_impulse_is_what_changes_the_momentum(seed, engine):
             ((impulse, normal),) = frame
             sign = 1 if impulse.dot(given) > 0 else -1  # on which of the two: pymunk's choice, tested below
             scale = body.mass * (space.gravity.length * DT + before.length)
-            assert (sign * impulse - given).length < 1e-9 * scale
+            assert (sign * impulse - given).length < (1e-6 if body.velocity == (0, 0) else 1e-9) * scale
             assert abs(given.dot(normal)) >= 0 and abs(normal.length - 1) < 1e-12
             seen += 1
     assert seen > 20

@@ -1,0 +1,82 @@
+"""Who is at rest: of whom a frame would be as the one before is not solved again.
+
+An island of which nobody moves, where nothing that goes into its frame has changed, takes no substep. What is changed
+on the way that pymunk knows it (a force, a shape's material, whoever comes near or goes) is seen as it begins:
+`disturbed` tells of what no body's motion tells. Its contacts go on bearing what they bore.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..compile.jit import kernel
+from .constants import STILL_KICK, STILL_WAY
+from .motion import kick_of
+from .tables import AWAKE, DRIFTS, FIRST, FIXED, LAST, LYING, NEAR, SUBSTEP, Law, Tables
+
+#: So many frames on end nothing has changed: stiffness follows a load in the frame after.
+RESTED = 3
+
+
+@kernel(forceinline=True)
+def is_at_rest(law: Law, body: Any, dt: float) -> bool:
+    """Whether a body neither moves nor is pushed otherwise than in the frame before.
+
+    One that no contact bears and that hangs in no joint rests where it does not move at all.
+    """
+    if body.disturbed == law.frame or body.since == 0.0 or body.asked > 0:
+        return False
+    speed = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent
+    if not body.mobile:
+        return bool(speed == 0.0 and body.put_x == 0.0 and body.put_y == 0.0 and body.put_a == 0.0)
+    pushed = dt * (abs(body.forced_x) + abs(body.forced_y) + abs(body.forced_w) * body.extent)
+    change = dt * (abs(body.forced_x - body.was_x) + abs(body.forced_y - body.was_y))
+    change += dt * abs(body.forced_w - body.was_w) * body.extent
+    kick = kick_of(law, body.extent, dt)
+    return bool(
+        body.kind == DRIFTS
+        and max(body.gained, change) <= STILL_KICK * max(kick, pushed)
+        and max(body.went, dt * speed) <= STILL_WAY * law.penetration * body.extent
+        and (speed == 0.0 or body.pushed & LYING or body.calm < 0)
+    )
+
+
+@kernel
+def disturb_partners(tables: Tables, frame: int, n: int) -> None:
+    """Who is near what does not move, and has been changed, wants n substeps (after `find_near`)."""
+    for i in range(tables.counters[NEAR]):
+        near = tables.near[i]
+        a = tables.bodies[near.a]
+        b = tables.bodies[near.b]
+        if a.kind == FIXED and max(a.disturbed, a.replaced) == frame:
+            b.wants = max(n, b.wants)
+        elif b.kind == FIXED and max(b.disturbed, b.replaced) == frame:
+            a.wants = max(n, a.wants)
+
+
+@kernel
+def rest(tables: Tables, then: int, dt: float) -> int:
+    """Bodies at rest, and the live pairs, theirs, go on for a frame of dt: how many contacts they have.
+
+    then: the substep in which they were looked at last (counters[SUBSTEP]).
+    """
+    counters = tables.counters
+    for k in range(counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if body.steps == 0:
+            body.vx = body.vy = body.w = 0.0
+            body.old_vx = body.old_vy = body.old_w = 0.0
+    contacts = 0
+    for i in range(counters[FIRST], counters[LAST]):
+        pair = tables.pairs[tables.near[i].pair]
+        if pair.parted == then:
+            pair.parted = counters[SUBSTEP]
+        r = pair.head
+        while r >= 0:
+            region = tables.regions[r]
+            region.stamp = counters[SUBSTEP]
+            pair.jx += dt * (region.force * region.nx - region.friction * region.ny)
+            pair.jy += dt * (region.force * region.ny + region.friction * region.nx)
+            contacts += 1
+            r = region.next
+    return contacts
