@@ -6,6 +6,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
+from ..contact.at_rest import RESTED
 from ..contact.broad import ask_about, measure, put_in_tree
 from ..contact.space_record import load_pool, next_row_of_body
 from ..contact.tables import AWAKE, DRIFTS, FIXED, LED, MOVERS, UNSORTED, Tables
@@ -58,6 +59,33 @@ def add_to_awake(tables: Tables, i: int, body: Any) -> None:
     tables.counters[AWAKE] += 1
 
 
+@kernel(forceinline=True)
+def _is_as_left(s: Any, address: int, body: Any) -> bool:
+    """Whether a body was at rest in the last frame, and nothing has been set of it since, nor is it pushed."""
+    if body.rests < RESTED or body.steps > 0 or not body.awake or not body.mobile:
+        return False
+    place = floats(address + s.body_position, 2)
+    cog = floats(address + s.body_cog, 2)
+    v = floats(address + s.body_velocity, 2)
+    force = floats(address + s.body_force, 2)
+    return bool(
+        place[0] == body.x
+        and place[1] == body.y
+        and floats(address + s.body_angle, 1)[0] == body.angle
+        and cog[0] == body.cog_x
+        and cog[1] == body.cog_y
+        and v[0] == body.vx
+        and v[1] == body.vy
+        and floats(address + s.body_spin, 1)[0] == body.w
+        and floats(address + s.body_inverse_mass, 1)[0] == body.inverse_mass
+        and floats(address + s.body_inverse_moment, 1)[0] == body.inverse_moment
+        and force[0] == 0.0
+        and force[1] == 0.0
+        and floats(address + s.body_torque, 1)[0] == 0.0
+        and words(address + s.body_position_func, 1)[0] == s.hold_at
+    )
+
+
 @kernel
 def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
     """All bodies that are awake, as they are now, and those that no more are. Whether all that there are are known."""
@@ -71,6 +99,14 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
             return False
         body = tables.bodies[i]
         if body.stamp == s.frame:
+            continue
+        body.same = _is_as_left(s, address, body)
+        if body.same:
+            body.stamp = s.frame
+            body.was_calm = 1 if body.calm > 0 or body.calm == -2 else 0
+            body.has_rested = body.rests
+            body.changed = 0
+            moved = False
             continue
         met = body.stamp >= 0
         x, y, angle, w = body.x, body.y, body.angle, body.w
@@ -191,6 +227,7 @@ def look_again(s: Any, tables: Tables) -> None:
         read_motion(s, body.address, body)
         moved = x != body.x or y != body.y or angle != body.angle
         if moved or vx != body.vx or vy != body.vy or w != body.w:
+            body.same = 0
             body.since = 0.0
             body.old_since = 0.0
             body.old_x, body.old_y, body.old_a = body.x, body.y, body.angle

@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..contact.constants import ROUNDING
+from ..contact.constants import ROUNDING, STILL_KICK
 from ..contact.space_record import EXTREME, next_row_of_body
 from ..contact.tables import CONCAVE, LED, NEAR, Tables
 from ..contact.verdict import allowed
@@ -163,6 +163,15 @@ def _keep_for_the_kick(body: Any, vx: float, vy: float) -> None:
     body.gain_y += vy
 
 
+@kernel(forceinline=True)
+def _pushed_as_before(s: Any, address: int, body: Any, dt: float) -> bool:
+    """Whether what the frame gives to a body at rest is what the last one gave."""
+    v = floats(address + s.body_velocity, 2)
+    change = abs(v[0] - body.gain_x) + abs(v[1] - body.gain_y)
+    change += abs(floats(address + s.body_spin, 1)[0] - body.gain_w) * body.extent
+    return bool(change <= STILL_KICK * (abs(body.gain_x) + abs(body.gain_y) + abs(body.gain_w) * body.extent))
+
+
 @kernel
 def start_frame(s: Any, space: int, tables: Tables) -> bool:
     """Where the bodies are at the frame's start, and what Chipmunk's and the user's functions did to velocities.
@@ -188,6 +197,10 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         body = tables.bodies[i]
         if body.stamp != s.frame:
             wake(s, tables, i)
+        if body.same and _pushed_as_before(s, address, body, dt):
+            s.fragile |= _is_extreme(body, dt)
+            continue
+        body.same = 0
         if s.explicit or body.kind == LED:
             read_place(s, address, body)
         read_motion(s, address, body)

@@ -63,9 +63,10 @@ def rest(tables: Tables, then: int, dt: float) -> int:
     counters = tables.counters
     for k in range(counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
-        if body.steps == 0:
+        if body.steps == 0 and not body.same:
             body.vx = body.vy = body.w = 0.0
             body.old_vx = body.old_vy = body.old_w = 0.0
+            body.left_vx = body.left_vy = 0.0
     contacts = 0
     for i in range(counters[FIRST], counters[LAST]):
         pair = tables.pairs[tables.near[i].pair]

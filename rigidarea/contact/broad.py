@@ -140,7 +140,7 @@ def renew_boxes(pool: Pool, tables: Tables, h: float, time: float) -> None:
         i = tables.movers[k]
         shape = tables.shapes[i]
         body = tables.bodies[shape.body]
-        if turn != 0 and body.steps != turn:
+        if (turn != 0 and body.steps != turn) or (body.same and body.steps == 0):
             continue
         low_x, low_y, high_x, high_y = box_of(pool, shape, body)
         shape.left = low_x

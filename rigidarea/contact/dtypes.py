@@ -19,11 +19,10 @@ BODY = record(
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
         ("calm", "i1"),  # 1: it hardly moved when the frame began; -1: it hangs in a joint; -2: both
         ("was_calm", "i1"),  # 1: calm, a frame before
-        (
-            "rests",
-            "i1",
-        ),  # for so many frames it has not moved, nor what pushes it changed, to RESTED (`at_rest`)
-        ("has_rested", "i1"),  # that, a frame before
+        # for so many frames, to RESTED, it has not moved, nor what pushes it changed (`at_rest`); that, a frame before
+        ("rests", "i1"),
+        ("has_rested", "i1"),
+        ("same", "i1"),  # 1: at rest, and as the last frame has left it
         ("pushed", "i1"),  # COMING, LYING: how contacts have pushed it in the substep before; 0: not at all
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it
         ("joined", "i1"),  # 1: a joint keeps it from colliding with somebody

@@ -201,6 +201,8 @@ def _meet(tables: Tables, near: Any) -> bool:
     pair = tables.pairs[near.pair]
     if pair.head >= 0:
         return True
+    if a.wants == 0 and b.wants == 0:
+        return False
     one = tables.shapes[pair.a]
     other = tables.shapes[pair.b]
     apart_x = max(one.left - other.right, other.left - one.right)
@@ -215,6 +217,9 @@ def part(tables: Tables, dt: float) -> None:
         body = tables.bodies[tables.awake[k]]
         body.island = tables.awake[k]
         body.steps = body.wants
+        body.way = 0.0
+        if body.wants == 0:  # what bears it keeps it
+            continue
         arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
         speed = abs(body.vx) + abs(body.vy) + abs(body.gain_x) + abs(body.gain_y)
         body.way = dt * (speed + (abs(body.w) + abs(body.gain_w)) * arm)
@@ -257,6 +262,8 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
         tables.islands[tables.awake[k]].energy = 0.0
     for k in range(counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        if body.steps == 0:
+            continue
         energy = 0.0
         if body.inverse_mass > 0.0:
             speed = math.sqrt(body.vx * body.vx + body.vy * body.vy)
@@ -268,6 +275,8 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
         tables.islands[root_of(tables, tables.awake[k])].energy += energy
     for k in range(counters[AWAKE]):  # as it is now, whichever islands come to be one
         body = tables.bodies[tables.awake[k]]
+        if body.steps == 0:
+            continue
         arm = body.reach + abs(body.cog_x) + abs(body.cog_y)
         energy = tables.islands[root_of(tables, tables.awake[k])].energy
         body.way = dt * math.sqrt(2.0 * energy * (body.inverse_mass + arm * arm * body.inverse_moment))
@@ -280,6 +289,8 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
     for k in range(counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
         body = tables.bodies[shape.body]
+        if body.steps == 0:
+            continue
         low_x = shape.left - body.way
         low_y = shape.bottom - body.way
         high_x = shape.right + body.way

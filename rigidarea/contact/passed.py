@@ -257,10 +257,10 @@ def left_its_margin(tables: Tables) -> tuple[bool, bool]:
         return False, False
     for k in range(tables.counters[MOVERS]):
         shape = tables.shapes[tables.movers[k]]
-        if shape.sensor:
+        body = tables.bodies[shape.body]
+        if shape.sensor or (body.same and body.steps == 0):
             continue
         least = min(least, shape.extent)
-        body = tables.bodies[shape.body]
         if body.kind == DRIFTS:
             way = abs(body.x - body.old_x) + abs(body.y - body.old_y)
             most = max(most, way + abs(body.angle - body.old_a) * (shape.half_x + shape.half_y))
