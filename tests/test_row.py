@@ -435,7 +435,7 @@ def test_the_rate_follows_the_root_of_the_load(kernel: Any, lies: str) -> None:
     for force, want in ((200.0, 10.0**0.5), (0.0, 10.0**0.5 if lies == "LIES" else 1.0)):
         for _ in range(60 * 16):
             pair["carrying"], pair["lies"] = force / 60, getattr(kernel.tables, lies)
-            kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, math.inf), force, depth)
+            kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, math.inf, False), force, depth)
         assert pair["load"] == pytest.approx(force, abs=1e-4)
         assert pair["rate"] == pytest.approx(want * 20.0 / depth, rel=1e-5)
 
@@ -445,9 +445,9 @@ def test_a_blow_changes_no_rate(kernel: Any) -> None:
     _, _, _, pair = chosen(kernel)
     before = float(pair["rate"])
     pair["carrying"], pair["lies"] = 1e6, kernel.tables.BLOW
-    kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, math.inf), 6e7, 4e-4)
+    kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, math.inf, False), 6e7, 4e-4)
     assert pair["rate"] == before and pair["carrying"] == 0.0
     for _ in range(60 * 8):
         pair["carrying"], pair["lies"] = 1e6, kernel.tables.FOLLOWS
-        kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, 80.0), 80.0, 4e-4)
+        kernel.stiffness.carry(pair, kernel.stiffness.bear(pair, 1 / 60, 80.0, False), 80.0, 4e-4)
     assert pair["rate"] == pytest.approx(2.0 * before, rel=1e-3)

@@ -182,7 +182,7 @@ class AreaContact:
         given = None if value is None else positive(value, "stiffness")
         self._settings["stiffness"] = given
         self._state["stiffness"], self._state["stiffness_given"] = given or 0.0, given is not None
-        self._store.tables.pairs["rate"], self._store.tables.bodies["rests"] = 0.0, 0
+        self._store.tables.pairs["rate"] = 0.0
 
     @property
     def penetration(self) -> float:
@@ -196,7 +196,6 @@ class AreaContact:
     @penetration.setter
     def penetration(self, value: float) -> None:
         self._settings["penetration"] = self._state["penetration"] = fraction(value, "penetration")
-        self._store.tables.bodies["rests"] = 0
 
     # --- stepping ---
 

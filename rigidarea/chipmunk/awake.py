@@ -12,7 +12,17 @@ from ..contact.space_record import load_pool, next_row_of_body
 from ..contact.tables import AWAKE, DRIFTS, FIXED, LED, MOVERS, UNSORTED, Tables
 from ..contact.tree import MOVING
 from ..geometry.place import place
-from .record import floats, members, notice, read_motion, read_place, read_shape, row_of_shape, words
+from .record import (
+    floats,
+    members,
+    notice,
+    notice_again,
+    read_motion,
+    read_place,
+    read_shape,
+    row_of_shape,
+    words,
+)
 
 
 @kernel
@@ -218,20 +228,7 @@ def look_again(s: Any, tables: Tables) -> None:
     So that who is sent elsewhere is there, and a blow is of the velocities that a `begin` has left.
     """
     for k in range(tables.counters[AWAKE]):
-        body = tables.bodies[tables.awake[k]]
-        if body.stamp != s.frame or words(body.address + s.body_position_func, 1)[0] != s.hold_at:
-            continue
-        x, y, angle = body.x, body.y, body.angle
-        vx, vy, w = body.vx, body.vy, body.w
-        read_place(s, body.address, body)
-        read_motion(s, body.address, body)
-        moved = x != body.x or y != body.y or angle != body.angle
-        if moved or vx != body.vx or vy != body.vy or w != body.w:
-            body.same = 0
-            body.since = 0.0
-            body.old_since = 0.0
-            body.old_x, body.old_y, body.old_a = body.x, body.y, body.angle
-            body.old_vx, body.old_vy, body.old_w = body.vx, body.vy, body.w
+        notice_again(s, tables.bodies[tables.awake[k]])
 
 
 @kernel

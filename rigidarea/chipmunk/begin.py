@@ -16,7 +16,7 @@ from ..compile.raw_memory import array_at, caller
 from ..contact.broad import forget_the_gone, shapes_collide
 from ..contact.join import roomy
 from ..contact.space_record import load_pool, load_tables, load_work
-from ..contact.tables import BOXED, KNOWN, MORE_JOINTS, MOVERS, TOLD, Tables
+from ..contact.tables import BODIES, BOXED, KNOWN, MORE_JOINTS, MOVERS, TOLD, Tables
 from ..contact.verdict import lasts
 from .awake import put_to_rest, watch_bodies
 from .joints import joints_of, partners_known, take_joints
@@ -112,6 +112,10 @@ def begin(s: Any, space: int, dt: float) -> bool:
     s.gravity = math.sqrt(g[0] * g[0] + g[1] * g[1])
     s.failed = 0
     s.fragile = 0
+    if s.stiffness + s.penetration != s.rested_with:
+        s.rested_with = s.stiffness + s.penetration
+        for i in range(load_tables(s).counters[BODIES]):
+            load_tables(s).bodies[i].rests = 0
     hook = words(s.global_handler + s.handler_pre_solve, 1)
     heard = words(s.global_handler + s.handler_pre_solve - 8, 4)  # begin, pre_solve, post_solve, separate
     fresh = changed(s, space) or (

@@ -307,7 +307,7 @@ def placed_anew(state: int, addresses: int, n: int) -> None:
     tables = load_tables(s)
     for address in words(addresses, n):
         b = row_of_body(s, address)
-        if b < 0 or tables.bodies[b].awake:
+        if b < 0 or (tables.bodies[b].awake and body_type(address) != STATIC):
             continue
         body = tables.bodies[b]
         x, y, angle = body.x, body.y, body.angle

@@ -78,10 +78,11 @@ def _begin(s: Any, space: int, dt: float) -> bool:
     if not start_frame(s, space, tables):
         return False
     start_joints(s)
-    if tables.counters[REJOINED]:
-        order_joints(tables)
+    if tables.counters[REJOINED] & 2:
         for k in range(tables.counters[AWAKE]):  # whoever a joint held is among them
             tables.bodies[tables.awake[k]].disturbed = s.frame
+    if tables.counters[REJOINED]:
+        order_joints(tables)
     if tables.counters[UNSORTED] and tables.counters[TOOTHED] > 0:  # teeth ask before the first substep looks
         tables.counters[TURN] = 0
         if not near_pairs(s, space, dt, dt):

@@ -7,7 +7,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..contact.tables import AWAKE, DRIFTS, LED, Tables
 from ..geometry.place import place
-from .frame_start import leads
+from .frame_start import keep_leads
 from .joints import joints_of
 from .record import cache_boxes, floats, words, write_bias, write_motion, write_place
 
@@ -27,7 +27,7 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
             write_motion(s, body)
             continue
         if good:  # a frame that is run again, or fails, has not been
-            body.lead_x, body.lead_y, body.lead_w = leads(body, g[0], g[1], dt)
+            keep_leads(body, g[0], g[1], dt)
             body.trend_x = body.forced_x - body.was_x
             body.trend_y = body.forced_y - body.was_y
             body.trend_w = body.forced_w - body.was_w

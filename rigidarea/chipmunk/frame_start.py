@@ -77,6 +77,21 @@ def _lead(given: float, force: float, change: float, before: float, dt: float) -
 
 
 @kernel(forceinline=True)
+def _left_of(lead: float, taken: float) -> float:
+    """What is left to take back of what a force has given ahead, where contacts and joints have taken some of it."""
+    return lead if lead * taken >= 0.0 else math.copysign(max(0.0, abs(lead) - abs(taken)), lead)
+
+
+@kernel(forceinline=True)
+def keep_leads(body: Any, gx: float, gy: float, dt: float) -> None:
+    """After a frame: what forces have given ahead (`leads`), but for what has been borne."""
+    x, y, w = leads(body, gx, gy, dt)
+    body.lead_x = _left_of(x, body.vx - body.old_vx - body.gain_x)
+    body.lead_y = _left_of(y, body.vy - body.old_vy - body.gain_y)
+    body.lead_w = _left_of(w, body.w - body.old_w - body.gain_w)
+
+
+@kernel(forceinline=True)
 def leads(body: Any, gx: float, gy: float, dt: float) -> tuple[float, float, float]:
     """Forces were told where the body was when the frame began, and act in its middle: as they change, they go on.
 
@@ -197,6 +212,7 @@ def start_frame(s: Any, space: int, tables: Tables) -> bool:
         body = tables.bodies[i]
         if body.stamp != s.frame:
             wake(s, tables, i)
+        body.same = body.same and body.since > 0.0 and body.disturbed != s.frame
         if body.same and _pushed_as_before(s, address, body, dt):
             s.fragile |= _is_extreme(body, dt)
             continue

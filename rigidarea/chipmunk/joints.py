@@ -36,7 +36,7 @@ from ..contact.joint_record import (
 from ..contact.motion import kick_of
 from ..contact.space_record import EXTREME, load_tables, row_of_body
 from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Law, Tables
-from .record import state_of, words
+from .record import notice_again, state_of, words
 
 #: A joint gives way to what it bears by the square of a substep: one that bears more than so many times its bodies' own
 #: weight takes no other number of them when they lie still, since that would move them.
@@ -137,7 +137,8 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
         i = row_of_body(s, bodies[0])
         j = row_of_body(s, bodies[1])
         if i != joint.a or j != joint.b:
-            tables.counters[REJOINED] = 1
+            known = (joint.a < 0 or i == joint.a) and (joint.b < 0 or j == joint.b)
+            tables.counters[REJOINED] |= 1 if known else 3
         joint.a = i
         joint.b = j
         joint.stored = _kind_of(s, joint)
@@ -149,17 +150,20 @@ def take_joints(s: Any, tables: Tables, constraints: np.ndarray) -> None:
                     other = joint.b if k else joint.a
                     if tables.apart[apart, k] != other:
                         tables.counters[UNSORTED] = 1
+                        tables.counters[REJOINED] |= 2
                         tables.bodies[tables.apart[apart, k]].joined = 0
             tables.apart[apart, 0] = joint.a
             tables.apart[apart, 1] = joint.b
             apart += 1
-    tables.counters[REJOINED] |= tables.counters[JOINTS] != s.joint_count
+    if tables.counters[JOINTS] != s.joint_count:
+        tables.counters[REJOINED] = 3
     tables.counters[JOINTS] = s.joint_count
     for i in range(apart, tables.counters[APART]):
         tables.bodies[tables.apart[i, 0]].joined = 0
         tables.bodies[tables.apart[i, 1]].joined = 0
     if apart != tables.counters[APART]:
         tables.counters[UNSORTED] = 1
+        tables.counters[REJOINED] |= 2
         tables.counters[APART] = apart
     for i in range(apart):
         tables.bodies[tables.apart[i, 0]].joined = 1
@@ -344,6 +348,9 @@ def seize(constraint: int, space: int) -> None:
     joint = joints_of(s)[k]
     if joint.pre_solve != 0:
         _call_user(joint.pre_solve, constraint, space)
+        for i in (joint.a, joint.b):
+            if i >= 0:
+                notice_again(s, load_tables(s).bodies[i])
     joint.taken = 1
     read_joint(s, joint)
     joint.asked = 0

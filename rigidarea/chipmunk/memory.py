@@ -27,6 +27,7 @@ from ..contact.tables import (
     FREE_PAIRS,
     FREE_REGION,
     FREE_REGIONS,
+    JOINTS,
     MOVERS,
     NEAR,
     SEARCH,
@@ -228,6 +229,13 @@ def recall(store: Store, space: pymunk.Space, memory: Memory) -> None:
         made_of[:], did[:] = impulse[: len(made_of)], impulse[len(made_of) :]
     _keep_apart(store, space, memory)
     _put_to_sleep(space, memory)
+    if _joint_order(space) == memory.joint_order:  # else they are read as new ones
+        n = int(counters[JOINTS])
+        joints = store.tables.joints
+        joints[:n] = there["joints"][:n]
+        for name in ("a", "b"):
+            joints[name][:n] = body_of[there["joints"][name][:n]]
+        store.tables.counters[JOINTS] = n
 
 
 def _numbers(n: int, there: np.ndarray, here: np.ndarray) -> np.ndarray:

@@ -48,6 +48,7 @@ HEAD = record(
         ("sleepers", "i8"),  # words of the list of those that sleep
         ("listed", "i8"),  # bodies of Chipmunk's list of those that do not
         ("before", "f8"),
+        ("rested_with", "f8"),
         ("taken", "i8"),
         ("contacts", "i8"),
         ("asleep", "i8"),
@@ -141,6 +142,7 @@ def save(space: int, idle: int, block: int, room: int) -> int:
     head.sleepers = sleepers
     head.listed = len(listed)
     head.before = s.before
+    head.rested_with = s.rested_with
     head.taken = s.taken
     head.contacts = s.contacts
     head.asleep = s.asleep
@@ -282,6 +284,7 @@ def restore(space: int, idle: int, block: int) -> int:
     tables.counters[TOLD] = 0
     s.frame = head.frame + late
     s.before = head.before
+    s.rested_with = head.rested_with
     s.taken = head.taken
     s.contacts = head.contacts
     s.asleep = head.asleep

@@ -114,6 +114,7 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     if pair.stamp != now:
         tables.told[tables.counters[TOLD]] = p
         tables.counters[TOLD] += 1
+    fresh = pair.stamp < 0  # nobody has set anything of it yet
     pair.stamp = now
     if pair.waiting >= tables.counters[COUNTED]:  # frames between have failed
         pair.waiting = now - 1
@@ -138,9 +139,10 @@ def pre_solve(arbiter: int, space: int, data: int) -> None:
     pair.surface_y = sign * y
     s.fragile |= pair.friction + pair.elasticity + abs(x) + abs(y) + pair.rate > EXTREME
     _note_normal(s, pair, arbiter)
-    same = friction == pair.friction and elasticity == pair.elasticity and verdict == pair.verdict
+    same = friction == pair.friction and elasticity == pair.elasticity
     same = same and surface_x == pair.surface_x and surface_y == pair.surface_y
-    if not (same and c == pair.steer_c and d == pair.steer_s):
+    same = same and c == pair.steer_c and d == pair.steer_s
+    if verdict != pair.verdict or not (same or fresh):
         for i in (sa.body, sb.body):
             if tables.bodies[i].mobile:
                 tables.bodies[i].disturbed = now

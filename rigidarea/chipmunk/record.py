@@ -144,8 +144,8 @@ def write_bias(s: Any, body: Any, dt: float) -> None:
 
 
 @kernel(forceinline=True)
-def notice(s: Any, address: int, body: Any) -> None:
-    """A body that is awake, as it is now, and whether it has been set so by the user."""
+def read_body(s: Any, address: int, body: Any) -> bool:
+    """A body as it is now; whether its place or velocity is another. Another mass disturbs whoever it rests on."""
     x, y, angle = body.x, body.y, body.angle
     vx, vy, w = body.vx, body.vy, body.w
     mass, moment, cog_x, cog_y = body.inverse_mass, body.inverse_moment, body.cog_x, body.cog_y
@@ -155,10 +155,25 @@ def notice(s: Any, address: int, body: Any) -> None:
     if not (same and cog_x == body.cog_x and cog_y == body.cog_y):
         body.disturbed = s.frame
     set_place = x != body.x or y != body.y or angle != body.angle
-    if vx != body.vx or vy != body.vy or w != body.w:  # set anew: nothing of it is taken back
-        body.lead_x = body.lead_y = body.lead_w = 0.0
-    if body.stamp >= 0 and (set_place or vx != body.vx or vy != body.vy or w != body.w):
+    return bool(set_place or vx != body.vx or vy != body.vy or w != body.w)
+
+
+@kernel(forceinline=True)
+def notice(s: Any, address: int, body: Any) -> None:
+    """A body that is awake, as it is now, and whether it has been set so by the user."""
+    if read_body(s, address, body) and body.stamp >= 0:
         body.since = 0.0
+
+
+@kernel
+def notice_again(s: Any, body: Any) -> None:
+    """What callbacks of the user's have set of a body since the frame began: it counts as set before."""
+    held = words(body.address + s.body_position_func, 1)[0] == s.hold_at
+    if body.stamp == s.frame and held and read_body(s, body.address, body):
+        body.since = 0.0
+        body.old_since = 0.0
+        body.old_x, body.old_y, body.old_a = body.x, body.y, body.angle
+        body.old_vx, body.old_vy, body.old_w = body.vx, body.vy, body.w
 
 
 @kernel(forceinline=True)

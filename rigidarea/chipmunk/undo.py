@@ -50,6 +50,7 @@ def undo_frame(s: Any, tables: Tables) -> None:
         if body.stamp != s.frame:
             continue
         body.calm = body.was_calm
+        body.rests = 0  # what the user has changed before it is still to act
         body.x = body.old_x
         body.y = body.old_y
         body.angle = body.old_a

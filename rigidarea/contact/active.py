@@ -13,10 +13,10 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
-from .constants import LEFT, MOVED, SETTLED
+from .constants import CALM, LEFT, MOVED, REST_KICKS, REST_TURNS, SETTLED, STILL_KICK
 from .islands import root_of, unite
 from .motion import kick_of
-from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
+from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, SUBSTEP, Law, Tables
 
 #: Without weight a speed is none with which a body goes this part of the depth at which it may lie in a step: one of
 #: 20 px goes a pixel in half an hour.
@@ -50,6 +50,7 @@ ISLAND = record(
         ("high_x", "f8"),
         ("high_y", "f8"),
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
+        ("seen", "f8"),  # and with which it is left, at rest, after all sweeps
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
@@ -170,7 +171,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         row = tables.rows[r]
         if row.ends > 0:
             island = tables.islands[island_of(tables, row)]
-            island.held += row.held
+            island.held += (1.0 - row.theta) * row.held  # the rest opens without speed (`relax`)
             island.still = 1
             island.closing = max(island.closing, abs(tables.regions[row.region].speed))
     for k in range(tables.counters[ISLANDS]):
@@ -187,7 +188,10 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             island.still = island.still and pushed > 0.0  # without load a small change is small at rest too
             kick = max(kick, pushed)
         island.small = LEFT * kick + MOVED * speed
-        island.still = island.still and max(able, island.closing) < kick
+        island.still = island.still and max(able, island.closing / REST_KICKS) < kick
+        island.seen = SETTLED * island.small
+        if island.still and speed < CALM * kick and tables.counters[SUBSTEP] % REST_TURNS == 0:
+            island.small = max(STILL_KICK / SETTLED * kick, LEFT * speed)
 
 
 @kernel
@@ -259,9 +263,9 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 @kernel
 def rest_small(tables: Tables) -> None:
-    """Islands are solved in which the last sweep's changes were small, but those at rest only by `rest_settled`."""
+    """Islands are solved in which the last sweep's changes were small; of those at rest not even seen."""
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
-        if island.moved <= island.small and not island.still:
+        if island.moved <= (island.seen if island.still else island.small):
             island.active = 0
     _leave_solved(tables)

@@ -11,7 +11,6 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .constants import STILL_KICK, STILL_WAY
-from .motion import kick_of
 from .tables import AWAKE, DRIFTS, FIRST, FIXED, LAST, LYING, NEAR, SUBSTEP, Law, Tables
 
 #: So many frames on end nothing has changed: stiffness follows a load in the frame after.
@@ -22,22 +21,24 @@ RESTED = 3
 def is_at_rest(law: Law, body: Any, dt: float) -> bool:
     """Whether a body neither moves nor is pushed otherwise than in the frame before.
 
-    One that no contact bears and that hangs in no joint rests where it does not move at all.
+    What nothing pushes, or no contact bears and no joint, rests where it does not move at all: slowly it would go on.
     """
     if body.disturbed == law.frame or body.since == 0.0 or body.asked > 0:
         return False
     speed = abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent
+    if body.extent == 0.0 and (body.w != 0.0 or body.forced_w != 0.0):
+        return False  # no shape says how fast that is
     if not body.mobile:
-        return bool(speed == 0.0 and body.put_x == 0.0 and body.put_y == 0.0 and body.put_a == 0.0)
+        still = speed == 0.0 and body.w == 0.0
+        return bool(still and body.put_x == 0.0 and body.put_y == 0.0 and body.put_a == 0.0)
     pushed = dt * (abs(body.forced_x) + abs(body.forced_y) + abs(body.forced_w) * body.extent)
     change = dt * (abs(body.forced_x - body.was_x) + abs(body.forced_y - body.was_y))
     change += dt * abs(body.forced_w - body.was_w) * body.extent
-    kick = kick_of(law, body.extent, dt)
+    borne = pushed > 0.0 and (body.pushed & LYING or body.calm < 0)
     return bool(
         body.kind == DRIFTS
-        and max(body.gained, change) <= STILL_KICK * max(kick, pushed)
-        and max(body.went, dt * speed) <= STILL_WAY * law.penetration * body.extent
-        and (speed == 0.0 or body.pushed & LYING or body.calm < 0)
+        and max(body.gained, change) <= STILL_KICK * pushed
+        and max(body.went, dt * speed) <= (STILL_WAY * law.penetration * body.extent if borne else 0.0)
     )
 
 

@@ -63,6 +63,8 @@ SMOOTH = 0.02
 WEIGHTLESS_PHASE2 = 40.0
 #: Time over which the load that a pair carries is averaged (time).
 LOAD_TIME = 0.5
+#: And where both of its bodies are calm (time): nothing is to be smoothed there, and they come to rest the sooner.
+CALM_LOAD_TIME = 0.1
 #: What bears n times its own weight sinks as deep as that by sqrt(n), as round things do on one another, but by no more
 #: than so many times. With depth the same under any load, the lowest of a pile of twenty layers were twenty times as
 #: stiff as ten sweeps can solve: their error moved bodies by more than they overlap, and such a pile never rested.
@@ -105,6 +107,9 @@ STILL_KICK = 1e-7
 #: And goes no farther in one than this part of the depth to which it may sink: a box of 20 px, a pixel in two days. It
 #: then lies within a thousandth of where it would come to lie, since its load is averaged (LOAD_TIME).
 STILL_WAY = 2e-5
+#: Of what hardly moves, one substep in so many is solved as far as it takes to rest (STILL_KICK), the others as far as
+#: is seen: they change nothing of what that one has solved.
+REST_TURNS = 4
 #: Of what a solve has taken from a contact's impulse, the next takes this part again before it begins: bodies that
 #: brace one another go on with less in a few substeps, where the sweeps alone would need hundreds.
 OVERTAKE = 0.3

@@ -201,8 +201,6 @@ def _meet(tables: Tables, near: Any) -> bool:
     pair = tables.pairs[near.pair]
     if pair.head >= 0:
         return True
-    if a.wants == 0 and b.wants == 0:
-        return False
     one = tables.shapes[pair.a]
     other = tables.shapes[pair.b]
     apart_x = max(one.left - other.right, other.left - one.right)

@@ -26,6 +26,7 @@ from .tables import (
     TURNED,
     UNSORTED,
     Tables,
+    disturb_both,
     end_pair,
     forget_pair,
 )
@@ -84,9 +85,8 @@ def sieve(tables: Tables, frame: int) -> None:
         if parted:
             forget_pair(tables, p)
         collides = not parted and shapes_collide(tables, one, other)
-        if pair.head >= 0 and not collides:  # neither rests on the other any more
-            tables.bodies[one.body].wants = max(1, tables.bodies[one.body].wants)
-            tables.bodies[other.body].wants = max(1, tables.bodies[other.body].wants)
+        if pair.head >= 0 and not collides:
+            disturb_both(tables, pair)
         near[k].pair = near[n].pair if collides else p
         if collides:
             near[n].pair = p

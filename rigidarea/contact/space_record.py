@@ -62,7 +62,7 @@ LASTING: dict[str, tuple[Any, int]] = {
     "joints": (JOINT, JOINTS),
 }
 #: Of the state record, what outlives a frame.
-LASTING_STATE = ("before", "frame", "taken", "contacts", "asleep")
+LASTING_STATE = ("before", "frame", "taken", "contacts", "asleep", "rested_with")
 #: What `move` does.
 OUT, BACK, SIZE = range(3)
 #: Numbers this large, or their inverses this small, may overflow in a product of ten (largest float: 1e308).
@@ -144,6 +144,7 @@ STATE = record(
         ("joint_count", "i8"),
         ("contacts", "i8"),  # regions of the last substep
         ("joint_cursor", "i8"),
+        ("rested_with", "f8"),  # the settings of the last frame, added up: others act on who is at rest
         ("before", "f8"),  # length of the last frame (time); 0: there was none
         # where the times of a frame's phases are summed up (`chipmunk/phases.py`); 0: nowhere
         ("phases_at", "u8"),

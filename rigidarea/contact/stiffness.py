@@ -9,7 +9,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from .constants import DEEPER, LOAD_TIME, PLACED_LOADS, RELEASE_STEPS, WEIGHTLESS_PHASE2
+from .constants import CALM_LOAD_TIME, DEEPER, LOAD_TIME, PLACED_LOADS, RELEASE_STEPS, WEIGHTLESS_PHASE2
 from .region import closing, growth, least_extent, put_closer, region_stiffness
 from .tables import AWAKE, FIXED, FOLLOWS, LAW_AREA, LED, NEAR, Law, Tables
 
@@ -98,15 +98,17 @@ def stiffness_of(law: Law, pair: Any, r: Any) -> float:
 
 
 @kernel(forceinline=True)
-def bear(pair: Any, dt: float, most: float) -> float:
+def bear(pair: Any, dt: float, most: float, calm: bool) -> float:
     """Once a frame: the load that the pair bears (force), averaged over LOAD_TIME; 0 where nothing lies.
 
-    most: no load that a stiffness follows is more (force). What is jammed between walls presses as far as it is stiff:
-    that would be stiffer and stiffer, and one such pair makes a whole pile too unequal to be solved.
+    calm: whether neither of its bodies moves much. most: no load that a stiffness follows is more (force). What is
+    jammed between walls presses as far as it is stiff: that would be stiffer and stiffer, and one such pair makes a
+    whole pile too unequal to be solved.
     """
     if pair.lies <= 0:
         return 0.0
-    pair.load += dt / (dt + LOAD_TIME) * (min(most, pair.carrying / dt) - pair.load)
+    time = CALM_LOAD_TIME if calm else LOAD_TIME
+    pair.load += dt / (dt + time) * (min(most, pair.carrying / dt) - pair.load)
     return float(max(pair.load, pair.least))
 
 
@@ -149,7 +151,8 @@ def adapt_stiffness(tables: Tables, law: Law, dt: float) -> None:
         near = tables.near[i]
         a = tables.bodies[near.a]
         b = tables.bodies[near.b]
-        load = bear(tables.pairs[near.pair], dt, _most(a, b, most))
+        calm = (a.calm > 0 or a.kind == FIXED) and (b.calm > 0 or b.kind == FIXED)
+        load = bear(tables.pairs[near.pair], dt, _most(a, b, most), calm)
         a.load = max(a.load, load)
         b.load = max(b.load, load)
     for i in range(tables.counters[NEAR]):

@@ -36,7 +36,8 @@ COMING, LYING = 1, 2
 #: behind counters[NEAR] such as may not collide; 1: to be sorted anew; shapes in `asked`, in `movers`, bodies in
 #: `awake`, pairs in `told`; which list `live` is;
 #: free rows' list heads of shapes (linked by `body`) and of bodies (by `island`); shapes not convex. Joints; 1:
-#: other ones than in the last frame. How many pairs, regions and joints more than there is room for a frame wants at
+#: in another order than in the last frame, 2: other ones, or they keep others apart. How many pairs, regions and joints
+#: more than there is room for a frame wants at
 #: least, and 1 where the scratch is too small, or there is none for
 #: what a frame starts from (`store.keep_tables`); looks left (`motion.afford`);
 #: the last frame that did not fail. How many rows of pairs and of regions have ever been in use: those behind them are
@@ -302,13 +303,22 @@ def forget_pair(tables: Tables, p: int) -> None:
         pair.jy = -pair.jy
 
 
+@kernel
+def disturb_both(tables: Tables, pair: Any) -> None:
+    """Neither of a pair rests on the other any more."""
+    for i in (tables.shapes[pair.a].body, tables.shapes[pair.b].body):
+        body = tables.bodies[i]
+        body.rests = 0
+        body.has_rested = 0
+        body.wants = max(1, body.wants)
+
+
 @entry
 def end_pair(tables: Tables, p: int) -> None:
     """Forget the pair and its regions."""
     pair = tables.pairs[p]
-    if pair.head >= 0:  # nobody whom it has borne is at rest
-        tables.bodies[tables.shapes[pair.a].body].rests = 0
-        tables.bodies[tables.shapes[pair.b].body].rests = 0
+    if pair.head >= 0:
+        disturb_both(tables, pair)
     _leave(tables, pair.a, pair.b)
     free_regions(tables.regions, tables.counters, pair.head)
     pair.head = -1
