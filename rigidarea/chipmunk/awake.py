@@ -110,6 +110,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         body = tables.bodies[i]
         if body.stamp == s.frame:
             continue
+        body.old_turn = body.rest_turn
         body.same = _is_as_left(s, address, body)
         if body.same:
             body.stamp = s.frame
@@ -122,10 +123,11 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         x, y, angle, w = body.x, body.y, body.angle, body.w
         body.left_vx = body.vx
         body.left_vy = body.vy
-        body.gained = (
-            abs(body.vx - body.old_vx) + abs(body.vy - body.old_vy) + abs(body.w - body.old_w) * body.extent
-        )
-        body.went = abs(x - body.old_x) + abs(y - body.old_y) + abs(angle - body.old_a) * body.extent
+        if not body.undone:  # else it is known of the last one that has not failed
+            body.gained = abs(body.vx - body.old_vx) + abs(body.vy - body.old_vy)
+            body.gained += abs(body.w - body.old_w) * body.extent
+            body.went = abs(x - body.old_x) + abs(y - body.old_y) + abs(angle - body.old_a) * body.extent
+        body.undone = 0
         notice(s, address, body)
         told = met and body.inverse_mass == 0.0 and body.inverse_moment == 0.0
         # a new velocity has it ahead, by half a substep, of who goes along as fast as it went
@@ -216,6 +218,7 @@ def wake(s: Any, tables: Tables, i: int) -> None:
     body.since = 0.0
     body.old_since = 0.0
     body.was_calm = 0
+    body.old_turn = body.rest_turn
     if not body.awake:
         add_to_awake(tables, i, body)
         _list_shapes(s, tables, body, True)

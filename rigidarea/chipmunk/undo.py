@@ -6,7 +6,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.space_record import keep_tables, load_tables, put_tables_back
-from ..contact.tables import ANEW, AWAKE, DRIFTS, TURN, Tables, forget_contacts
+from ..contact.tables import ANEW, AWAKE, BODIES, DRIFTS, TURN, Tables, forget_contacts
 from ..geometry.place import place
 from .joints import joints_of, read_joint, start_joints
 from .record import floats
@@ -33,6 +33,7 @@ def begin_again(s: Any) -> None:
         forget_contacts(tables)
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
+        body.rest_turn = body.old_turn
         if body.kind == DRIFTS:
             body.x = body.old_x
             body.y = body.old_y
@@ -50,7 +51,9 @@ def undo_frame(s: Any, tables: Tables) -> None:
         if body.stamp != s.frame:
             continue
         body.calm = body.was_calm
-        body.rests = 0  # what the user has changed before it is still to act
+        body.undone = 1
+        body.rests = body.has_rested
+        body.rest_turn = body.old_turn
         body.x = body.old_x
         body.y = body.old_y
         body.angle = body.old_a
@@ -62,5 +65,9 @@ def undo_frame(s: Any, tables: Tables) -> None:
         force[0] = body.old_fx
         force[1] = body.old_fy
         floats(body.address + s.body_torque, 1)[0] = body.old_torque
+    for i in range(tables.counters[BODIES]):  # what the user has changed before it is still to act
+        body = tables.bodies[i]
+        body.disturbed += body.disturbed == s.frame
+        body.replaced += body.replaced == s.frame
     for joint in joints_of(s):
         read_joint(s, joint)

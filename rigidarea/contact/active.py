@@ -16,7 +16,7 @@ from ..compile.raw_memory import record
 from .constants import CALM, LEFT, MOVED, REST_KICKS, REST_TURNS, SETTLED, STILL_KICK
 from .islands import root_of, unite
 from .motion import kick_of
-from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, SUBSTEP, Law, Tables
+from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 
 #: Without weight a speed is none with which a body goes this part of the depth at which it may lie in a step: one of
 #: 20 px goes a pixel in half an hour.
@@ -30,6 +30,7 @@ ISLAND = record(
         ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
         ("still", "i1"),  # 1: contacts bear it, neither speeds nor springs do more than a kick
+        ("turn", "i1"),  # 0: this substep is solved as far as it takes to rest (REST_TURNS)
         ("driven", "i1"),  # 1: something that moves as it is told touches it
         ("listed", "i4"),  # number of the island that has this place among those that are active
         ("rows", "i4"),  # a joint counts as two: it is not solved by one visit
@@ -129,8 +130,27 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
             mobility[i].island = mobility[root_of(tables, i)].island
         if not moves(tables.bodies[i]):
             mobility[i].island = -1
+    if first == 0:
+        _take_turns(tables)
     measure(tables, law, h, True)
     list_active(tables)
+
+
+@kernel
+def _take_turns(tables: Tables) -> None:
+    """Which of REST_TURNS substeps it is for each island, and for its bodies: all of one island go together."""
+    for k in range(tables.counters[ISLANDS]):
+        tables.islands[k].turn = 0
+    for k in range(tables.counters[LIVE]):
+        number = tables.mobility[tables.live[k]].island
+        if number >= 0:
+            body = tables.bodies[tables.live[k]]
+            body.rest_turn = (body.rest_turn + 1) % REST_TURNS
+            tables.islands[number].turn = max(tables.islands[number].turn, body.rest_turn)
+    for k in range(tables.counters[LIVE]):
+        number = tables.mobility[tables.live[k]].island
+        if number >= 0:
+            tables.bodies[tables.live[k]].rest_turn = tables.islands[number].turn
 
 
 @kernel
@@ -150,6 +170,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.extent = math.inf
         island.pushed = 0.0
         island.closing = 0.0
+        island.turn = 0
     for k in range(tables.counters[LIVE]):
         number = tables.mobility[tables.live[k]].island
         if number < 0:
@@ -157,6 +178,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         body = tables.bodies[tables.live[k]]
         island = tables.islands[number]
         island.extent = min(island.extent, body.extent)
+        island.turn = max(island.turn, body.rest_turn)
         vx, vy, w = (body.came_vx, body.came_vy, body.came_w) if before else (body.vx, body.vy, body.w)
         if body.inverse_mass > 0.0:
             own = 1.0 / body.inverse_mass
@@ -190,7 +212,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
         island.small = LEFT * kick + MOVED * speed
         island.still = island.still and max(able, island.closing / REST_KICKS) < kick
         island.seen = SETTLED * island.small
-        if island.still and speed < CALM * kick and tables.counters[SUBSTEP] % REST_TURNS == 0:
+        if island.still and speed < CALM * kick and island.turn == 0:
             island.small = max(STILL_KICK / SETTLED * kick, LEFT * speed)
 
 

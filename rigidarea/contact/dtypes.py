@@ -22,6 +22,10 @@ BODY = record(
         # for so many frames, to RESTED, it has not moved, nor what pushes it changed (`at_rest`); that, a frame before
         ("rests", "i1"),
         ("has_rested", "i1"),
+        # which of REST_TURNS substeps it is for its island (`active`), and was when the frame began
+        ("rest_turn", "i1"),
+        ("old_turn", "i1"),
+        ("undone", "i1"),  # 1: its last frame has failed
         ("same", "i1"),  # 1: at rest, and as the last frame has left it
         ("pushed", "i1"),  # COMING, LYING: how contacts have pushed it in the substep before; 0: not at all
         ("free", "i1"),  # 1: what gives way to a blow: no joint or kinematic body presses it

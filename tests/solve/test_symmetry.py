@@ -154,7 +154,8 @@ def test_a_copy_in_mid_contact_goes_on_as_the_original(frame, how, steps):
 def test_a_rolling_frame_of_reference_changes_nothing(steps):
     """Everything, the kinematic floor too, at a common 64 m/s: the same motion beside it, to 1e-5 of a size.
 
-    At the defaults to 1e-2: what has come to rest beside the floor takes one substep a frame, what rolls with it two.
+    Of one substep to 1e-4: what is still is solved farther in one of four. At the defaults to 1e-2: what has come to
+    rest beside the floor takes one substep a frame, what rolls with it two.
     """
     found = []
     for common in (0.0, 64.0):
@@ -164,4 +165,6 @@ def test_a_rolling_frame_of_reference_changes_nothing(steps):
             world.box((1.5 * i, 1.0), angle=0.2 + 0.3 * i, velocity=(common + math.sin(i), 0))
         world.run(1.0, steps)
         found.append(world.state() - np.array((common, 0, 0, common, 0, 0)))
-    assert found[1] == pytest.approx(found[0], abs=(1e-5 if steps else 1e-2) if ENGINE == "area" else 0.1)
+    assert found[1] == pytest.approx(
+        found[0], abs={1: 1e-4, None: 1e-2}.get(steps, 1e-5) if ENGINE == "area" else 0.1
+    )
