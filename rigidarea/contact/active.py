@@ -22,6 +22,9 @@ from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 #: 20 px goes a pixel in half an hour.
 UNSEEN = 1e-3
 
+#: What a sweep still changes is this part of what is left to solve, or more: of the slowest piles.
+SLOWLY = 100.0
+
 ISLAND = record(
     [
         ("again", "i1"),  # bits, why it is solved anew: contacts, joints give energy (`given_energy`)
@@ -51,7 +54,7 @@ ISLAND = record(
         ("high_x", "f8"),
         ("high_y", "f8"),
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
-        ("seen", "f8"),  # and with which it is left, at rest, after all sweeps
+        ("seen", "f8"),  # and with which one that is still is left after all sweeps
         ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
@@ -211,9 +214,9 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             kick = max(kick, pushed)
         island.small = LEFT * kick + MOVED * speed
         island.still = island.still and max(able, island.closing / REST_KICKS) < kick
-        island.seen = SETTLED * island.small
+        island.seen = island.small * (SETTLED if island.turn == 0 else 1.0)
         if island.still and speed < CALM * kick and island.turn == 0:
-            island.small = max(STILL_KICK / SETTLED * kick, LEFT * speed)
+            island.small = LEFT * max(SLOWLY * STILL_KICK * kick, speed)
 
 
 @kernel
@@ -285,7 +288,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 @kernel
 def rest_small(tables: Tables) -> None:
-    """Islands are solved in which the last sweep's changes were small; of those at rest not even seen."""
+    """Islands are solved in which the last sweep's changes were small; in their turn to rest not even seen (`seen`)."""
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
         if island.moved <= (island.seen if island.still else island.small):
