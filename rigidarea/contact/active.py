@@ -214,7 +214,7 @@ def measure(tables: Tables, law: Law, h: float, before: bool) -> None:
             kick = max(kick, pushed)
         island.small = LEFT * kick + MOVED * speed
         island.still = island.still and max(able, island.closing / REST_KICKS) < kick
-        island.seen = island.small * (SETTLED if island.turn == 0 else 1.0)
+        island.seen = SETTLED * island.small
         if island.still and speed < CALM * kick and island.turn == 0:
             island.small = LEFT * max(SLOWLY * STILL_KICK * kick, speed)
 
@@ -288,7 +288,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
 
 @kernel
 def rest_small(tables: Tables) -> None:
-    """Islands are solved in which the last sweep's changes were small; in their turn to rest not even seen (`seen`)."""
+    """Islands are solved in which the last sweep's changes were small; of what is still not even seen (`seen`)."""
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
         if island.moved <= (island.seen if island.still else island.small):
