@@ -18,7 +18,9 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
 
     Of a frame that failed also what the user's position functions have moved.
     """
-    g = floats(space + s.space_gravity, 2)
+    if good:  # a frame that is run again, or fails, has not been
+        g = floats(space + s.space_gravity, 2)
+        keep_leads(s, tables, g[0], g[1], dt)
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         if body.stamp != s.frame:
@@ -26,8 +28,7 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
         if body.steps == 0 and good and s.explicit == 0 and body.kind == DRIFTS:  # at rest, as it was
             write_motion(s, body)
             continue
-        if good:  # a frame that is run again, or fails, has not been
-            keep_leads(body, g[0], g[1], dt)
+        if good:
             body.trend_x = body.forced_x - body.was_x
             body.trend_y = body.forced_y - body.was_y
             body.trend_w = body.forced_w - body.was_w

@@ -7,8 +7,9 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..contact.constants import ROUNDING, STILL_KICK
+from ..contact.islands import root_of
 from ..contact.space_record import EXTREME, next_row_of_body
-from ..contact.tables import CONCAVE, LED, NEAR, Tables
+from ..contact.tables import AWAKE, CONCAVE, LED, NEAR, Tables
 from ..contact.verdict import allowed
 from .awake import wake
 from .record import floats, members, read_motion, read_place, time_step, words
@@ -82,13 +83,54 @@ def _left_of(lead: float, taken: float) -> float:
     return lead if lead * taken >= 0.0 else math.copysign(max(0.0, abs(lead) - abs(taken)), lead)
 
 
+@kernel
+def keep_leads(s: Any, tables: Tables, gx: float, gy: float, dt: float) -> None:
+    """After a frame: what forces have given ahead (`leads`), but for what contacts and joints have borne.
+
+    What the bodies of an island have borne of one another is still in it: all of them go on with that.
+    """
+    leading = False
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        island = tables.islands[tables.awake[k]]
+        island.mass = 0.0
+        island.x = island.y = island.lead_x = island.lead_y = 0.0
+        if _is_led(s, body):
+            body.lead_x, body.lead_y, body.lead_w = leads(body, gx, gy, dt)
+            leading |= body.lead_x != 0.0 or body.lead_y != 0.0 or body.lead_w != 0.0
+    if not leading:
+        return
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if _is_led(s, body):
+            mass = 1.0 / body.inverse_mass
+            x, y = _taken_of(body)
+            island = tables.islands[root_of(tables, tables.awake[k])]
+            island.mass += mass
+            island.x += mass * x
+            island.y += mass * y
+            island.lead_x += mass * (body.lead_x - _left_of(body.lead_x, x))
+            island.lead_y += mass * (body.lead_y - _left_of(body.lead_y, y))
+    for k in range(tables.counters[AWAKE]):
+        body = tables.bodies[tables.awake[k]]
+        if _is_led(s, body):
+            x, y = _taken_of(body)
+            island = tables.islands[root_of(tables, tables.awake[k])]
+            body.lead_x = _left_of(body.lead_x, x) + _left_of(island.lead_x, island.x) / island.mass
+            body.lead_y = _left_of(body.lead_y, y) + _left_of(island.lead_y, island.y) / island.mass
+            body.lead_w = _left_of(body.lead_w, body.w - body.old_w - body.gain_w)
+
+
 @kernel(forceinline=True)
-def keep_leads(body: Any, gx: float, gy: float, dt: float) -> None:
-    """After a frame: what forces have given ahead (`leads`), but for what has been borne."""
-    x, y, w = leads(body, gx, gy, dt)
-    body.lead_x = _left_of(x, body.vx - body.old_vx - body.gain_x)
-    body.lead_y = _left_of(y, body.vy - body.old_vy - body.gain_y)
-    body.lead_w = _left_of(w, body.w - body.old_w - body.gain_w)
+def _is_led(s: Any, body: Any) -> bool:
+    """Whether forces have moved a body in this frame."""
+    return bool(body.stamp == s.frame and body.inverse_mass > 0.0 and (body.steps > 0 or s.explicit > 0))
+
+
+@kernel(forceinline=True)
+def _taken_of(body: Any) -> tuple[float, float]:
+    """What contacts and joints have given to a body in this frame (length/time)."""
+    return body.vx - body.old_vx - body.gain_x, body.vy - body.old_vy - body.gain_y
 
 
 @kernel(forceinline=True)

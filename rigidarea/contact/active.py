@@ -43,6 +43,8 @@ ISLAND = record(
         ("closing", "f8"),  # fastest that two close, or part, where its rows are (length/time)
         ("x", "f8"),  # momentum
         ("y", "f8"),
+        ("lead_x", "f8"),  # what its bodies have borne of what forces have given ahead (momentum)
+        ("lead_y", "f8"),
         ("energy", "f8"),  # kinetic, relative to that
         ("moment", "f8"),
         ("mending", "f8"),  # speeds at which its joints mend errors, summed (length/time)
