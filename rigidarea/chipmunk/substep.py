@@ -95,7 +95,6 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
     for more in range(1 + MORE_SWEEPS):
         look = 1 if more == 0 else 0
         wait = 1
-        known = True  # which rows bear: those that have joined since the search are not among them
         for k in range(sweeps):
             if k == look:  # less and less often, as long as nobody joins
                 joined = _join(s, tables, h, False)
@@ -105,22 +104,17 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
                     form_islands(tables, law, h, tables.counters[ROWS] - joined)
                 wait = 1 if joined > 0 else 2 * wait if more == 0 else sweeps
                 look += wait
-                known = joined == 0
             if k > 0 and tables.counters[QUEUE] == 0:
                 break
             sweep(tables, k % 2 == 0)
             rest_settled(tables, k + 1, whole, SETTLED)
             if k == 0:
-                search_all(tables, False)
+                search_all(tables, more == 0 or jointed)
                 conjugate_gradients(tables, SEARCH_STEPS if jointed else min(1, searches), jointed)
                 if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
-                known = True
                 if jointed:
                     bend_again(tables, h)
-            elif k == 1 and not jointed:
-                search_all(tables, known)
-                conjugate_gradients(tables, searches - 1, False)
         rest_small(tables)
         if tables.counters[QUEUE] == 0:
             break
@@ -159,7 +153,7 @@ def _give_no_energy(tables: Tables, law: Law, whole: int) -> None:
         if tables.counters[QUEUE] == 0:
             break
         if k == 0:
-            search_all(tables, False)
+            search_all(tables, True)
             conjugate_gradients(tables, SEARCH_STEPS, True)
     mix(tables, law)
 

@@ -30,7 +30,6 @@ ISLAND = record(
         ("again", "i1"),  # bits, why it is solved anew: contacts, joints give energy (`given_energy`)
         ("active", "i1"),  # 1: it is not solved yet
         ("searching", "i1"),  # 1: it takes part in the search (`conjugate`)
-        ("known", "i1"),  # 1: the rows that bear are those of the search before, and so are their factors
         ("whole", "i1"),  # 1: no bound has cut the search's step short
         ("still", "i1"),  # 1: contacts bear it, neither speeds nor springs do more than a kick
         ("turn", "i1"),  # 0: this substep is solved as far as it takes to rest (REST_TURNS)
@@ -62,6 +61,7 @@ ISLAND = record(
         ("product", "f8"),
         ("ahead", "f8"),
         ("curvature", "f8"),
+        ("gained", "f8"),  # by the search's last step, of what it would have gained unbounded
         ("part", "f8"),
     ]
 )
@@ -122,7 +122,7 @@ def form_islands(tables: Tables, law: Law, h: float, first: int) -> None:
             mobility[root].island = count
             tables.islands[count].rows = 0
             tables.islands[count].active = 0
-            tables.islands[count].known = 0
+            tables.islands[count].gained = 1.0
             count += 1
         island = tables.islands[mobility[root].island]
         island.rows += 1 if tables.rows[r].ends > 0 else 2

@@ -21,7 +21,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from .active import active_island
-from .constants import SETTLED
+from .constants import SETTLED, WORTH
 from .joint import clamp_joint
 from .preconditioner import take_part
 from .row import push
@@ -214,8 +214,13 @@ def _descend(tables: Tables, small: float) -> bool:
         island = active_island(tables, k)
         going = island.part > 0.0
         island.before = island.product if going and island.whole else 0.0
-        if going:
-            island.part = 1.0 if island.whole else min(1.0, _length(island))
+        island.gained = 1.0
+        if going and not island.whole:
+            island.part = min(1.0, _length(island))
+            gain = island.part * (2.0 * island.ahead - island.part * island.curvature)
+            island.gained = gain / island.product
+        elif going:
+            island.part = 1.0
     return True
 
 
@@ -319,12 +324,14 @@ def _go(tables: Tables) -> None:
 
 
 @kernel
-def search_all(tables: Tables, known: bool) -> None:
-    """Every island that is active takes part in the next search; `known`: with the rows that bore in the last one."""
+def search_all(tables: Tables, first: bool) -> None:
+    """Every island that is active takes part in the next search; if that is not the first, where the last was WORTH it.
+
+    In a heap something always lets go, and cuts each step short: there only the sweeps go on.
+    """
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
-        island.searching = 1
-        island.known = known
+        island.searching = first or island.gained >= WORTH
 
 
 @kernel
@@ -345,6 +352,5 @@ def conjugate_gradients(tables: Tables, steps: int, jointed: bool) -> None:
         _go(tables)
         for k in range(tables.counters[ACTIVE]):
             island = active_island(tables, k)
-            island.known = 0
             if jointed and island.before == 0.0:
                 island.searching = 0

@@ -74,7 +74,7 @@ AT_ITS_BOUND = 1e-9
 @kernel(forceinline=True)
 def begins_anew(island: Any) -> bool:
     """Whether an island's rows that bear are to be found before its search goes on."""
-    return bool(island.searching and island.before == 0.0 and not island.known)
+    return bool(island.searching and island.before == 0.0)
 
 
 @kernel
