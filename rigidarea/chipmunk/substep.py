@@ -109,7 +109,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             sweep(tables, k % 2 == 0)
             rest_settled(tables, k + 1, whole, SETTLED)
             if k == 0:
-                search_all(tables, more == 0 or jointed)
+                search_all(tables, more == 0)
                 conjugate_gradients(tables, SEARCH_STEPS if jointed else min(1, searches), jointed)
                 if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
