@@ -7,7 +7,7 @@ from typing import Any
 from ..compile.jit import kernel
 from ..contact.tables import AWAKE, DRIFTS, LED, Tables
 from ..geometry.place import place
-from .frame_start import keep_leads
+from .frame_start import drop_borne_leads, keep_leads
 from .joints import joints_of
 from .record import cache_boxes, floats, words, write_bias, write_motion, write_place
 
@@ -18,9 +18,8 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
 
     Of a frame that failed also what the user's position functions have moved.
     """
-    if good:  # a frame that is run again, or fails, has not been
-        g = floats(space + s.space_gravity, 2)
-        keep_leads(s, tables, g[0], g[1], dt)
+    g = floats(space + s.space_gravity, 2)
+    leading = False
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         if body.stamp != s.frame:
@@ -28,7 +27,8 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
         if body.steps == 0 and good and s.explicit == 0 and body.kind == DRIFTS:  # at rest, as it was
             write_motion(s, body)
             continue
-        if good:
+        if good:  # a frame that is run again, or fails, has not been
+            leading |= keep_leads(body, g[0], g[1], dt)
             body.trend_x = body.forced_x - body.was_x
             body.trend_y = body.forced_y - body.was_y
             body.trend_w = body.forced_w - body.was_w
@@ -46,6 +46,8 @@ def finish_frame(s: Any, space: int, tables: Tables, good: bool, dt: float) -> N
             if body.kind == DRIFTS and s.explicit == 0:
                 words(body.address + s.body_position_func, 1)[0] = s.hold_at
             cache_boxes(s, body)
+    if leading:
+        drop_borne_leads(s, tables)
     if good and s.explicit == 0:  # what joints have made of the velocity of bodies that are in no space
         for joint in joints_of(s):
             for i in (joint.a, joint.b):

@@ -83,26 +83,26 @@ def _left_of(lead: float, taken: float) -> float:
     return lead if lead * taken >= 0.0 else math.copysign(max(0.0, abs(lead) - abs(taken)), lead)
 
 
+@kernel(forceinline=True)
+def keep_leads(body: Any, gx: float, gy: float, dt: float) -> bool:
+    """After a frame: what forces have given ahead (`leads`); whether that is anything."""
+    body.lead_x, body.lead_y, body.lead_w = leads(body, gx, gy, dt)
+    return bool(body.lead_x != 0.0 or body.lead_y != 0.0 or body.lead_w != 0.0)
+
+
 @kernel
-def keep_leads(s: Any, tables: Tables, gx: float, gy: float, dt: float) -> None:
-    """After a frame: what forces have given ahead (`leads`), but for what contacts and joints have borne.
+def drop_borne_leads(s: Any, tables: Tables) -> None:
+    """What contacts and joints have borne of leads is not taken back.
 
     What the bodies of an island have borne of one another is still in it: all of them go on with that.
     """
-    leading = False
     for k in range(tables.counters[AWAKE]):
-        body = tables.bodies[tables.awake[k]]
         island = tables.islands[tables.awake[k]]
         island.mass = 0.0
         island.x = island.y = island.lead_x = island.lead_y = 0.0
-        if _is_led(s, body):
-            body.lead_x, body.lead_y, body.lead_w = leads(body, gx, gy, dt)
-            leading |= body.lead_x != 0.0 or body.lead_y != 0.0 or body.lead_w != 0.0
-    if not leading:
-        return
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
-        if _is_led(s, body):
+        if _is_led(s, body) and body.inverse_mass > 0.0:
             mass = 1.0 / body.inverse_mass
             x, y = _taken_of(body)
             island = tables.islands[root_of(tables, tables.awake[k])]
@@ -113,18 +113,20 @@ def keep_leads(s: Any, tables: Tables, gx: float, gy: float, dt: float) -> None:
             island.lead_y += mass * (body.lead_y - _left_of(body.lead_y, y))
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
-        if _is_led(s, body):
+        if not _is_led(s, body):
+            continue
+        body.lead_w = _left_of(body.lead_w, body.w - body.old_w - body.gain_w)
+        if body.inverse_mass > 0.0:
             x, y = _taken_of(body)
             island = tables.islands[root_of(tables, tables.awake[k])]
             body.lead_x = _left_of(body.lead_x, x) + _left_of(island.lead_x, island.x) / island.mass
             body.lead_y = _left_of(body.lead_y, y) + _left_of(island.lead_y, island.y) / island.mass
-            body.lead_w = _left_of(body.lead_w, body.w - body.old_w - body.gain_w)
 
 
 @kernel(forceinline=True)
 def _is_led(s: Any, body: Any) -> bool:
     """Whether forces have moved a body in this frame."""
-    return bool(body.stamp == s.frame and body.inverse_mass > 0.0 and (body.steps > 0 or s.explicit > 0))
+    return bool(body.stamp == s.frame and (body.steps > 0 or s.explicit > 0))
 
 
 @kernel(forceinline=True)
