@@ -214,13 +214,15 @@ def _descend(tables: Tables, small: float) -> bool:
         island = active_island(tables, k)
         going = island.part > 0.0
         island.before = island.product if going and island.whole else 0.0
-        island.gained = 1.0
-        if going and not island.whole:
+        if not island.searching:
+            continue
+        island.gained = 1.0 if island.whole else 0.0
+        if going and island.whole:
+            island.part = 1.0
+        elif going:
             island.part = min(1.0, _length(island))
             gain = island.part * (2.0 * island.ahead - island.part * island.curvature)
             island.gained = gain / island.product
-        elif going:
-            island.part = 1.0
     return True
 
 
