@@ -110,7 +110,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             rest_settled(tables, k + 1, whole, SETTLED)
             if k == 0:
                 search_all(tables, more == 0)
-                conjugate_gradients(tables, SEARCH_STEPS if jointed else min(1, searches), jointed)
+                conjugate_gradients(tables, SEARCH_STEPS if jointed else searches, jointed)
                 if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
                 if jointed:
