@@ -35,7 +35,7 @@ from ..contact.joint_record import (
 )
 from ..contact.motion import kick_of
 from ..contact.space_record import EXTREME, load_tables, row_of_body
-from ..contact.tables import APART, JOINTS, REJOINED, TURN, UNSORTED, Law, Tables
+from ..contact.tables import APART, FIXED, JOINTS, REJOINED, TURN, UNSORTED, Law, Tables
 from .record import notice_again, state_of, words
 
 #: A joint gives way to what it bears by the square of a substep: one that bears more than so many times its bodies' own
@@ -231,7 +231,9 @@ def start_joints(s: Any) -> None:
 @kernel(forceinline=True)
 def _substeps_of(tables: Tables, joint: Any) -> int:
     """The substeps in which a joint is solved: those of what it moves."""
-    return int(max(tables.bodies[joint.a].steps, tables.bodies[joint.b].steps))
+    a = tables.bodies[joint.a]
+    b = tables.bodies[joint.b]
+    return int(max(a.steps if a.kind != FIXED else 0, b.steps if b.kind != FIXED else 0))
 
 
 @kernel

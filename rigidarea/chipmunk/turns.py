@@ -19,7 +19,7 @@ from ..contact.islands import (
     spare,
 )
 from ..contact.order import bound
-from ..contact.space_record import load_tables
+from ..contact.space_record import load_pool, load_tables
 from ..contact.tables import AWAKE, FIRST, LAST, NEAR, ROWS, SUBSTEP, TURN
 from .joints import joints_of, rest_joints
 from .record import floats
@@ -45,12 +45,12 @@ def substeps_by_islands(s: Any, space: int, dt: float) -> int:
             if joint.taken:
                 spare(tables, joint.a, s.substeps)
                 spare(tables, joint.b, s.substeps)
-    part(tables, dt)
+    part(load_pool(s), tables, dt)
     for joint in joints_of(s):
         if joint.taken:
             connect(tables, joint.a, joint.b)
     differ = number(tables)
-    if differ and connect_in_reach(tables, dt):
+    if differ and connect_in_reach(load_pool(s), tables, dt):
         differ = number(tables)
     then = tables.counters[SUBSTEP]
     taken = tables.bodies[tables.awake[0]].steps if tables.counters[AWAKE] else s.substeps

@@ -13,7 +13,7 @@ from typing import Any
 
 from ..compile.jit import kernel
 from ..compile.raw_memory import record
-from .constants import CALM, LEFT, MOVED, REST_KICKS, REST_TURNS, SETTLED, STILL_KICK
+from .constants import CALM, LEFT, MOVED, REST_KICKS, REST_TURNS, SETTLED, SLOWLY, STILL_KICK
 from .islands import root_of, unite
 from .motion import kick_of
 from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
@@ -21,9 +21,6 @@ from .tables import ACTIVE, ISLANDS, LIVE, MEMBERS, QUEUE, ROWS, Law, Tables
 #: Without weight a speed is none with which a body goes this part of the depth at which it may lie in a step: one of
 #: 20 px goes a pixel in half an hour.
 UNSEEN = 1e-3
-
-#: What a sweep still changes is this part of what is left to solve, or more: of the slowest piles.
-SLOWLY = 100.0
 
 ISLAND = record(
     [
@@ -56,7 +53,11 @@ ISLAND = record(
         ("high_y", "f8"),
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("seen", "f8"),  # and with which one that is still is left after all sweeps
-        ("moved", "f8"),  # largest change of a contact's speed in the last sweep (length/time)
+        (
+            "moved",
+            "f8",
+        ),  # largest change of a contact's speed in the last sweep; 0: it is solved (length/time)
+        ("left", "f8"),  # that of the last sweep before velocities are relaxed, of one that is still
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
         ("ahead", "f8"),
@@ -283,6 +284,7 @@ def rest_settled(tables: Tables, swept: int, least: int, most: float) -> None:
         alone = island.rows == 1 and island.moved <= island.small
         if alone or (swept > 1 and island.moved <= enough * island.small):
             island.active = 0
+            island.moved = 0.0
             dropped = True
     if dropped:
         _leave_solved(tables)

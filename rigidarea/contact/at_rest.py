@@ -10,16 +10,33 @@ from __future__ import annotations
 from typing import Any
 
 from ..compile.jit import kernel
-from .constants import STILL_KICK, STILL_WAY
+from .constants import REST_TIME, SLOWLY, STILL_KICK, STILL_WAY
 from .tables import AWAKE, DRIFTS, FIRST, FIXED, LAST, LYING, NEAR, SUBSTEP, Law, Tables
 
-#: So many frames on end nothing has changed: stiffness follows a load in the frame after.
+#: And for so many frames, at the least: stiffness follows a load in the frame after.
 RESTED = 3
 
 
 @kernel(forceinline=True)
+def has_come_to_rest(body: Any, dt: float) -> bool:
+    """Whether a body has kept its place for REST_TIME."""
+    return bool(body.rests >= max(REST_TIME, (RESTED - 0.5) * dt))
+
+
+@kernel(forceinline=True)
+def watch_rest(body: Any, x: float, y: float, angle: float) -> None:
+    """How far a body at (x, y, angle) has gone (`went`) since it moved last, or in one to two REST_TIMEs."""
+    if body.rests == 0.0:
+        body.rest_x, body.rest_y, body.rest_a = body.old_x, body.old_y, body.old_a
+    elif body.rests >= 2.0 * REST_TIME:
+        body.rest_x, body.rest_y, body.rest_a = x, y, angle
+        body.rests -= REST_TIME
+    body.went = abs(x - body.rest_x) + abs(y - body.rest_y) + abs(angle - body.rest_a) * body.extent
+
+
+@kernel(forceinline=True)
 def is_at_rest(law: Law, body: Any, dt: float) -> bool:
-    """Whether a body neither moves nor is pushed otherwise than in the frame before.
+    """Whether a body keeps its place, and is pushed as in the frame before.
 
     What nothing pushes, or no contact bears and no joint, rests where it does not move at all: slowly it would go on.
     """
@@ -35,11 +52,12 @@ def is_at_rest(law: Law, body: Any, dt: float) -> bool:
     change = dt * (abs(body.forced_x - body.was_x) + abs(body.forced_y - body.was_y))
     change += dt * abs(body.forced_w - body.was_w) * body.extent
     borne = pushed > 0.0 and (body.pushed & LYING or body.calm < 0)
-    return bool(
-        body.kind == DRIFTS
-        and max(body.gained, change) <= STILL_KICK * pushed
-        and max(body.went, dt * speed) <= (STILL_WAY * law.penetration * body.extent if borne else 0.0)
-    )
+    room = 0.0
+    if borne:
+        fall = 0.5 * REST_TIME * REST_TIME * pushed / dt
+        unsolved = REST_TIME * SLOWLY * body.unsolved
+        room = max(STILL_KICK * fall, min(unsolved, STILL_WAY * body.extent))
+    return bool(body.kind == DRIFTS and change <= STILL_KICK * pushed and max(body.went, dt * speed) <= room)
 
 
 @kernel

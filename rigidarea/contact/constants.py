@@ -104,12 +104,18 @@ ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.05
-#: At rest is what changes its velocity in a frame by no more than this part of what pushes gives: a stick that stands
-#: by less than this off its balance (rad) does not fall.
+#: Who has kept its place for so long is at rest (time; Box2D v3's b2_timeToSleep).
+REST_TIME = 0.5
+#: What pushes it changes by no more than this part in a frame, and it goes no farther in REST_TIME than this part of
+#: what it would fall: under 900 px/s^2 a pixel in half a day. It then lies within a thousandth of where it would come
+#: to lie, since its load is averaged (LOAD_TIME); a stick by less than this off its balance (rad) does not fall.
 STILL_KICK = 1e-7
-#: And goes no farther in one than this part of the depth to which it may sink: a box of 20 px, a pixel in two days. It
-#: then lies within a thousandth of where it would come to lie, since its load is averaged (LOAD_TIME).
-STILL_WAY = 2e-5
+#: What a sweep still changes is this part of what is left to solve, or more: of the slowest piles.
+SLOWLY = 100.0
+#: In a pile that its solve has left unsolved, bodies creep by what that is wrong by: at rest there is who goes no
+#: farther in REST_TIME than that, and than this part of its extent, .1 px of 20. (Box2D puts to sleep what goes five
+#: times as far, solved or not: 5 cm/s, its bodies of a metre.)
+STILL_WAY = 5e-3
 #: Of what hardly moves, one substep in so many is solved as far as it takes to rest (STILL_KICK), the others as far as
 #: is seen: they change nothing of what that one has solved.
 REST_TURNS = 4

@@ -19,9 +19,6 @@ BODY = record(
         ("changed", "i1"),  # 1: in this frame it has come to be awake, or mobile
         ("calm", "i1"),  # 1: it hardly moved when the frame began; -1: it hangs in a joint; -2: both
         ("was_calm", "i1"),  # 1: calm, a frame before
-        # for so many frames, to RESTED, it has not moved, nor what pushes it changed (`at_rest`); that, a frame before
-        ("rests", "i1"),
-        ("has_rested", "i1"),
         # which of REST_TURNS substeps it is for its island (`active`), and was when the frame began
         ("rest_turn", "i1"),
         ("old_turn", "i1"),
@@ -59,7 +56,15 @@ BODY = record(
         ("kick_y", "f8"),
         ("kick_w", "f8"),
         ("gained", "f8"),  # by what the last frame has changed its velocity (length/time)
-        ("went", "f8"),  # and how far it has moved it (length)
+        # for how long it has kept its place, and what pushes it has not changed (`at_rest`); that, a frame before
+        ("rests", "f8"),
+        ("has_rested", "f8"),
+        ("rest_x", "f8"),  # that place
+        ("rest_y", "f8"),
+        ("rest_a", "f8"),
+        ("went", "f8"),  # how far it is from there (length)
+        # what sweeps still changed in its island when that was solved as far as it takes to rest (length/time)
+        ("unsolved", "f8"),
         ("came_vx", "f8"),  # velocity before the substep's sweeps (length/time)
         ("came_vy", "f8"),
         ("came_w", "f8"),

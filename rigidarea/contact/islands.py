@@ -15,14 +15,15 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
+from ..geometry.apart import find_axis
 from ..geometry.clearance import clearance
 from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
-from .at_rest import RESTED, is_at_rest
+from .at_rest import has_come_to_rest, is_at_rest
 from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
-from .motion import earlier, kick_of, pose_of
+from .motion import earlier, gap_along_axis, kick_of, pose_of
 from .order import arrange, bound, enlist, turn_of
 from .sides import shown_sides
 from .tables import (
@@ -104,13 +105,13 @@ def demand(
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
-        body.rests = min(body.has_rested + 1, RESTED) if free and is_at_rest(law, body, dt) else 0
+        body.rests = body.has_rested + dt if free and is_at_rest(law, body, dt) else 0.0
         slow = CALM * kick_of(law, body.extent, dt)
         # what turns back moves no more than what lies, for a moment
         fast = max(body.gained, abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent)
         body.calm = fast <= (3.0 * slow if before else slow) and body.disturbed != law.frame
         body.wants = max(1 if free and before and body.calm else n, body.asked)
-        if body.rests == RESTED:
+        if has_come_to_rest(body, dt):
             body.wants = 0
         most = max(most, body.wants)
         least = min(least, body.wants)
@@ -191,9 +192,12 @@ def connect(tables: Tables, i: int, j: int) -> None:
     unite(tables, i, j)
 
 
-@kernel(forceinline=True)
-def _meet(tables: Tables, near: Any) -> bool:
-    """Whether the two of a near pair, both of which move, touch, or might within their `way`."""
+@kernel
+def _meet(pool: Pool, tables: Tables, near: Any, dt: float) -> bool:
+    """Whether the two of a near pair, both of which move, touch, or might within their `way` in a frame of dt.
+
+    By their boxes; of one that is at rest, by what parts them: it would else be solved with whatever rolls by.
+    """
     a = tables.bodies[near.a]
     b = tables.bodies[near.b]
     if a.kind == FIXED or b.kind == FIXED:
@@ -205,11 +209,22 @@ def _meet(tables: Tables, near: Any) -> bool:
     other = tables.shapes[pair.b]
     apart_x = max(one.left - other.right, other.left - one.right)
     apart_y = max(one.bottom - other.top, other.bottom - one.top)
-    return bool(max(apart_x, apart_y) <= a.way + b.way)
+    way = a.way + b.way
+    mover = b if a.wants == 0 else a
+    if max(apart_x, apart_y) > way or (a.wants == 0) == (b.wants == 0) or not mover.mobile:
+        return bool(max(apart_x, apart_y) <= way)
+    rel = seen_from(pool.heads[one.outline], pose_of(a), pool.heads[other.outline], pose_of(b))
+    find_axis(pool, one.outline, other.outline, rel, pair, one.mirror >= 0, other.mirror >= 0)
+    if pair.gap > way:
+        return False
+    if pair.gap <= 0.0 or mover.calm <= 0 or mover.wants > 1:
+        return True
+    # something bears what is calm: it goes on as it does
+    return gap_along_axis(pool, tables, pair, earlier(a, -2.0 * dt), earlier(b, -2.0 * dt)) <= 0.0
 
 
 @kernel
-def part(tables: Tables, dt: float) -> None:
+def part(pool: Pool, tables: Tables, dt: float) -> None:
     """Every body for itself, then what touches, or comes to by its own motion within a frame of dt, is one."""
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
@@ -222,7 +237,7 @@ def part(tables: Tables, dt: float) -> None:
         speed = abs(body.vx) + abs(body.vy) + abs(body.gain_x) + abs(body.gain_y)
         body.way = dt * (speed + (abs(body.w) + abs(body.gain_w)) * arm)
     for k in range(tables.counters[NEAR]):
-        if _meet(tables, tables.near[k]):
+        if _meet(pool, tables, tables.near[k], dt):
             connect(tables, tables.near[k].a, tables.near[k].b)
 
 
@@ -246,8 +261,14 @@ def number(tables: Tables) -> bool:
     return differ
 
 
+@kernel(forceinline=True)
+def _may_be_sent(a: Any, b: Any) -> bool:
+    """Whether two bodies are of two turns, and a blow may send one of them to the other: not where all are calm."""
+    return bool(a.steps != b.steps and max(a.steps, b.steps) > 1)
+
+
 @kernel
-def connect_in_reach(tables: Tables, dt: float) -> bool:
+def connect_in_reach(pool: Pool, tables: Tables, dt: float) -> bool:
     """Islands of which one may send a body as far as another of another number within a frame of dt are one; whether
     there were such.
 
@@ -281,7 +302,7 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
     found = False
     for k in range(counters[NEAR]):
         near = tables.near[k]
-        if tables.bodies[near.a].steps != tables.bodies[near.b].steps and _meet(tables, near):
+        if _may_be_sent(tables.bodies[near.a], tables.bodies[near.b]) and _meet(pool, tables, near, dt):
             connect(tables, near.a, near.b)
             found = True
     for k in range(counters[MOVERS]):
@@ -311,7 +332,7 @@ def connect_in_reach(tables: Tables, dt: float) -> bool:
                 break
             other = tables.shapes[tables.nodes[at].owner]
             it = tables.bodies[other.body]
-            if it.awake and it.steps != body.steps and shapes_collide(tables, shape, other):
+            if it.awake and _may_be_sent(body, it) and shapes_collide(tables, shape, other):
                 connect(tables, shape.body, other.body)
                 found = True
     return found

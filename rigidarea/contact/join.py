@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..compile.jit import kernel
-from ..geometry.apart import find_axis, gap_along
-from ..geometry.place import Pose, seen_from
+from ..geometry.apart import find_axis
+from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .bend import bend
@@ -19,7 +19,7 @@ from .broad import swing
 from .constants import LOOK
 from .joint import make_joint_row
 from .meet import has_seats, meet, meet_ahead
-from .motion import closing_along_axis, earlier, jumped, little, pose_of
+from .motion import closing_along_axis, earlier, gap_along_axis, jumped, little, pose_of
 from .row import make_row
 from .stiffness import allowed_depth
 from .tables import (
@@ -109,24 +109,13 @@ def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
         return False
     if jumped(tables, pair, a, b, h) > 1:
         return False
-    pair.gap = _gap(pool, tables, pair, pose_of(a), pose_of(b))
+    pair.gap = gap_along_axis(pool, tables, pair, pose_of(a), pose_of(b))
     pair.parted = tables.counters[SUBSTEP]
     if pair.gap <= 0.0:
         return False
     pair.side_a = 0  # a segment without thickness shows what is off it the side on which that comes
     pair.side_b = 0
     return True
-
-
-@kernel
-def _gap(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pose) -> float:
-    """How far apart a pair is along its axis, its bodies in these places (length)."""
-    sa = tables.shapes[pair.a]
-    sb = tables.shapes[pair.b]
-    rel = seen_from(pool.heads[sa.outline], pose_a, pool.heads[sb.outline], pose_b)
-    return float(
-        gap_along(pool, sa.outline, sb.outline, rel, pair.axis_x, pair.axis_y, sa.mirror >= 0, sb.mirror >= 0)
-    )
 
 
 @kernel
@@ -157,7 +146,7 @@ def _apart_then(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
     least = little(tables, pair, a, b, h)
     if least <= 0.0 or (pair.axis_x == 0.0 and pair.axis_y == 0.0):
         return 0.0
-    return float(min(least, _gap(pool, tables, pair, earlier(a, -h), earlier(b, -h))))
+    return float(min(least, gap_along_axis(pool, tables, pair, earlier(a, -h), earlier(b, -h))))
 
 
 @kernel

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 
 from ..compile.jit import kernel
-from ..geometry.place import Pose, overlap_of_outlines
+from ..geometry.apart import gap_along
+from ..geometry.place import Pose, overlap_of_outlines, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .broad import swing
@@ -206,6 +207,17 @@ def _farthest(pool: Pool, shape: Any, body: Any) -> float:
     dy = head.y - body.cog_y
     own = 0.0 if head.disc else head.radius
     return float(math.sqrt(dx * dx + dy * dy) + own)
+
+
+@kernel
+def gap_along_axis(pool: Pool, tables: Tables, pair: Any, pose_a: Pose, pose_b: Pose) -> float:
+    """How far apart a pair is along its axis, its bodies in these places (length)."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    rel = seen_from(pool.heads[sa.outline], pose_a, pool.heads[sb.outline], pose_b)
+    return float(
+        gap_along(pool, sa.outline, sb.outline, rel, pair.axis_x, pair.axis_y, sa.mirror >= 0, sb.mirror >= 0)
+    )
 
 
 @kernel

@@ -28,7 +28,9 @@ def begin_to_relax(tables: Tables, law: Law, h: float) -> bool:
     """
     bears = False
     for k in range(tables.counters[ISLANDS]):
-        tables.islands[k].active = 0
+        island = tables.islands[k]
+        island.active = 0
+        island.left = island.moved if island.still else 0.0
     for i in range(tables.counters[ROWS]):
         row = tables.rows[i]
         if _stiffen(row, row.ends > 0 and row.jammed == 1 and _hinged(tables, row.a, row.b)):

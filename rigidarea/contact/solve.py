@@ -211,6 +211,9 @@ def finish(tables: Tables, law: Law, frame: int, h: float, last: bool) -> None:
         body.pushed //= 4
         if body.stamp != frame:
             continue
+        number = tables.mobility[tables.live[k]].island
+        if tables.counters[ROWS] > 0 and number >= 0 and tables.islands[number].turn == 0:
+            body.unsolved = tables.islands[number].left
         least = ROUNDING * (abs(body.kick_x) + abs(body.kick_y))
         if abs(body.vx) < least:
             body.vx = 0.0

@@ -357,3 +357,30 @@ def test_what_balances_by_a_millionth_falls():
         frames += 1
     # 0.5 = 1e-5 cosh(w t), w^2 = 3 g / 2 l of a rod about its end
     assert frames * DT == pytest.approx(math.acosh(0.5 / 1e-5) / math.sqrt(1.5 * 900 / 101), rel=0.25)
+
+
+def test_who_hangs_at_rest_from_what_others_hit_stays_so():
+    """A bob at rest, pinned to the body of the floor on which a linked pair bounces: not a bit of it moves."""
+    space = pymunk.Space()
+    space.gravity = 0, -900
+    floor = pymunk.Segment(space.static_body, (-500, 0), (500, 0), 5)
+    bob = pymunk.Body(1, pymunk.moment_for_circle(1, 0, 10))
+    bob.position = 200, 100
+    pair = [pymunk.Body(1, pymunk.moment_for_circle(1, 0, 10)) for _ in range(2)]
+    for body, x in zip(pair, (-30, 0), strict=True):
+        body.position = x, 200
+    rod = pymunk.PinJoint(space.static_body, bob, (200, 180))
+    link = pymunk.PinJoint(*pair)
+    space.add(floor, bob, *pair, *(pymunk.Circle(body, 10) for body in (bob, *pair)), rod, link)
+    for shape in space.shapes:
+        shape.elasticity = 1.0
+    rigidarea.attach(space)
+    for _ in range(60):
+        space.step(DT)
+    place = bob.position, bob.angle
+    for _ in range(240):
+        space.step(DT)
+        assert (bob.velocity, bob.angular_velocity) == ((0, 0), 0)
+        assert rod.impulse == pytest.approx(900 * DT, rel=1e-5)
+    assert (bob.position, bob.angle) == place
+    assert max(abs(body.velocity) for body in pair) > 100
