@@ -8,7 +8,7 @@ from ..compile.jit import kernel
 from ..contact.active import form_islands, rest_settled, rest_small
 from ..contact.bend import bend_again
 from ..contact.blows import blows
-from ..contact.conjugate import conjugate_gradients, search_all
+from ..contact.conjugate import conjugate_gradients, select_searched
 from ..contact.constants import MORE_SWEEPS, RELAX_SWEEPS, SEARCH_STEPS, SEARCH_SWEEPS, SETTLED
 from ..contact.driven import lessen_driven
 from ..contact.given_energy import begin_again, contacts_give_energy, mix
@@ -109,7 +109,7 @@ def _solve(s: Any, tables: Tables, h: float, whole: int, jointed: bool) -> bool:
             sweep(tables, k % 2 == 0)
             rest_settled(tables, k + 1, whole, SETTLED)
             if k == 0:
-                search_all(tables, more == 0)
+                select_searched(tables, more <= 1)
                 conjugate_gradients(tables, SEARCH_STEPS if jointed else searches, jointed)
                 if blows(tables, law, h):
                     conjugate_gradients(tables, searches, False)
@@ -153,7 +153,7 @@ def _give_no_energy(tables: Tables, law: Law, whole: int) -> None:
         if tables.counters[QUEUE] == 0:
             break
         if k == 0:
-            search_all(tables, True)
+            select_searched(tables, True)
             conjugate_gradients(tables, SEARCH_STEPS, True)
     mix(tables, law)
 

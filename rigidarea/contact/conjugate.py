@@ -326,14 +326,14 @@ def _go(tables: Tables) -> None:
 
 
 @kernel
-def search_all(tables: Tables, first: bool) -> None:
-    """Every island that is active takes part in the next search; if that is not the first, where the last was WORTH it.
+def select_searched(tables: Tables, every: bool) -> None:
+    """Which islands take part in the next search: every one that is active, or those of which the last was WORTH it.
 
     In a heap something always lets go, and cuts each step short: there only the sweeps go on.
     """
     for k in range(tables.counters[ACTIVE]):
         island = active_island(tables, k)
-        island.searching = first or island.gained >= WORTH
+        island.searching = every or island.gained >= WORTH
 
 
 @kernel

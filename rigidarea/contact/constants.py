@@ -79,8 +79,8 @@ NO_LENGTH = 1e-9
 SWINGS_ON = 0.9
 #: For so many sweeps one step of the search that takes all rows together (`conjugate`), in the place of two.
 SEARCH_SWEEPS = 10
-#: A solve that goes on searches again where bounds have left the last step this part of its gain: each costs as much
-#: as four sweeps.
+#: A solve that goes on searches again, after a second time, where bounds have left the last step this part of its gain:
+#: each costs as much as four sweeps.
 WORTH = 0.05
 #: Most steps of a search with joints: it ends sooner where it has converged, or an end lets go.
 SEARCH_STEPS = 8

@@ -154,7 +154,7 @@ def test_a_copy_in_mid_contact_goes_on_as_the_original(frame, how, steps):
 def test_a_rolling_frame_of_reference_changes_nothing(steps):
     """Everything, the kinematic floor too, at a common 64 m/s: the same motion beside it, to 1e-5 of a size.
 
-    Of one substep to 2e-4: what is still is solved farther in one of four. At the defaults to 1e-2: what has come to
+    Of one substep to 1e-4: what is still is solved farther in one of four. At the defaults to 1e-2: what has come to
     rest beside the floor takes one substep a frame, what rolls with it two.
     """
     found = []
@@ -166,5 +166,5 @@ def test_a_rolling_frame_of_reference_changes_nothing(steps):
         world.run(1.0, steps)
         found.append(world.state() - np.array((common, 0, 0, common, 0, 0)))
     assert found[1] == pytest.approx(
-        found[0], abs={1: 2e-4, None: 1e-2}.get(steps, 1e-5) if ENGINE == "area" else 0.1
+        found[0], abs={1: 1e-4, None: 1e-2}.get(steps, 1e-5) if ENGINE == "area" else 0.1
     )
