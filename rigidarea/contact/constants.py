@@ -81,7 +81,7 @@ SWINGS_ON = 0.9
 SEARCH_SWEEPS = 10
 #: A solve that goes on searches again, after a second time, where bounds have left the last step this part of its gain:
 #: each costs as much as four sweeps.
-WORTH = 0.05
+WORTH = 0.02
 #: Most steps of a search with joints: it ends sooner where it has converged, or an end lets go.
 SEARCH_STEPS = 8
 #: One sweep of so many, rounded up, is for the velocities that are left when positions are right (`relax`).
