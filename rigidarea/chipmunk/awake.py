@@ -6,7 +6,7 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..contact.at_rest import has_come_to_rest, watch_rest
+from ..contact.at_rest import watch_rest
 from ..contact.broad import ask_about, measure, put_in_tree
 from ..contact.space_record import load_pool, next_row_of_body
 from ..contact.tables import AWAKE, DRIFTS, FIXED, LED, MOVERS, UNSORTED, Tables
@@ -70,9 +70,9 @@ def add_to_awake(tables: Tables, i: int, body: Any) -> None:
 
 
 @kernel(forceinline=True)
-def _is_as_left(s: Any, address: int, body: Any, dt: float) -> bool:
+def _is_as_left(s: Any, address: int, body: Any) -> bool:
     """Whether a body was at rest in the last frame, and nothing has been set of it since, nor is it pushed."""
-    if not has_come_to_rest(body, dt) or body.steps > 0 or not body.awake or not body.mobile:
+    if body.rests == 0.0 or body.wants > 0 or body.steps > 0 or not body.awake or not body.mobile:
         return False
     place = floats(address + s.body_position, 2)
     cog = floats(address + s.body_cog, 2)
@@ -111,7 +111,7 @@ def watch_bodies(s: Any, tables: Tables, space: int, dt: float) -> bool:
         if body.stamp == s.frame:
             continue
         body.old_turn = body.rest_turn
-        body.same = _is_as_left(s, address, body, dt)
+        body.same = _is_as_left(s, address, body)
         if body.same:
             body.stamp = s.frame
             body.was_calm = 1 if body.calm > 0 or body.calm == -2 else 0

@@ -13,14 +13,8 @@ from ..compile.jit import kernel
 from .constants import REST_TIME, SLOWLY, STILL_KICK, STILL_WAY
 from .tables import AWAKE, DRIFTS, FIRST, FIXED, LAST, LYING, NEAR, SUBSTEP, Law, Tables
 
-#: And for so many frames, at the least: stiffness follows a load in the frame after.
+#: So many frames at the least: stiffness follows a load in the frame after.
 RESTED = 3
-
-
-@kernel(forceinline=True)
-def has_come_to_rest(body: Any, dt: float) -> bool:
-    """Whether a body has kept its place for REST_TIME."""
-    return bool(body.rests >= max(REST_TIME, (RESTED - 0.5) * dt))
 
 
 @kernel(forceinline=True)
@@ -35,10 +29,24 @@ def watch_rest(body: Any, x: float, y: float, angle: float) -> None:
 
 
 @kernel(forceinline=True)
-def is_at_rest(law: Law, body: Any, dt: float) -> bool:
-    """Whether a body keeps its place, and is pushed as in the frame before.
+def _pushed(body: Any) -> float:
+    """What forces and gravity would do to a body (length/time^2)."""
+    return float(abs(body.forced_x) + abs(body.forced_y) + abs(body.forced_w) * body.extent)
 
-    What nothing pushes, or no contact bears and no joint, rests where it does not move at all: slowly it would go on.
+
+@kernel(forceinline=True)
+def _visible(body: Any, dt: float) -> float:
+    """How far a body must go to have moved, in the time for which it has kept its place (length)."""
+    time = max(body.has_rested + dt, RESTED * dt)
+    return STILL_KICK * 0.5 * time * time * _pushed(body)
+
+
+@kernel(forceinline=True)
+def keeps_its_place(law: Law, body: Any, dt: float) -> bool:
+    """Whether a body does not leave its place, and is pushed as in the frame before.
+
+    What nothing pushes, or no contact bears and no joint, keeps its place where it does not move at all: slowly it
+    would go on.
     """
     if body.disturbed == law.frame or body.since == 0.0 or body.asked > 0:
         return False
@@ -48,16 +56,24 @@ def is_at_rest(law: Law, body: Any, dt: float) -> bool:
     if not body.mobile:
         still = speed == 0.0 and body.w == 0.0
         return bool(still and body.put_x == 0.0 and body.put_y == 0.0 and body.put_a == 0.0)
-    pushed = dt * (abs(body.forced_x) + abs(body.forced_y) + abs(body.forced_w) * body.extent)
-    change = dt * (abs(body.forced_x - body.was_x) + abs(body.forced_y - body.was_y))
-    change += dt * abs(body.forced_w - body.was_w) * body.extent
-    borne = pushed > 0.0 and (body.pushed & LYING or body.calm < 0)
+    change = abs(body.forced_x - body.was_x) + abs(body.forced_y - body.was_y)
+    change += abs(body.forced_w - body.was_w) * body.extent
+    pushed = _pushed(body)
     room = 0.0
-    if borne:
-        fall = 0.5 * REST_TIME * REST_TIME * pushed / dt
+    if pushed > 0.0 and (body.pushed & LYING or body.calm < 0):
         unsolved = REST_TIME * SLOWLY * body.unsolved
-        room = max(STILL_KICK * fall, min(unsolved, STILL_WAY * body.extent))
+        room = max(_visible(body, dt), min(unsolved, STILL_WAY * body.extent))
     return bool(body.kind == DRIFTS and change <= STILL_KICK * pushed and max(body.went, dt * speed) <= room)
+
+
+@kernel(forceinline=True)
+def has_come_to_rest(body: Any, dt: float) -> bool:
+    """Whether a body has kept its place for long enough: REST_TIME, or RESTED frames where it has not moved at all."""
+    if body.rests >= max(REST_TIME, (RESTED - 0.5) * dt):
+        return True
+    return bool(
+        body.rests >= (RESTED - 0.5) * dt and body.went <= (_visible(body, dt) if body.mobile else 0.0)
+    )
 
 
 @kernel

@@ -104,11 +104,12 @@ ROUNDING = 1e-12
 #: Nobody faster, in two frames on end, than this part of what pushes gives in a frame (three of it, once it is calm):
 #: such a frame is one substep. At rest the law is the same whatever the step, and what only turns round goes faster.
 CALM = 0.05
-#: Who has kept its place for so long is at rest (time; Box2D v3's b2_timeToSleep).
+#: Who has kept its place for so long is at rest, though it creeps (time; Box2D v3's b2_timeToSleep).
 REST_TIME = 0.5
-#: What pushes it changes by no more than this part in a frame, and it goes no farther in REST_TIME than this part of
-#: what it would fall: under 900 px/s^2 a pixel in half a day. It then lies within a thousandth of where it would come
-#: to lie, since its load is averaged (LOAD_TIME); a stick by less than this off its balance (rad) does not fall.
+#: What pushes it changes by no more than this part in a frame; and it has not moved that goes no farther in a time than
+#: this part of what it would fall in it: under 900 px/s^2 a pixel in half a day. It then lies within a thousandth of
+#: where it would come to lie, since its load is averaged (LOAD_TIME); a stick by less than this off its balance (rad)
+#: does not fall.
 STILL_KICK = 1e-7
 #: What a sweep still changes is this part of what is left to solve, or more: of the slowest piles.
 SLOWLY = 100.0

@@ -20,7 +20,7 @@ from ..geometry.clearance import clearance
 from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
-from .at_rest import has_come_to_rest, is_at_rest
+from .at_rest import has_come_to_rest, keeps_its_place
 from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
 from .motion import earlier, gap_along_axis, kick_of, pose_of
@@ -105,7 +105,7 @@ def demand(
     for k in range(tables.counters[AWAKE]):
         body = tables.bodies[tables.awake[k]]
         before = body.was_calm == 1
-        body.rests = body.has_rested + dt if free and is_at_rest(law, body, dt) else 0.0
+        body.rests = body.has_rested + dt if free and keeps_its_place(law, body, dt) else 0.0
         slow = CALM * kick_of(law, body.extent, dt)
         # what turns back moves no more than what lies, for a moment
         fast = max(body.gained, abs(body.vx) + abs(body.vy) + abs(body.w) * body.extent)
