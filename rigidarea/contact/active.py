@@ -53,11 +53,10 @@ ISLAND = record(
         ("high_y", "f8"),
         ("small", "f8"),  # a change in a sweep that is small beside its kicks and speeds (length/time)
         ("seen", "f8"),  # and with which one that is still is left after all sweeps
-        (
-            "moved",
-            "f8",
-        ),  # largest change of a contact's speed in the last sweep; 0: it is solved (length/time)
-        ("left", "f8"),  # that of the last sweep before velocities are relaxed, of one that is still
+        # largest change of a contact's speed in the last sweep, 0 once it is solved; that when its solve has ended, of
+        # one that is still (length/time)
+        ("moved", "f8"),
+        ("left", "f8"),
         ("before", "f8"),  # of the search: residual times direction, a step ago (0: begin anew) and now
         ("product", "f8"),
         ("ahead", "f8"),
