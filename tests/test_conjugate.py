@@ -64,7 +64,7 @@ def tables_of(s: SimpleNamespace) -> Any:
     )
     law = tables.Law(0.0, 2e-4, 10.0, tables.LAW_AREA, 1.0, tables.CHORD, 1.0, -1.0, 0.05)
     active.form_islands(found, law, 1 / 120, 0)
-    conjugate.search_all(found, False)
+    conjugate.select_searched(found, False)
     return found
 
 
