@@ -15,7 +15,6 @@ import math
 from typing import Any
 
 from ..compile.jit import kernel
-from ..geometry.apart import find_axis
 from ..geometry.clearance import clearance
 from ..geometry.place import seen_from
 from ..geometry.pool import Pool
@@ -23,7 +22,7 @@ from ..geometry.work import Work
 from .at_rest import has_come_to_rest, keeps_its_place
 from .broad import shapes_collide
 from .constants import CALM, FEATURE, MOST_SUBSTEPS
-from .motion import earlier, gap_along_axis, kick_of, pose_of
+from .motion import earlier, find_what_parts, gap_along_axis, kick_of, pose_of
 from .order import arrange, bound, enlist, turn_of
 from .sides import shown_sides
 from .tables import (
@@ -213,8 +212,7 @@ def _meet(pool: Pool, tables: Tables, near: Any, dt: float) -> bool:
     mover = b if a.wants == 0 else a
     if max(apart_x, apart_y) > way or (a.wants == 0) == (b.wants == 0) or not mover.mobile:
         return bool(max(apart_x, apart_y) <= way)
-    rel = seen_from(pool.heads[one.outline], pose_of(a), pool.heads[other.outline], pose_of(b))
-    find_axis(pool, one.outline, other.outline, rel, pair, one.mirror >= 0, other.mirror >= 0)
+    find_what_parts(pool, tables, pair, a, b)
     if pair.gap > way:
         return False
     if pair.gap <= 0.0 or mover.calm <= 0 or mover.wants > 1:

@@ -10,8 +10,6 @@ from typing import Any
 import numpy as np
 
 from ..compile.jit import kernel
-from ..geometry.apart import find_axis
-from ..geometry.place import seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
 from .bend import bend
@@ -19,7 +17,7 @@ from .broad import swing
 from .constants import LOOK
 from .joint import make_joint_row
 from .meet import has_seats, meet, meet_ahead
-from .motion import closing_along_axis, earlier, gap_along_axis, jumped, little, pose_of
+from .motion import closing_along_axis, earlier, find_what_parts, gap_along_axis, jumped, little, pose_of
 from .row import make_row
 from .stiffness import allowed_depth
 from .tables import (
@@ -121,10 +119,7 @@ def _stay_apart(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any, h: float)
 @kernel
 def _part(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
     """Look for what parts a pair that does not overlap."""
-    sa = tables.shapes[pair.a]
-    sb = tables.shapes[pair.b]
-    rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
-    find_axis(pool, sa.outline, sb.outline, rel, pair, sa.mirror >= 0, sb.mirror >= 0)
+    find_what_parts(pool, tables, pair, a, b)
     pair.parted = tables.counters[SUBSTEP]
 
 

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..compile.jit import kernel
-from ..geometry.apart import gap_along
+from ..geometry.apart import find_axis, gap_along
 from ..geometry.place import Pose, overlap_of_outlines, seen_from
 from ..geometry.pool import Pool
 from ..geometry.work import Work
@@ -207,6 +207,15 @@ def _farthest(pool: Pool, shape: Any, body: Any) -> float:
     dy = head.y - body.cog_y
     own = 0.0 if head.disc else head.radius
     return float(math.sqrt(dx * dx + dy * dy) + own)
+
+
+@kernel
+def find_what_parts(pool: Pool, tables: Tables, pair: Any, a: Any, b: Any) -> None:
+    """The axis that parts a pair most where its bodies are, and how far (`find_axis`)."""
+    sa = tables.shapes[pair.a]
+    sb = tables.shapes[pair.b]
+    rel = seen_from(pool.heads[sa.outline], pose_of(a), pool.heads[sb.outline], pose_of(b))
+    find_axis(pool, sa.outline, sb.outline, rel, pair, sa.mirror >= 0, sb.mirror >= 0)
 
 
 @kernel
